@@ -1,0 +1,58 @@
+// The whitened residuals of one recording, and their exact Jacobian, as a cost of Ceres Solver.
+#pragma once
+
+#include <vector>
+
+#include <ceres/cost_function.h>
+
+#include "fit/parameters.h"
+#include "sim/coupling.h"
+#include "sim/simulate.h"
+
+namespace axisfit {
+
+/// What the simulation says of a recording: per measurement, in the recording's order, one value
+/// per sample.
+struct Prediction {
+  bool finished = false;
+  std::vector<std::vector<double>> simulated;  ///< in each signal's unit
+  std::vector<double> coupling_force;          ///< N, per sample; empty when uncoupled
+  int events = 0;
+};
+
+/// Simulates a recording with the parameters at u.
+Prediction predict(const Job& job, const ParameterSpace& space, std::size_t recording,
+                   const double* u, const Coupling& coupling);
+
+/// The coupling of a recording at a rate: to its velocity, or else to its position, or none.
+Coupling coupling_for(const Recording& recording, double rate);
+
+/// Residuals (measured - simulated) / sigma of all fitted measurements of a recording, measurement
+/// by measurement. One parameter block: the whole vector u of the space.
+///
+/// A point whose simulation does not finish makes Evaluate return false: for the solver a rejected
+/// step. With a Huber loss every residual r is replaced by sign(r) sqrt(rho(r^2)), so that the sum
+/// of squares is the robust cost.
+class RecordingCost : public ceres::CostFunction {
+ public:
+  /// Job and space must outlive the cost.
+  RecordingCost(const Job& job, const ParameterSpace& space, std::size_t recording,
+                const Coupling& coupling);
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  template <class T>
+  bool evaluate(const double* u, double* residuals, double* jacobian,
+                std::span<const std::size_t> columns) const;
+
+  const Job& job_;
+  const ParameterSpace& space_;
+  std::size_t recording_;
+  Coupling coupling_;
+  std::vector<std::size_t> fitted_;      // indices of measurements
+  std::vector<std::size_t> applicable_;  // indices of parameters
+};
+
+}  // namespace axisfit

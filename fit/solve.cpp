@@ -1,0 +1,111 @@
+#include "fit/solve.h"
+
+#include <memory>
+#include <vector>
+
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include "fit/residual.h"
+
+namespace axisfit {
+namespace {
+
+/// (value - mean) / sigma for every parameter with a prior.
+class PriorCost : public ceres::CostFunction {
+ public:
+  PriorCost(const ParameterSpace& space, std::size_t parameter)
+      : space_(space), parameter_(parameter) {
+    set_num_residuals(1);
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(space.size()));
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const Prior& prior = *space_[parameter_].prior;
+    const double u = parameters[0][parameter_];
+    residuals[0] = (space_.value(parameter_, u) - prior.mean) / prior.sigma;
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      std::fill_n(jacobians[0], space_.size(), 0.0);
+      jacobians[0][parameter_] = space_.slope(parameter_, u) / prior.sigma;
+    }
+    return true;
+  }
+
+ private:
+  const ParameterSpace& space_;
+  std::size_t parameter_;
+};
+
+std::vector<std::unique_ptr<ceres::CostFunction>> costs(const Job& job, const ParameterSpace& space,
+                                                        double coupling_rate) {
+  std::vector<std::unique_ptr<ceres::CostFunction>> list;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    if (job.recordings[r].role == Role::fit)
+      list.push_back(std::make_unique<RecordingCost>(
+          job, space, r, coupling_for(job.recordings[r], coupling_rate)));
+  for (std::size_t i = 0; i < space.size(); ++i)
+    if (space[i].prior) list.push_back(std::make_unique<PriorCost>(space, i));
+  return list;
+}
+
+}  // namespace
+
+SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& start,
+                  double coupling_rate, const SolveOptions& options) {
+  SolveResult result;
+  result.u = start;
+  ceres::Problem problem;
+  double* u = result.u.data();
+  for (auto& cost : costs(job, space, coupling_rate))
+    problem.AddResidualBlock(cost.release(), nullptr, u);
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    const int index = static_cast<int>(i);
+    const double lower = space.internal(i, space[i].lower);
+    const double upper = space.internal(i, space[i].upper);
+    problem.SetParameterLowerBound(u, index, lower);
+    problem.SetParameterUpperBound(u, index, upper);
+    u[i] = std::clamp(u[i], lower, upper);  // exp and log may round a start off its bound
+  }
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.num_threads = 1;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = options.function_tolerance;
+  solver.parameter_tolerance = options.parameter_tolerance;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  result.usable = summary.IsSolutionUsable();
+  result.converged = summary.termination_type == ceres::CONVERGENCE;
+  result.cost = summary.final_cost;
+  result.iterations = static_cast<int>(summary.iterations.size());
+  result.message = summary.message;
+  return result;
+}
+
+Linearization linearize(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
+                        double coupling_rate) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto list = costs(job, space, coupling_rate);
+  Eigen::Index rows = 0;
+  for (const auto& cost : list) rows += cost->num_residuals();
+  Linearization result;
+  result.residuals.resize(rows);
+  result.jacobian.resize(rows, u.size());
+  result.finite = true;
+  Eigen::Index row = 0;
+  for (const auto& cost : list) {
+    const Eigen::Index n = cost->num_residuals();
+    RowMajor block(n, u.size());
+    const double* parameters = u.data();
+    double* jacobian = block.data();
+    result.finite = result.finite &&
+                    cost->Evaluate(&parameters, result.residuals.data() + row, &jacobian);
+    result.jacobian.middleRows(row, n) = block;
+    row += n;
+  }
+  return result;
+}
+
+}  // namespace axisfit

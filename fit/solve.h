@@ -1,0 +1,41 @@
+// One least-squares solution at one coupling.
+#pragma once
+
+#include <string>
+
+#include <Eigen/Core>
+
+#include "fit/parameters.h"
+
+namespace axisfit {
+
+struct SolveOptions {
+  int max_iterations = 50;
+  double function_tolerance = 1e-8;   ///< relative change of the cost at which to stop
+  double parameter_tolerance = 1e-9;  ///< relative change of the parameters at which to stop
+};
+
+struct SolveResult {
+  bool usable = false;     ///< the point is finite and no worse than the start
+  bool converged = false;  ///< a tolerance was reached
+  Eigen::VectorXd u;
+  double cost = 0.0;  ///< half the sum of squared residuals, priors included
+  int iterations = 0;
+  std::string message;  ///< the solver's own reason to stop
+};
+
+/// Minimises over all `fit` recordings, from u, within the bounds, with the coupling's rate
+/// (coupling_for each recording). Single-threaded and deterministic.
+SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
+                  double coupling_rate, const SolveOptions& options);
+
+/// Residuals of all fit recordings and priors at u, and their Jacobian with respect to u.
+struct Linearization {
+  bool finite = false;
+  Eigen::VectorXd residuals;
+  Eigen::MatrixXd jacobian;
+};
+Linearization linearize(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
+                        double coupling_rate);
+
+}  // namespace axisfit

@@ -1,0 +1,400 @@
+// Integration of the axis through its modes, with located events that carry derivatives.
+//
+// Method. Within a mode the system is affine but for the smooth forces of effects, so the affine
+// part is propagated exactly (propagator.h) and the rest by the classical Runge-Kutta method in the
+// moving frame of the affine part, with its value at the start of the step frozen into that part:
+// a constant rest is exact too. Stiffness of the current loop or the gear does not limit the step.
+//
+// Events. After every trial step on plain values all guards of the mode are tested, at its end and,
+// by a cubic through values and rates, within. A step that meets one is cut in halves down to the
+// shortest length of the ladder, where Newton's method on the guard ends the search. Then the step
+// is taken in T, and the crossing time is corrected by -g / g' in T: the event time carries its
+// derivatives, and so does every length that is measured from it. After each event, and after each
+// switch of the command, steps grow again from the shortest, so that fast transients are resolved
+// and what they set off is seen.
+//
+// Limits. Derivatives are those of a fixed sequence of transversal events; where two events
+// coincide or a guard is touched without crossing, they are one-sided. The smooth forces must not
+// be stiff (rate * step < 1). A guard that is left and entered again within a step, without the
+// cubic showing it, is missed.
+#pragma once
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "sim/equations.h"
+#include "sim/propagator.h"
+
+namespace axisfit {
+
+struct IntegratorOptions {
+  /// s. Longest step. The affine part is exact at any step: it is how often guards are looked at,
+  /// and the Runge-Kutta step of smooth effects.
+  double step = 0.5e-3;
+  /// Whether event times carry derivatives. Off only to show what that is worth.
+  bool event_derivatives = true;
+  /// Events within one step length before the simulation is given up as chattering.
+  int event_limit = 1000;
+};
+
+template <class T>
+class Integrator {
+ public:
+  Integrator(const Model<T>& model, const Coupling& coupling, const IntegratorOptions& options)
+      : options_(options),
+        model_(model),
+        plain_model_(convert<double>(model)),
+        equations_(model_, coupling),
+        plain_(plain_model_, coupling) {}
+
+  Integrator(const Integrator&) = delete;
+  Integrator& operator=(const Integrator&) = delete;
+
+  /// Begins at `time` with the model's initial state and the given command (V).
+  void start(double time, const T& command, const Target& target) {
+    time_ = T(time);
+    y_ = initial_state(model_);
+    input_ = {command, target};
+    plain_input_ = {value_of(command), target};
+    slope_ = {};
+    switch_mode(equations_.mode_at(y_, input_));
+  }
+
+  /// Switches the command, now.
+  void set_command(const T& command) {
+    input_.command = command;
+    plain_input_.command = value_of(command);
+    switch_mode(equations_.settle(mode_, y_, input_));
+  }
+
+  /// From now on the coupling's target is `target` and moves with the rate `slope` per second.
+  void set_target(const Target& target, const Target& slope) {
+    input_.target = plain_input_.target = target;
+    slope_ = slope;
+    if (equations_.coupling().active()) {
+      target_rate_ = equations_.rate_of_target(mode_, slope_);
+      plain_target_rate_ = plain_.rate_of_target(mode_, slope_);
+    }
+  }
+
+  /// Goes on to the instant `end` (s), not before the present time.
+  /// Returns false when the motion chatters or is not finite any more; the state is then useless.
+  bool advance_to(const T& end);
+
+  const T& time() const { return time_; }
+  const State<T>& state() const { return y_; }
+  const Mode& mode() const { return mode_; }
+  const Input<T>& input() const { return input_; }
+  const Equations<T>& equations() const { return equations_; }
+  /// Number of events so far.
+  int events() const { return events_; }
+
+ private:
+  /// Everything that one linear system needs, in T and on plain values.
+  struct Flow {
+    Propagator<T> exact;
+    Propagator<double> plain;
+  };
+
+  struct Hit {
+    Guard guard;
+    double delay;  ///< s after the start of the trial step
+  };
+
+  template <class S>
+  struct View {  // one of the two scalar types
+    const Equations<S>& equations;
+    const Propagator<S>& propagator;
+    const Input<S>& input;
+    const State<S>* target_rate;  // null when uncoupled
+  };
+  View<T> exact() const {
+    return {equations_, flow_->exact, input_, coupled() ? &target_rate_ : nullptr};
+  }
+  View<double> plain() const {
+    return {plain_, flow_->plain, plain_input_, coupled() ? &plain_target_rate_ : nullptr};
+  }
+
+  State<double> plain_state() const {
+    State<double> y;
+    for (std::size_t i = 0; i < kStates; ++i) y[i] = value_of(y_[i]);
+    return y;
+  }
+  bool coupled() const { return equations_.coupling().active(); }
+
+  void switch_mode(const Mode& mode);
+  const Flow& flow_of(const Mode& mode);
+
+  template <class S>
+  State<S> step(const View<S>& view, const State<S>& y, int level) const;
+  template <class S>
+  State<S> step_by(const View<S>& view, const State<S>& y, double length) const {
+    return view.propagator.advance_by(y, view.equations.rate(mode_, y, view.input),
+                                      view.target_rate, length);
+  }
+
+  bool meets_guard(const State<double>& from, const State<double>& to, double length) const;
+  std::optional<Hit> locate(const State<double>& from, const State<double>& to,
+                            double length) const;
+  void move_time(double length);
+  void pass_event(const Hit& hit);
+
+  /// Rate of a guard's value: it is affine, so a unit step along the rates gives it exactly.
+  template <class S, class Visitor>
+  void visit_guards_and_rates(const View<S>& view, const State<S>& y, Visitor&& visit) const {
+    const State<S> f = view.equations.rate(mode_, y, view.input);
+    std::array<std::pair<S, S>, 8> values;
+    std::size_t n = 0;
+    view.equations.visit_guards(mode_, y, view.input,
+                                [&](Guard, const S& g, double) { values[n++].first = g; });
+    State<S> ahead = y;
+    for (std::size_t i = 0; i < kStates; ++i) ahead[i] += f[i];
+    Input<S> input_ahead = view.input;
+    input_ahead.target.velocity += slope_.velocity;
+    input_ahead.target.position += slope_.position;
+    n = 0;
+    view.equations.visit_guards(mode_, ahead, input_ahead, [&](Guard guard, const S& g, double scale) {
+      visit(guard, values[n].first, g - values[n].first, scale);
+      ++n;
+    });
+  }
+
+  const IntegratorOptions options_;
+  const Model<T> model_;
+  const Model<double> plain_model_;
+  const Equations<T> equations_;
+  const Equations<double> plain_;
+  std::map<int, std::unique_ptr<Flow>> flows_;
+
+  T time_{0.0};
+  State<T> y_{};
+  Mode mode_;
+  Input<T> input_;
+  Input<double> plain_input_;
+  Target slope_;
+  State<T> target_rate_{};
+  State<double> plain_target_rate_{};
+  const Flow* flow_ = nullptr;
+  int level_ = 0;  // of the longest step now allowed; falls to 0 as steps grow after an event
+  int events_ = 0;
+};
+
+template <class T>
+void Integrator<T>::switch_mode(const Mode& mode) {
+  mode_ = mode;
+  flow_ = &flow_of(mode);
+  level_ = flow_->exact.ladder().resolved;
+  if (coupled()) {
+    target_rate_ = equations_.rate_of_target(mode_, slope_);
+    plain_target_rate_ = plain_.rate_of_target(mode_, slope_);
+  }
+}
+
+template <class T>
+const typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
+  // The sign of a contact or limit changes constants, not the matrix.
+  const int key = (mode.contact != 0) | (mode.v_c != 0) << 1 | (mode.v_m != 0) << 2 |
+                  (mode.sliding != 0) << 3;
+  std::unique_ptr<Flow>& flow = flows_[key];
+  if (flow == nullptr) {
+    Matrix<T> a;
+    const Input<T> none{};
+    const State<T> origin{};
+    const State<T> offset = equations_.rate(mode, origin, none, Terms::affine);
+    for (std::size_t j = 0; j < kStates; ++j) {
+      State<T> unit{};
+      unit[j] = T(1.0);
+      const State<T> column = equations_.rate(mode, unit, none, Terms::affine);
+      for (std::size_t i = 0; i < kStates; ++i) a[i][j] = column[i] - offset[i];
+    }
+    // Below the shortest length the smooth forces are frozen: it has to be short.
+    const int least = equations_.has_smooth_forces() ? 12 : 0;
+    const Ladder ladder = ladder_for(a, options_.step, least);
+    flow = std::make_unique<Flow>(
+        Flow{Propagator<T>(a, ladder, coupled()),
+             Propagator<double>(axisfit::value_of(a), ladder, coupled())});
+  }
+  return *flow;
+}
+
+template <class T>
+template <class S>
+State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, int level) const {
+  const Propagator<S>& p = view.propagator;
+  const State<S> f = view.equations.rate(mode_, y, view.input);
+  const State<S> end = p.advance(y, f, view.target_rate, level);
+  if (!view.equations.has_smooth_forces() || mode_.sliding == 0 || level == p.ladder().last)
+    return end;
+  // Classical Runge-Kutta for n(y) = N(y) - N(y at the start), an acceleration of the arm, in the
+  // frame that moves with the affine flow.
+  const double h = p.ladder().length(level);
+  const S start = view.equations.smooth_acceleration(mode_, y);
+  const auto n = [&](const State<S>& at) {
+    State<S> rest{};
+    rest[1] = view.equations.smooth_acceleration(mode_, at) - start;
+    if (model_.structure.transmission == Transmission::rigid)
+      rest[3] = rest[1] / view.equations.model().axis.r_g;
+    return rest;
+  };
+  const auto plus = [](State<S> a, double factor, const State<S>& b) {
+    for (std::size_t i = 0; i < kStates; ++i) a[i] += factor * b[i];
+    return a;
+  };
+  const State<S> middle = p.advance(y, f, view.target_rate, level + 1);
+  const State<S> k2 = n(middle);  // k1 = 0
+  const State<S> k3 = n(plus(middle, 0.5 * h, k2));
+  const State<S> k4 = n(plus(end, h, p.exponential(k3, level + 1)));
+  const State<S> inner = p.exponential(plus(k2, 1.0, k3), level + 1);
+  return plus(plus(end, h / 3.0, inner), h / 6.0, k4);
+}
+
+template <class T>
+bool Integrator<T>::meets_guard(const State<double>& from, const State<double>& to,
+                                double length) const {
+  std::array<std::pair<double, double>, 8> before;
+  std::size_t n = 0;
+  visit_guards_and_rates(plain(), from, [&](Guard, double g, double rate, double) {
+    before[n++] = {g, rate};
+  });
+  bool met = false;
+  n = 0;
+  const View<double> view = plain();
+  Input<double> input_to = view.input;
+  input_to.target.velocity += slope_.velocity * length;
+  input_to.target.position += slope_.position * length;
+  const View<double> view_to{view.equations, view.propagator, input_to, view.target_rate};
+  visit_guards_and_rates(view_to, to, [&](Guard, double g1, double r1, double scale) {
+    const auto [g0, r0] = before[n++];
+    if (g1 < -1e-12 * scale) met = true;
+    if (met || !(r0 < 0.0 && r1 > 0.0) || g0 <= 0.0) return;
+    // The guard falls and rises again: the lowest point of the cubic through values and rates.
+    const double d = g1 - g0, b = 3.0 * d - (2.0 * r0 + r1) * length,
+                 a = (r0 + r1) * length - 2.0 * d, c = r0 * length;  // a s^3 + b s^2 + c s + g0
+    const double root = b * b - 3.0 * a * c;
+    if (root < 0.0) return;
+    const double s = -c / (b + std::sqrt(root));
+    if (s > 0.0 && s < 1.0 && ((a * s + b) * s + c) * s + g0 < -1e-12 * scale) met = true;
+  });
+  return met;
+}
+
+template <class T>
+std::optional<typename Integrator<T>::Hit> Integrator<T>::locate(const State<double>& from,
+                                                                 const State<double>& to,
+                                                                 double length) const {
+  std::optional<Hit> first;
+  const View<double> view = plain();
+  const auto input_at = [&](double t) {
+    Input<double> input = view.input;
+    input.target.velocity += slope_.velocity * t;
+    input.target.position += slope_.position * t;
+    return input;
+  };
+  view.equations.visit_guards(mode_, to, input_at(length), [&](Guard guard, double g, double scale) {
+    if (g >= -1e-12 * scale) return;
+    double low = 0.0, high = length, t = 0.0;
+    for (int i = 0; i < 60 && high - low > 1e-15 * length; ++i) {
+      const Input<double> input = input_at(t);
+      const State<double> y = t > 0.0 ? step_by(view, from, t) : from;
+      double value = 0.0, rate = 0.0;
+      visit_guards_and_rates({view.equations, view.propagator, input, view.target_rate}, y,
+                             [&](Guard other, double g_t, double rate_t, double) {
+                               if (other == guard) value = g_t, rate = rate_t;
+                             });
+      if (value <= 0.0)
+        high = t;
+      else
+        low = t;
+      if (value == 0.0 || high <= 0.0) break;
+      const double newton = t - value / rate;
+      const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
+      if (next == t) break;
+      t = next;
+    }
+    const double delay = high <= 0.0 ? 0.0 : t;
+    if (!first || delay < first->delay) first = Hit{guard, delay};
+  });
+  return first;
+}
+
+template <class T>
+void Integrator<T>::move_time(double length) {
+  time_ += length;
+  input_.target.velocity += slope_.velocity * length;
+  input_.target.position += slope_.position * length;
+  plain_input_.target = input_.target;
+}
+
+template <class T>
+void Integrator<T>::pass_event(const Hit& hit) {
+  if (hit.delay > 0.0) y_ = step_by(exact(), y_, hit.delay);
+  move_time(hit.delay);
+  // One Newton step on the guard in T. Its value is rounding; its derivatives are those of the event
+  // time.
+  T correction(0.0);
+  visit_guards_and_rates(exact(), y_, [&](Guard guard, const T& g, const T& rate, double) {
+    if (guard == hit.guard && value_of(rate) != 0.0)
+      correction = -derivative_part(g) / value_of(rate);
+  });
+  if (!options_.event_derivatives) correction = T(0.0);
+  const State<T> f = equations_.rate(mode_, y_, input_);
+  for (std::size_t i = 0; i < kStates; ++i) y_[i] += f[i] * correction;
+  time_ += correction;
+  ++events_;
+  switch_mode(equations_.cross(mode_, hit.guard, y_, input_));
+}
+
+template <class T>
+bool Integrator<T>::advance_to(const T& end) {
+  const double last = value_of(end);
+  const double negligible = 1e-9 * options_.step;
+  const int event_limit =
+      events_ + options_.event_limit * (1 + static_cast<int>((last - value_of(time_)) / options_.step));
+  int search = 0;  // level of the search for an event; 0: no search under way
+  while (true) {
+    const double remaining = last - value_of(time_);
+    if (!(remaining > negligible)) break;
+    const Ladder& ladder = flow_->exact.ladder();
+    int level = std::max(level_, search);
+    while (level <= ladder.last && ladder.length(level) > remaining + negligible) ++level;
+    const bool shortest = level >= ladder.last;
+    const double length = std::min(remaining, ladder.length(std::min(level, ladder.last)));
+
+    const State<double> from = plain_state();
+    const State<double> to =
+        level > ladder.last ? step_by(plain(), from, length) : step(plain(), from, level);
+    for (const double x : to)
+      if (!std::isfinite(x)) return false;
+    if (meets_guard(from, to, length)) {
+      if (!shortest) {
+        search = level + 1;
+        continue;
+      }
+      if (const std::optional<Hit> hit = locate(from, to, length)) {
+        if (events_ >= event_limit) return false;
+        pass_event(*hit);
+        search = 0;
+        continue;
+      }
+    }
+    if constexpr (std::is_same_v<T, double>)
+      y_ = to;
+    else
+      y_ = level > ladder.last ? step_by(exact(), y_, length) : step(exact(), y_, level);
+    move_time(length);
+    level_ = std::max(0, level_ - 1);
+    if (search > 0 && ++search > ladder.last + 1) search = 0;
+  }
+  // What is left is rounding, and the derivatives of the two instants.
+  const T rest = end - time_;
+  const State<T> f = equations_.rate(mode_, y_, input_);
+  for (std::size_t i = 0; i < kStates; ++i) y_[i] += f[i] * rest;
+  time_ = end;
+  return true;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,33 @@
+// The discrete modes of the axis. Within one mode the paper's equations are linear.
+#pragma once
+
+#include <cstdint>
+
+namespace axisfit {
+
+struct Mode {
+  std::int8_t contact = 0;  ///< -1, 0, +1: teeth apart, or touching on the side of that sign, (5)
+  std::int8_t v_c = 0;      ///< -1, 0, +1: preamplifier free, or at the limit of that sign, (2)
+  std::int8_t v_m = 0;      ///< -1, 0, +1: motor voltage free, or at the limit of that sign, (3)
+  std::int8_t sliding = 0;  ///< 0: the arm sticks; -1, +1: the sign of its velocity. Meaningless
+                            ///< (and 1) for an arm without dry friction.
+  bool doublet = false;     ///< whether |y1| < w, where F_s acts, (6)
+
+  bool operator==(const Mode&) const = default;
+};
+
+/// The surfaces on which the mode changes. A guard is positive inside the mode.
+enum class Guard : std::uint8_t {
+  contact_positive,   ///< x = H
+  contact_negative,   ///< x = -H
+  v_c_positive,       ///< V_c = V_L
+  v_c_negative,       ///< V_c = -V_L
+  v_m_positive,       ///< V_m = V_s
+  v_m_negative,       ///< V_m = -V_s
+  stop,               ///< y1 = 0 while sliding
+  doublet,            ///< |y1| = w
+  break_away_positive,  ///< the arm's dry friction is overcome in the positive direction
+  break_away_negative,  ///< and in the negative
+};
+
+}  // namespace axisfit

@@ -1,0 +1,62 @@
+#include "sim/model.h"
+
+#include <algorithm>
+
+namespace axisfit {
+
+const std::vector<QuantityEntry>& quantity_list() {
+  static const std::vector<QuantityEntry> list = [] {
+    std::vector<QuantityEntry> entries;
+    const Model<double> model;
+    visit_quantities(model, [&](std::string_view group, const Quantity& quantity, double) {
+      entries.push_back({full_name(group, quantity), std::string(group), quantity, entries.size()});
+    });
+    return entries;
+  }();
+  return list;
+}
+
+const QuantityEntry* find_quantity(std::string_view name) {
+  const auto& list = quantity_list();
+  const auto found = std::ranges::find(list, name, &QuantityEntry::name);
+  return found == list.end() ? nullptr : &*found;
+}
+
+bool is_used(const QuantityEntry& entry, const Structure& structure) {
+  const bool electric = structure.drive != Drive::force_source;
+  const bool backlash = structure.transmission == Transmission::backlash;
+  bool in_an_effect = false, present = false;
+  const Effects<double> effects{};
+  visit_effects(effects, [&](std::size_t index, const auto& effect) {
+    if (entry.group != effect.name) return;
+    in_an_effect = true;
+    present = structure.effects[index];
+  });
+  if (in_an_effect) return present;
+  if (entry.group == "initial") {
+    if (entry.quantity.symbol == "y6") return structure.drive == Drive::velocity_loop;
+    if (entry.quantity.symbol == "y4" || entry.quantity.symbol == "y5") return electric;
+    if (entry.quantity.symbol == "x" || entry.quantity.symbol == "dx") return backlash;
+    return true;
+  }
+  switch (entry.quantity.used_by) {
+    case UsedBy::every_axis: return true;
+    case UsedBy::velocity_loop: return structure.drive == Drive::velocity_loop;
+    case UsedBy::electric_drive: return electric;
+    case UsedBy::force_source: return !electric;
+    case UsedBy::backlash: return backlash;
+    case UsedBy::motor: return electric || backlash;
+  }
+  return true;
+}
+
+std::string refusal(const Model<double>& model) {
+  const Axis<double>& a = model.axis;
+  const bool backlash = model.structure.transmission == Transmission::backlash;
+  if (backlash && a.J_m <= 0.0)
+    return "J_m must be above zero where the gear has backlash: between the teeth nothing but J_m "
+           "carries the motor torque";
+  return {};
+}
+
+}  // namespace axisfit

@@ -1,0 +1,119 @@
+// One axis with everything that can be fitted: its parameters, effects, instruments and initial
+// state, in one list of named quantities.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "sim/axis.h"
+#include "sim/effects/effects.h"
+#include "sim/scalar.h"
+#include "sim/signal.h"
+
+namespace axisfit {
+
+/// The variant of the model: everything that is chosen, not measured.
+struct Structure {
+  Drive drive = Drive::velocity_loop;
+  Transmission transmission = Transmission::backlash;
+  EffectSet effects;
+};
+
+template <class T>
+struct Model {
+  Structure structure;
+  Axis<T> axis{};
+  Effects<T> effects{};
+  Instruments<T> instruments{};
+  State<T> initial{};  ///< with x = r_g y2 - y0 and its rate in place of y2 and y3
+};
+
+/// The state at the start. The motor's place is given relative to the arm, so that an initial
+/// position that is estimated moves both and does not tear the gear apart.
+template <class T>
+State<T> initial_state(const Model<T>& model) {
+  State<T> y = model.initial;
+  y[2] = (model.initial[0] + model.initial[2]) / model.axis.r_g;
+  y[3] = (model.initial[1] + model.initial[3]) / model.axis.r_g;
+  return y;
+}
+
+/// Calls visit(group, quantity, member) for every quantity of the model, always in the same order.
+/// Groups: "" for the axis, the effect's name, the signal's name, "initial".
+template <class ModelOfT, class Visitor>
+void visit_quantities(ModelOfT& model, Visitor&& visit) {
+  visit_axis(model.axis, [&](const Quantity& quantity, auto& member) {
+    visit(std::string_view(), quantity, member);
+  });
+  visit_effects(model.effects, [&](std::size_t, auto& effect) {
+    effect.visit(effect, [&](const Quantity& quantity, auto& member) {
+      visit(effect.name, quantity, member);
+    });
+  });
+  for (const SignalInfo& entry : kSignalTable) {
+    auto& instrument = model.instruments[index_of(entry.signal)];
+    visit(entry.name, Quantity{"gain", "1", "gain of the instrument", -1e6, 1e6, 1.0},
+          instrument.gain);
+    visit(entry.name, Quantity{"bias", entry.unit, "bias of the instrument", -1e9, 1e9, 0.0},
+          instrument.bias);
+  }
+  constexpr Quantity kInitial[kStates] = {
+      {"y0", "m", "initial arm position", -1e3, 1e3, 0.0},
+      {"y1", "m/s", "initial arm velocity", -1e3, 1e3, 0.0},
+      {"x", "m", "initial r_g y2 - y0, zero: pinion centred", -1, 1, 0.0},
+      {"dx", "m/s", "initial r_g y3 - y1", -1e3, 1e3, 0.0},
+      {"y4", "V", "initial preamplifier variable", -1e6, 1e6, 0.0},
+      {"y5", "V/s", "initial preamplifier rate", -1e9, 1e9, 0.0},
+      {"y6", "A", "initial motor current", -1e4, 1e4, 0.0},
+  };
+  for (std::size_t i = 0; i < kStates; ++i) visit("initial", kInitial[i], model.initial[i]);
+}
+
+/// What can be said of a quantity without its value; `index` is its place in the list.
+struct QuantityEntry {
+  std::string name;  ///< "B_a", "coulomb_friction.F_c", "velocity.bias", "initial.y1"
+  std::string group;
+  Quantity quantity;
+  std::size_t index;
+};
+
+/// The list of all quantities, in the order of visit_quantities.
+const std::vector<QuantityEntry>& quantity_list();
+
+/// The entry with this name, or null.
+const QuantityEntry* find_quantity(std::string_view name);
+
+/// The model in another scalar type, without derivatives.
+template <class To, class From>
+Model<To> convert(const Model<From>& from) {
+  std::vector<double> values;
+  visit_quantities(from, [&](std::string_view, const Quantity&, const From& member) {
+    values.push_back(value_of(member));
+  });
+  Model<To> to;
+  to.structure = from.structure;
+  std::size_t index = 0;
+  visit_quantities(to, [&](std::string_view, const Quantity&, To& member) {
+    member = To(values[index++]);
+  });
+  return to;
+}
+
+/// Pointers to all quantities of a model, in the order of quantity_list().
+template <class T>
+std::vector<T*> members(Model<T>& model) {
+  std::vector<T*> pointers;
+  visit_quantities(model, [&](std::string_view, const Quantity&, T& member) {
+    pointers.push_back(&member);
+  });
+  return pointers;
+}
+
+/// Whether a model of this structure makes use of the quantity.
+bool is_used(const QuantityEntry& entry, const Structure& structure);
+
+/// Why a model of this structure cannot be simulated; empty when it can.
+std::string refusal(const Model<double>& model);
+
+}  // namespace axisfit

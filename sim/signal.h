@@ -1,0 +1,65 @@
+// The signals that a rig records, and the instruments that read them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "sim/quantity.h"
+
+namespace axisfit {
+
+/// Outputs of the model: what an instrument can read. Definitions in the table below.
+enum class Signal {
+  position,
+  velocity,
+  acceleration,
+  tachometer,
+  motor_current,
+  preamplifier_voltage,
+  motor_voltage,
+  drive_force,
+};
+
+inline constexpr std::size_t kSignals = 8;
+
+struct SignalInfo {
+  Signal signal;
+  std::string_view name;  ///< in files
+  std::string_view unit;
+  std::string_view meaning;
+};
+
+inline constexpr std::array<SignalInfo, kSignals> kSignalTable{{
+    {Signal::position, "position", "m", "r_g y2, by the encoder on the motor shaft"},
+    {Signal::velocity, "velocity", "m/s", "y1, of the arm"},
+    {Signal::acceleration, "acceleration", "m/s^2", "y1', by an accelerometer on the arm"},
+    {Signal::tachometer, "tachometer", "V", "K_t y3"},
+    {Signal::motor_current, "motor_current", "A", "y6"},
+    {Signal::preamplifier_voltage, "V_c", "V", "preamplifier output behind its limit, (2)"},
+    {Signal::motor_voltage, "V_m", "V", "motor voltage behind its limit, (3)"},
+    {Signal::drive_force, "drive_force", "N", "motor torque as a force at the rack"},
+}};
+
+constexpr std::size_t index_of(Signal signal) { return static_cast<std::size_t>(signal); }
+
+constexpr const SignalInfo& info(Signal signal) { return kSignalTable[index_of(signal)]; }
+
+inline std::optional<Signal> signal_by_name(std::string_view name) {
+  for (const SignalInfo& entry : kSignalTable)
+    if (entry.name == name) return entry.signal;
+  return std::nullopt;
+}
+
+/// A linear instrument: reading = gain * true value + bias, the bias in the signal's unit.
+template <class T>
+struct Instrument {
+  T gain{1.0};
+  T bias{0.0};
+};
+
+template <class T>
+using Instruments = std::array<Instrument<T>, kSignals>;
+
+}  // namespace axisfit

@@ -1,0 +1,70 @@
+// The axis along a command, read at given instants.
+#pragma once
+
+#include <span>
+#include <stdexcept>
+
+#include "sim/command.h"
+#include "sim/integrator.h"
+
+namespace axisfit {
+
+/// What a coupled simulation is held to: measured values at the instants of the simulation.
+/// A series that the coupling does not use may be empty.
+struct Measured {
+  std::span<const double> velocity;  ///< m/s
+  std::span<const double> position;  ///< m
+
+  Target at(std::size_t i) const {
+    return {velocity.empty() ? 0.0 : velocity[i], position.empty() ? 0.0 : position[i]};
+  }
+};
+
+/// How a simulation ended.
+struct SimulationOutcome {
+  bool finished = false;   ///< false: not finite, or chattering without end
+  std::size_t reached = 0;  ///< number of instants that were read
+  int events = 0;
+};
+
+/// Simulates from times[0] on and calls read(i, integrator) at every instant times[i] (s, increasing).
+///
+/// A reading precedes a command that switches at the same instant. With a coupling, the target runs
+/// linearly between the measured values.
+template <class T, class Read>
+SimulationOutcome simulate(const Model<T>& model, const Schedule& command,
+                           std::span<const double> times, Read&& read,
+                           const Coupling& coupling = {}, const Measured& measured = {},
+                           const IntegratorOptions& options = {}) {
+  SimulationOutcome outcome;
+  Integrator<T> axis(model, coupling, options);
+  std::size_t next = 0;
+  T in_force(0.0);
+  // Commands that acted before the first instant.
+  for (; next < command.times.size() &&
+         command.times[next] + value_of(model.axis.T_d) < times.front(); ++next)
+    in_force = T(command.values[next]);
+  axis.start(times.front(), in_force, measured.at(0));
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (i > 0 && coupling.active()) {
+      const double duration = times[i] - times[i - 1];
+      const Target from = measured.at(i - 1), to = measured.at(i);
+      axis.set_target(from, {(to.velocity - from.velocity) / duration,
+                             (to.position - from.position) / duration});
+    }
+    for (; next < command.times.size(); ++next) {
+      const T instant = command.times[next] + model.axis.T_d;
+      if (!(value_of(instant) < times[i])) break;
+      if (!axis.advance_to(instant)) return outcome;
+      axis.set_command(T(command.values[next]));
+    }
+    if (!axis.advance_to(T(times[i]))) return outcome;
+    read(i, axis);
+    outcome.reached = i + 1;
+    outcome.events = axis.events();
+  }
+  outcome.finished = true;
+  return outcome;
+}
+
+}  // namespace axisfit
