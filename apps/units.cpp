@@ -205,8 +205,8 @@ std::variant<double, UnitError> unit_factor(std::string_view unit, std::string_v
   const Target target(si_unit);
   const bool dimensionless = target.database.is_dimensionless(target.unit);
   const auto failure = [&](UnitProblem problem, std::string message) {
-    message += dimensionless ? std::string("; write a plain number or '%'")
-                             : "; write for example '" + std::string(si_unit) + "'";
+    message += dimensionless ? "; write a plain number or '%'" : "; write for example '";
+    if (!dimensionless) message.append(si_unit) += '\'';
     return UnitError{problem, std::move(message)};
   };
   const std::string quoted = "'" + std::string(unit) + "'";

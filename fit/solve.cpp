@@ -5,6 +5,7 @@
 
 #include <ceres/problem.h>
 #include <ceres/solver.h>
+#include <glog/logging.h>
 
 #include "fit/residual.h"
 
@@ -53,6 +54,9 @@ std::vector<std::unique_ptr<ceres::CostFunction>> costs(const Job& job, const Pa
 
 SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& start,
                   double coupling_rate, const SolveOptions& options) {
+  // A rejected point is no event that a user should read of; the outcome is in the result.
+  static const bool silent = (FLAGS_minloglevel = google::FATAL, true);
+  (void)silent;
   SolveResult result;
   result.u = start;
   ceres::Problem problem;

@@ -187,7 +187,7 @@ template <class T>
 void Integrator<T>::switch_mode(const Mode& mode) {
   mode_ = mode;
   flow_ = &flow_of(mode);
-  level_ = flow_->exact.ladder().resolved;
+  level_ = flow_->exact.ladder().resolved;  // a switch may set off the fastest motions
   if (coupled()) {
     target_rate_ = equations_.rate_of_target(mode_, slope_);
     plain_target_rate_ = plain_.rate_of_target(mode_, slope_);
@@ -211,9 +211,10 @@ const typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
       const State<T> column = equations_.rate(mode, unit, none, Terms::affine);
       for (std::size_t i = 0; i < kStates; ++i) a[i][j] = column[i] - offset[i];
     }
-    // Below the shortest length the smooth forces are frozen: it has to be short.
-    const int least = equations_.has_smooth_forces() ? 12 : 0;
-    const Ladder ladder = ladder_for(a, options_.step, least);
+    // Below the shortest length smooth forces are frozen, and events are not told apart: even where
+    // nothing is stiff it has to be short.
+    constexpr int kLeastHalvings = 12;
+    const Ladder ladder = ladder_for(a, options_.step, kLeastHalvings);
     flow = std::make_unique<Flow>(
         Flow{Propagator<T>(a, ladder, coupled()),
              Propagator<double>(axisfit::value_of(a), ladder, coupled())});
@@ -305,11 +306,13 @@ std::optional<typename Integrator<T>::Hit> Integrator<T>::locate(const State<dou
                              [&](Guard other, double g_t, double rate_t, double) {
                                if (other == guard) value = g_t, rate = rate_t;
                              });
-      if (value <= 0.0)
+      // A guard that starts at zero and rises, as that of an arm which has just broken away, was
+      // not met there.
+      if (value <= 0.0 && !(t == 0.0 && rate > 0.0))
         high = t;
       else
         low = t;
-      if (value == 0.0 || high <= 0.0) break;
+      if (high <= 0.0 || (value == 0.0 && t > 0.0)) break;
       const double newton = t - value / rate;
       const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
       if (next == t) break;
@@ -346,6 +349,7 @@ void Integrator<T>::pass_event(const Hit& hit) {
   time_ += correction;
   ++events_;
   switch_mode(equations_.cross(mode_, hit.guard, y_, input_));
+  level_ = flow_->exact.ladder().last;  // another event may follow closely
 }
 
 template <class T>

@@ -1,0 +1,25 @@
+// Axis files: an axis, its effects, controller and instruments, in YAML. docs/axis-file.md has every
+// key; they all come from the model's list of quantities.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/config.h"
+#include "sim/rig.h"
+
+namespace axisfit {
+
+/// Reads an axis file. Nothing, with diagnostics, when anything in it is wrong.
+std::optional<Rig> read_axis_file(const std::string& path, Diagnostics& diagnostics);
+
+/// Reads `effects: {name: {symbol: quantity}}` into a model: an effect is on because it is written.
+void read_effects(const ConfigNode& node, Model<double>& model);
+
+/// Reads the value of a quantity within its natural range.
+std::optional<double> read_value(const ConfigNode& node, const Quantity& quantity);
+
+/// An axis file that reads back as the same rig, digit for digit. `comment` becomes its first lines.
+std::string format_axis_file(const Rig& rig, const std::string& comment);
+
+}  // namespace axisfit

@@ -1,0 +1,134 @@
+// fit-params JOB.yaml: fits the model of an axis to recordings of it.
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/axis_file.h"
+#include "apps/config.h"
+#include "apps/job_file.h"
+#include "apps/output_folder.h"
+#include "apps/report_text.h"
+#include "apps/result_json.h"
+#include "apps/version.h"
+#include "sim/table.h"
+
+namespace {
+
+using namespace axisfit;
+
+enum ExitCode { kUsable = 0, kBadInput = 2, kNoUsableFit = 3 };
+
+struct Arguments {
+  std::string job;
+  std::string data;
+  std::string output;
+  bool json = false;
+  bool quiet = false;
+  std::optional<int> threads, starts;
+  std::optional<std::uint64_t> seed;
+};
+
+constexpr const char* kExamples = R"(Examples:
+  fit-params configs/jobs/paper.yaml
+  fit-params configs/jobs/paper.yaml --output results --starts 20 --seed 7
+  fit-params configs/jobs/emps.yaml --data ~/Downloads/EMPS
+  fit-params job.yaml --json | jq '.parameters[] | {name, value, standard_error}'
+
+Exit codes: 0 usable fit, 2 bad input, 3 no usable fit.)";
+
+/// Progress on one line of a terminal, removed at the end.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool visible) : visible_(visible) {}
+  ~ProgressLine() {
+    if (shown_) std::fputs("\r\033[K", stderr);
+  }
+  void show(const Progress& p) {
+    if (!visible_) return;
+    std::string line = p.starts > 1 ? fmt::format("start {} of {}: ", p.starts_done + 1, p.starts) : "";
+    line += p.stage.coupling_rate > 0.0
+                ? fmt::format("held to the data at {:.3g} 1/s", p.stage.coupling_rate)
+                : "free running";
+    line += fmt::format(", reduced chi-square {:.4g}", p.stage.reduced_cost);
+    fmt::print(stderr, "\r\033[K{}", line.substr(0, 78));
+    std::fflush(stderr);
+    shown_ = true;
+  }
+
+ private:
+  bool visible_;
+  bool shown_ = false;
+};
+
+int run(const Arguments& arguments) {
+  JobFile file = read_job_file(arguments.job, arguments.data);
+  FitOptions& options = file.job.options;
+  if (arguments.threads) options.threads = *arguments.threads;
+  if (arguments.starts) options.starts = *arguments.starts;
+  if (arguments.seed) options.seed = *arguments.seed;
+
+  const auto begin = std::chrono::steady_clock::now();
+  FitResult result;
+  {
+    ProgressLine line(!arguments.quiet && isatty(STDERR_FILENO) != 0);
+    result = estimate(file.job, [&](const Progress& p) { line.show(p); });
+  }
+  const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - begin;
+
+  const std::string json = result_json(file, result, wall_time.count()).dump(2) + "\n";
+  if (!arguments.output.empty()) {
+    Rig fitted = file.rig;
+    fitted.model = fitted_model(file.job, result);
+    const std::string comment = fmt::format(
+        "Fitted by axisfit {} from {}, starting from {}.\n{}", kVersion, arguments.job,
+        file.axis_file, result.verdict);
+    write_folder(arguments.output, {{"result.json", json},
+                                    {"fitted.yaml", format_axis_file(fitted, comment)},
+                                    {"residuals.csv", residuals_csv(file.job, result)}});
+  }
+  if (arguments.json)
+    std::cout << json;
+  else if (!arguments.quiet)
+    std::cout << report_text(file, result);
+  return result.usable ? kUsable : kNoUsableFit;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app{"Fits the model of a robot axis to recordings of it, as a job file describes.",
+               "fit-params"};
+  app.footer(kExamples);
+  app.set_version_flag("--version", std::string("axisfit ") + kVersion);
+  app.add_option("JOB.yaml", arguments.job, "the job file (docs/job-file.md)")->required();
+  app.add_option("--data", arguments.data, "folder of the recordings, if not the job file's");
+  app.add_option("--output", arguments.output,
+                 "folder for result.json, fitted.yaml and residuals.csv");
+  app.add_flag("--json", arguments.json, "print result.json instead of the table");
+  app.add_flag("--quiet", arguments.quiet, "print nothing but errors");
+  app.add_option("--threads", arguments.threads, "number of threads; default: all cores")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--seed", arguments.seed, "seed of the random starts; default: the job's");
+  app.add_option("--starts", arguments.starts,
+                 "number of starts, the first from the initial values; default: the job's")
+      ->check(CLI::Range(1, 1000000));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadInput;
+  }
+  try {
+    return run(arguments);
+  } catch (const std::exception& error) {  // ConfigError's text has a line for each mistake
+    std::cerr << error.what() << '\n';
+    return kBadInput;
+  }
+}

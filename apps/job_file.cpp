@@ -1,0 +1,458 @@
+#include "apps/job_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <ranges>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "apps/axis_file.h"
+#include "apps/recording_file.h"
+#include "apps/units.h"
+#include "fit/initial_state.h"
+#include "fit/noise.h"
+#include "sim/suggest.h"
+#include "sim/table.h"
+
+namespace axisfit {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+std::string unit_text(double value, std::string_view unit) {
+  return is_dimensionless(unit) ? fmt::format("{:g}", value) : fmt::format("{:g} {}", value, unit);
+}
+
+/// The quantity that a key names, or null with a diagnostic that suggests one.
+const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& structure) {
+  const std::string name = key.text();
+  const QuantityEntry* entry = find_quantity(name);
+  if (entry != nullptr && is_used(*entry, structure)) return entry;
+  if (entry != nullptr) {
+    key.error(fmt::format("{} has no part in this axis: its drive, transmission or effects leave "
+                          "it out",
+                          name));
+    return nullptr;
+  }
+  std::vector<std::string> names;
+  for (const QuantityEntry& e : quantity_list())
+    if (is_used(e, structure)) names.push_back(e.name);
+  const std::string near = nearest(name, names);
+  key.error(fmt::format("there is no quantity '{}'; {}", name,
+                        near.empty() ? "the axis has its parameters, effect.parameter, signal.gain, "
+                                       "signal.bias and initial.y0 ... initial.y6"
+                                     : fmt::format("did you mean '{}'?", near)));
+  return nullptr;
+}
+
+/// One column of a recording in SI units: {column: name, unit: m/s, sign: -1, factor: 2}. Nothing
+/// when it could not be read; that has been said. The caller finishes the map.
+std::optional<std::vector<double>> read_column(const RecordingFile& file, ConfigMap& map,
+                                               std::string_view si_unit) {
+  double factor = 1.0;
+  if (const auto unit = map.required("unit")) {
+    if (const auto text = unit->as_string()) {
+      const auto conversion = unit_factor(*text, si_unit);
+      if (const auto* problem = std::get_if<UnitError>(&conversion))
+        unit->error(problem->message);
+      else
+        factor = std::get<double>(conversion);
+    }
+  }
+  if (const auto given = map.optional("factor"))
+    factor *= given->as_number(-1e12, 1e12).value_or(1.0);
+  if (const auto sign = map.optional("sign")) {
+    static const std::vector<std::string> signs{"1", "-1"};
+    if (sign->as_choice(signs).value_or(0) == 1) factor = -factor;
+  }
+  const auto name = map.required("column");
+  const std::vector<double>* column = name ? file.column(*name) : nullptr;
+  if (column == nullptr) return std::nullopt;
+  std::vector<double> values = *column;
+  for (double& x : values) x *= factor;
+  return values;
+}
+
+class JobReader {
+ public:
+  JobReader(const std::string& path, const std::string& data_directory)
+      : path_(path), data_directory_(data_directory) {}
+
+  JobFile read() {
+    if (const auto root = ConfigNode::load(path_, diagnostics_)) {
+      ConfigMap map(*root);
+      const auto axis = map.required("axis");
+      bool model = false;
+      if (axis) model = read_axis(*axis);
+      if (const auto effects = map.optional("effects")) read_effects(*effects, result_.rig.model);
+      result_.job.model = result_.rig.model;
+      const auto recordings = map.required("recordings");
+      const auto free = map.required("free");
+      if (const auto fit = map.optional("fit")) read_options(*fit);
+      // What refers to the axis can only be checked with one.
+      if (model && recordings) read_recordings(*recordings);
+      if (model && free) read_free(*free);
+      map.finish();
+    }
+    diagnostics_.throw_if_any();
+    return std::move(result_);
+  }
+
+ private:
+  static std::string resolve(const ConfigNode& node, const std::string& file,
+                             const std::string& base) {
+    const fs::path given(file);
+    if (given.is_absolute()) return file;
+    return (base.empty() ? node.directory() / given : fs::path(base) / given)
+        .lexically_normal()
+        .string();
+  }
+
+  bool read_axis(const ConfigNode& node) {
+    const auto file = node.as_string();
+    if (!file) return false;
+    result_.axis_file = resolve(node, *file, {});
+    if (!fs::exists(result_.axis_file)) {
+      node.error(fmt::format("there is no axis file {}", result_.axis_file));
+      return false;
+    }
+    auto rig = read_axis_file(result_.axis_file, diagnostics_);
+    if (!rig) return false;
+    result_.rig = std::move(*rig);
+    return true;
+  }
+
+  void read_options(const ConfigNode& node) {
+    FitOptions& options = result_.job.options;
+    ConfigMap map(node);
+    if (const auto coupling = map.optional("coupling")) {
+      if (coupling->is_scalar()) {
+        static const std::vector<std::string> modes{"continuation", "none"};
+        options.coupling = coupling->as_choice(modes).value_or(0) == 0 ? CouplingMode::continuation
+                                                                      : CouplingMode::none;
+      } else {
+        ConfigMap fixed(*coupling);
+        options.coupling = CouplingMode::fixed;
+        if (const auto rate = fixed.required("fixed"))
+          options.coupling_rate = rate->as_quantity("1/s", 1e-3, 1e6).value_or(1.0);
+        fixed.finish();
+      }
+    }
+    if (const auto rate = map.optional("first_coupling"))
+      options.coupling_rate = rate->as_quantity("1/s", 1e-3, 1e6).value_or(0.0);
+    if (const auto loss = map.optional("loss")) {
+      static const std::vector<std::string> losses{"squares", "huber"};
+      options.loss = static_cast<Loss>(loss->as_choice(losses).value_or(0));
+    }
+    if (const auto width = map.optional("huber_width"))
+      options.huber_width = width->as_number(0.1, 1e3).value_or(3.0);
+    const auto integer = [&](const char* key, std::int64_t lower, std::int64_t upper, auto& value) {
+      if (const auto given = map.optional(key))
+        if (const auto read = given->as_integer(lower, upper))
+          value = static_cast<std::remove_reference_t<decltype(value)>>(*read);
+    };
+    integer("max_iterations", 1, 100000, options.max_iterations);
+    integer("starts", 1, 1000000, options.starts);
+    integer("seed", 0, std::numeric_limits<std::int64_t>::max(), options.seed);
+    if (const auto spread = map.optional("spread"))
+      options.spread = spread->as_number(1.0, 1e6).value_or(5.0);
+    if (const auto step = map.optional("step"))
+      options.step = step->as_quantity("s", 1e-7, 0.1).value_or(options.step);
+    map.finish();
+  }
+
+  void read_recordings(const ConfigNode& node) {
+    const auto entries = node.as_sequence();
+    if (!entries) return;
+    bool any_fit = false;
+    std::set<std::string> names;
+    for (const ConfigNode& entry : *entries) {
+      read_recording(entry);
+      if (result_.job.recordings.empty()) continue;
+      const Recording& latest = result_.job.recordings.back();
+      any_fit = any_fit || latest.role == Role::fit;
+    }
+    for (const Recording& recording : result_.job.recordings)
+      if (!names.insert(recording.name).second)
+        node.error(fmt::format("two recordings are called '{}': give them different names",
+                               recording.name));
+    if (!any_fit && diagnostics_.empty())
+      node.error("no recording has the role fit: at least one must");
+  }
+
+  void read_recording(const ConfigNode& node) {
+    Recording recording;
+    ConfigMap map(node);
+    const auto file = map.required("file");
+    std::optional<std::string> path;
+    if (file) path = file->as_string();
+    if (path) {
+      recording.file = *path;
+      recording.name = fs::path(*path).stem().string();
+    }
+    if (const auto name = map.optional("name"))
+      recording.name = name->as_string().value_or(recording.name);
+    if (const auto role = map.optional("role")) {
+      static const std::vector<std::string> roles{"fit", "validate"};
+      recording.role = static_cast<Role>(role->as_choice(roles).value_or(0));
+    }
+    if (const auto state = map.optional("initial_state")) {
+      static const std::vector<std::string> states{"given", "data"};
+      recording.initial_state = static_cast<InitialState>(state->as_choice(states).value_or(0));
+    }
+    if (const auto n = map.optional("initial_samples"))
+      recording.initial_samples =
+          static_cast<std::size_t>(n->as_integer(4, 1000000).value_or(20));
+    if (const auto score = map.optional("score_initial_samples"))
+      recording.score_initial_samples = score->as_bool().value_or(true);
+    if (const auto set = map.optional("set")) read_overrides(*set, recording);
+    const auto time = map.required("time");
+    const auto signals = map.required("signals");
+    const auto trim = map.optional("trim");
+    std::optional<RecordingFile> data;
+    if (path) {
+      try {
+        data.emplace(resolve(*file, *path, data_directory_));
+      } catch (const RecordingError& error) {
+        file->error(error.what());
+      }
+    }
+    if (data && time && signals) read_samples(*data, *time, *signals, trim, recording);
+    map.finish();
+    result_.job.recordings.push_back(std::move(recording));
+  }
+
+  void read_overrides(const ConfigNode& node, Recording& recording) {
+    ConfigMap map(node);
+    for (const auto& [key, value] : map.entries())
+      if (const QuantityEntry* entry = quantity_named(key, result_.rig.model.structure))
+        if (const auto given = read_value(value, entry->quantity))
+          recording.overrides.emplace_back(entry->index, *given);
+    map.finish();
+  }
+
+  void read_samples(const RecordingFile& data, const ConfigNode& time_node,
+                    const ConfigNode& signals_node, const std::optional<ConfigNode>& trim_node,
+                    Recording& recording) {
+    ConfigMap time_map(time_node);
+    auto times = read_column(data, time_map, "s");
+    time_map.finish();
+    double from = -kUnlimited, to = kUnlimited;
+    if (trim_node) {
+      ConfigMap trim(*trim_node);
+      if (const auto t = trim.optional("from"))
+        from = t->as_quantity("s", -kUnlimited, kUnlimited).value_or(from);
+      if (const auto t = trim.optional("to"))
+        to = t->as_quantity("s", -kUnlimited, kUnlimited).value_or(to);
+      trim.finish();
+    }
+    if (times) {
+      for (std::size_t i = 1; i < times->size(); ++i) {
+        if ((*times)[i] > (*times)[i - 1]) continue;
+        time_node.error(fmt::format("{}: time {:g} s does not come after {:g} s: samples must be in "
+                                    "the order of time, each once",
+                                    data.where(i), (*times)[i], (*times)[i - 1]));
+        times.reset();
+        break;
+      }
+    }
+    const auto trimmed = [&](std::vector<double> values) {
+      std::vector<double> kept;
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if ((*times)[i] >= from && (*times)[i] <= to) kept.push_back(values[i]);
+      return kept;
+    };
+
+    ConfigMap signals(signals_node);
+    // The input: a command in volts, or for a force source also a recorded force.
+    const bool force_source = result_.rig.model.structure.drive == Drive::force_source;
+    const auto command = signals.optional("command");
+    const auto force = force_source ? signals.optional("drive_force") : std::nullopt;
+    std::optional<std::vector<double>> input;
+    if (command && force) {
+      force->error("give either the command or the drive force, not both: each drives the axis");
+    } else if (force) {
+      ConfigMap map(*force);
+      input = read_column(data, map, "N");
+      map.finish();
+      // The source turns U into K_f U newtons; a force in newtons needs no gain.
+      recording.overrides.emplace_back(find_quantity("K_f")->index, 1.0);
+    } else if (command) {
+      ConfigMap map(*command);
+      input = read_column(data, map, "V");
+      map.finish();
+    } else {
+      signals_node.error(force_source ? "the axis is driven by a command or a drive_force: name one "
+                                        "of them"
+                                      : "the axis is driven by the command: name its column");
+    }
+    for (const SignalInfo& signal : kSignalTable) {
+      if (signal.signal == Signal::drive_force && force_source) continue;
+      const auto given = signals.optional(signal.name);
+      if (!given) continue;
+      ConfigMap map(*given);
+      Measurement measurement;
+      measurement.signal = signal.signal;
+      auto values = read_column(data, map, signal.unit);
+      if (const auto fit = map.optional("fit")) measurement.fitted = fit->as_bool().value_or(true);
+      const auto sigma = map.optional("sigma");
+      if (sigma) {
+        measurement.sigma = sigma->as_quantity(signal.unit, 1e-300, kUnlimited).value_or(1.0);
+        measurement.sigma_given = true;
+      }
+      map.finish();
+      if (!values || !times) continue;
+      if (!same_length(data, *given, *values, *times)) continue;
+      measurement.values = trimmed(std::move(*values));
+      if (!sigma) {
+        measurement.sigma = noise_from_differences(measurement.values);
+        if (!(measurement.sigma > 0.0))
+          given->error(fmt::format("the noise of {} cannot be estimated from these samples: give "
+                                   "its sigma, for example 'sigma: {}'",
+                                   signal.name, unit_text(0.01, signal.unit)));
+      }
+      recording.measurements.push_back(std::move(measurement));
+    }
+    signals.finish();
+    if (!times || !input || !same_length(data, signals_node, *input, *times)) return;
+    // Commands from before the first sample kept still act on it.
+    std::vector<double> command_times, commands;
+    for (std::size_t i = 0; i < times->size() && (*times)[i] <= to; ++i) {
+      command_times.push_back((*times)[i]);
+      commands.push_back((*input)[i]);
+    }
+    recording.command = schedule_from_samples(command_times, commands);
+    recording.times = trimmed(*times);
+    if (recording.times.size() < 10) {
+      (trim_node ? *trim_node : time_node)
+          .error(fmt::format("{} samples are too few: at least 10 must be left",
+                             recording.times.size()));
+      recording.times = {0.0, 1.0};
+      return;
+    }
+    if (std::ranges::none_of(recording.measurements, &Measurement::fitted))
+      signals_node.error(fmt::format("nothing to compare with: name at least one of {}",
+                                     fmt::join(kSignalTable | std::views::transform(
+                                                                  &SignalInfo::name),
+                                               ", ")));
+    if (recording.initial_state == InitialState::data) {
+      if (recording.find(Signal::position) == nullptr && recording.find(Signal::velocity) == nullptr)
+        signals_node.error("initial_state: data needs a recorded position or velocity");
+      initial_state_from_data(recording);
+    }
+  }
+
+  static bool same_length(const RecordingFile& data, const ConfigNode& node,
+                          const std::vector<double>& values, const std::vector<double>& times) {
+    if (values.size() == times.size()) return true;
+    node.error(fmt::format("{} has {} values but the time has {}", data.where(0), values.size(),
+                           times.size()));
+    return false;
+  }
+
+  void read_free(const ConfigNode& node) {
+    ConfigMap map(node);
+    for (const auto& [key, value] : map.entries())
+      if (const QuantityEntry* entry = quantity_named(key, result_.rig.model.structure))
+        read_free_parameter(value, *entry);
+    map.finish();
+    if (map.entries().empty()) node.error("nothing is free: name at least one quantity to fit");
+  }
+
+  void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry) {
+    const Quantity& quantity = entry.quantity;
+    FreeParameter parameter;
+    parameter.quantity = entry.index;
+    parameter.initial = *members(result_.job.model)[entry.index];
+    std::optional<std::pair<double, double>> bounds;
+    std::optional<std::size_t> scale;
+    bool per_recording = false, initial_given = false;
+    ConfigMap map(node);
+    if (const auto initial = map.optional("initial")) {
+      initial_given = true;
+      parameter.initial = read_value(*initial, quantity).value_or(parameter.initial);
+    }
+    if (const auto given = map.optional("bounds"))
+      bounds = given->as_bounds(quantity.unit, quantity.lower, quantity.upper);
+    if (const auto given = map.optional("scale")) {
+      static const std::vector<std::string> scales{"log", "linear"};
+      scale = given->as_choice(scales);
+    }
+    if (const auto given = map.optional("per_recording"))
+      per_recording = given->as_bool().value_or(false);
+    if (const auto given = map.optional("prior")) {
+      ConfigMap prior(*given);
+      parameter.prior.emplace();
+      if (const auto mean = prior.required("mean"))
+        parameter.prior->mean = read_value(*mean, quantity).value_or(0.0);
+      if (const auto sigma = prior.required("sigma"))
+        parameter.prior->sigma = sigma->as_quantity(quantity.unit, 1e-300, kUnlimited).value_or(1.0);
+      prior.finish();
+    }
+    map.finish();
+
+    // What has no zero in its range, or is part of every axis, is estimated by its order of
+    // magnitude; frictions, biases, delays and initial states may be zero and are not.
+    const bool positive = entry.group.empty() && quantity.standard != 0.0 && quantity.lower >= 0.0;
+    parameter.logarithmic = scale ? *scale == 0
+                                  : (bounds ? bounds->first > 0.0 : positive && parameter.initial > 0.0);
+    const auto add = [&](double initial, std::optional<std::size_t> recording) {
+      FreeParameter p = parameter;
+      p.initial = initial;
+      p.recording = recording;
+      p.lower = bounds ? bounds->first : quantity.lower;
+      p.upper = bounds ? bounds->second : quantity.upper;
+      if (!bounds && p.logarithmic) {
+        p.lower = std::max(p.lower, initial / 100.0);
+        p.upper = std::min(p.upper, initial * 100.0);
+      }
+      if (p.logarithmic && !(p.lower > 0.0 && p.initial > 0.0))
+        node.error(fmt::format("{} on a logarithmic scale needs an initial value and a lower bound "
+                               "above zero",
+                               entry.name));
+      else if (p.initial < p.lower || p.initial > p.upper)
+        node.error(fmt::format("the initial value {} of {} lies outside its bounds, {} to {}",
+                               unit_text(p.initial, quantity.unit), entry.name,
+                               unit_text(p.lower, quantity.unit),
+                               unit_text(p.upper, quantity.unit)));
+      for (const Recording& r : result_.job.recordings)
+        for (const auto& [index, value] : r.overrides)
+          if (!p.recording && index == p.quantity && entry.group != "initial")
+            node.error(fmt::format("{} is fitted for all recordings but set for '{}': remove one, or "
+                                   "say per_recording: true",
+                                   entry.name, r.name));
+      result_.job.free.push_back(p);
+    };
+    if (!per_recording) {
+      add(parameter.initial, std::nullopt);
+      return;
+    }
+    for (std::size_t r = 0; r < result_.job.recordings.size(); ++r) {
+      const Recording& recording = result_.job.recordings[r];
+      if (recording.role != Role::fit) continue;
+      double initial = parameter.initial;
+      if (!initial_given)
+        for (const auto& [index, value] : recording.overrides)
+          if (index == entry.index) initial = value;
+      add(initial, r);
+    }
+  }
+
+  std::string path_;
+  std::string data_directory_;
+  Diagnostics diagnostics_;
+  JobFile result_;
+};
+
+}  // namespace
+
+JobFile read_job_file(const std::string& path, const std::string& data_directory) {
+  return JobReader(path, data_directory).read();
+}
+
+}  // namespace axisfit

@@ -1,0 +1,23 @@
+// Job files: what to fit to which recordings, in YAML. docs/job-file.md has every key.
+#pragma once
+
+#include <string>
+
+#include "fit/job.h"
+#include "sim/rig.h"
+
+namespace axisfit {
+
+/// A job with what only its files know.
+struct JobFile {
+  Job job;
+  Rig rig;                ///< of the axis file, with the job's effects
+  std::string axis_file;  ///< as found
+};
+
+/// Reads a job file, its axis file and its recordings. Recordings with relative paths are looked for
+/// below `data_directory`, or next to the job file where that is empty.
+/// Throws ConfigError with everything that is wrong.
+JobFile read_job_file(const std::string& path, const std::string& data_directory = {});
+
+}  // namespace axisfit

@@ -1,0 +1,47 @@
+#include "apps/recording_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "apps/mat_file.h"
+#include "sim/suggest.h"
+#include "sim/table.h"
+
+namespace axisfit {
+
+RecordingFile::RecordingFile(const std::string& path) : path_(path) {
+  if (path.ends_with(".mat")) {
+    MatFile mat = read_mat(path);
+    for (Column& c : mat.columns) columns_.emplace(std::move(c.name), std::move(c.values));
+    for (IgnoredVariable& v : mat.ignored) ignored_.emplace(std::move(v.name), std::move(v.kind));
+  } else {
+    Table table = read_csv(path);
+    for (Column& c : table.columns) columns_.emplace(std::move(c.name), std::move(c.values));
+    lines_ = std::move(table.lines);
+  }
+}
+
+const std::vector<double>* RecordingFile::column(const ConfigNode& node) const {
+  const auto name = node.as_string();
+  if (!name) return nullptr;
+  if (const auto found = columns_.find(*name); found != columns_.end()) return &found->second;
+  if (const auto ignored = ignored_.find(*name); ignored != ignored_.end()) {
+    node.error(fmt::format("'{}' in {} is {}: export it as a numeric array", *name, path_,
+                           ignored->second));
+    return nullptr;
+  }
+  std::vector<std::string> names;
+  for (const auto& [existing, values] : columns_) names.push_back(existing);
+  const std::string near = nearest(*name, names);
+  node.error(fmt::format("no column '{}' in {}; {}", *name, path_,
+                         near.empty() ? fmt::format("it has {}", fmt::join(names, ", "))
+                                      : fmt::format("did you mean '{}'?", near)));
+  return nullptr;
+}
+
+std::string RecordingFile::where(std::size_t row) const {
+  return row < lines_.size() ? fmt::format("{}:{}", path_, lines_[row])
+                             : fmt::format("{}: row {}", path_, row + 1);
+}
+
+}  // namespace axisfit

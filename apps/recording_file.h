@@ -1,0 +1,34 @@
+// Recorded columns from a CSV file or a MATLAB file.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/config.h"
+
+namespace axisfit {
+
+/// A recording as stored: named columns, whatever the format.
+class RecordingFile {
+ public:
+  /// Reads `path`: MATLAB format if its name ends in ".mat", CSV otherwise. Throws RecordingError.
+  explicit RecordingFile(const std::string& path);
+
+  /// The values of a column (CSV) or variable (MATLAB); null with a diagnostic at `name` that lists
+  /// what there is.
+  const std::vector<double>* column(const ConfigNode& name) const;
+
+  /// "file:17" or "file: row 17", for messages about the row with this index.
+  std::string where(std::size_t row) const;
+
+ private:
+  std::string path_;
+  std::map<std::string, std::vector<double>> columns_;
+  std::map<std::string, std::string> ignored_;  // variable, why it is no column
+  std::vector<std::size_t> lines_;              // of the rows
+};
+
+}  // namespace axisfit

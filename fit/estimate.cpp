@@ -1,0 +1,246 @@
+#include "fit/estimate.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+#include <random>
+#include <thread>
+
+#include <fmt/format.h>
+
+namespace axisfit {
+namespace {
+
+/// The initial values (first start), or values drawn around them.
+std::vector<double> draw_start(const Job& job, int start) {
+  std::seed_seq seeds{job.options.seed & 0xffffffffu, job.options.seed >> 32,
+                      static_cast<std::uint64_t>(start)};
+  std::mt19937_64 generator(seeds);
+  std::vector<double> values;
+  for (const FreeParameter& p : job.free) {
+    // Between -1 and 1. Standard distributions differ between libraries, this does not.
+    const double z = std::ldexp(static_cast<double>(generator() >> 11), -52) - 1.0;
+    double value = p.initial;
+    if (start > 0) {
+      if (p.logarithmic)
+        value *= std::pow(job.options.spread, z);
+      else if (p.initial != 0.0)
+        value += z * job.options.spread * std::abs(p.initial);
+      else
+        value = 0.5 * (p.lower + p.upper) + 0.01 * z * (p.upper - p.lower);
+    }
+    values.push_back(std::clamp(value, p.lower, p.upper));
+  }
+  return values;
+}
+
+struct Trial {
+  std::vector<double> from;
+  ContinuationResult result;
+};
+
+/// All starts, spread over threads; every one is independent of the others.
+std::vector<Trial> run_starts(const Job& job, const ParameterSpace& space,
+                              const std::function<void(const Progress&)>& progress) {
+  const int starts = std::max(1, job.options.starts);
+  std::vector<Trial> trials(static_cast<std::size_t>(starts));
+  std::atomic<int> next = 0;
+  std::mutex mutex;
+  int done = 0;
+  const auto work = [&] {
+    for (int start = next++; start < starts; start = next++) {
+      Trial& trial = trials[static_cast<std::size_t>(start)];
+      trial.from = draw_start(job, start);
+      const auto tell = [&](const Stage& stage) {
+        const std::lock_guard lock(mutex);
+        if (progress) progress({done, starts, start, stage});
+      };
+      trial.result = continue_to_free(job, space, space.internal(trial.from), tell);
+      const std::lock_guard lock(mutex);
+      ++done;
+    }
+  };
+  const int wanted = job.options.threads > 0
+                         ? job.options.threads
+                         : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<std::jthread> threads;
+  for (int i = 1; i < std::min(wanted, starts); ++i) threads.emplace_back(work);
+  work();
+  return trials;
+}
+
+double mean_square_error(const std::vector<double>& measured, const std::vector<double>& simulated,
+                         std::size_t first) {
+  double sum = 0.0;
+  for (std::size_t i = first; i < measured.size(); ++i)
+    sum += (measured[i] - simulated[i]) * (measured[i] - simulated[i]);
+  return sum / static_cast<double>(measured.size() - first);
+}
+
+double standard_deviation(const std::vector<double>& values) {
+  const double n = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double sum = 0.0;
+  for (const double x : values) sum += (x - mean) * (x - mean);
+  return std::sqrt(sum / n);
+}
+
+RecordingResult judge(const Job& job, const ParameterSpace& space, std::size_t index,
+                      const Eigen::VectorXd& u, double coupling_rate) {
+  const Recording& recording = job.recordings[index];
+  RecordingResult result;
+  result.prediction = predict(job, space, index, u.data(), {});
+  const Coupling coupling = coupling_for(recording, coupling_rate);
+  std::optional<Prediction> coupled;
+  if (coupling.active()) coupled = predict(job, space, index, u.data(), coupling);
+  const std::size_t first = recording.score_initial_samples ? 0 : recording.initial_samples;
+  for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
+    const Measurement& measurement = recording.measurements[m];
+    SignalError error;
+    error.signal = measurement.signal;
+    error.fitted = measurement.fitted && recording.role == Role::fit;
+    error.sigma = measurement.sigma;
+    error.sigma_given = measurement.sigma_given;
+    if (result.prediction.finished) {
+      const double mean_square =
+          mean_square_error(measurement.values, result.prediction.simulated[m], first);
+      const auto [low, high] = std::ranges::minmax(measurement.values);
+      error.rmse = std::sqrt(mean_square);
+      error.nrmse_percent = high > low ? 100.0 * error.rmse / (high - low) : 0.0;
+      error.reduced_chi_square = mean_square / (measurement.sigma * measurement.sigma);
+    }
+    if (coupled && coupled->finished) {
+      const double mean_square = mean_square_error(measurement.values, coupled->simulated[m], first);
+      error.prediction_rmse = std::sqrt(mean_square);
+      error.prediction_reduced_chi_square = mean_square / (measurement.sigma * measurement.sigma);
+    }
+    result.signals.push_back(error);
+  }
+  return result;
+}
+
+/// A fitted signal that the model follows no better than a constant would: then there is no fit.
+std::string hopeless_signal(const Job& job, const FitResult& result) {
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    for (std::size_t m = 0; m < result.recordings[r].signals.size(); ++m) {
+      const SignalError& e = result.recordings[r].signals[m];
+      if (!e.fitted) continue;
+      const double rmse = e.prediction_rmse.value_or(e.rmse);
+      const double chi_square = e.prediction_reduced_chi_square.value_or(e.reduced_chi_square);
+      if (chi_square > 2.0 && rmse > standard_deviation(job.recordings[r].measurements[m].values))
+        return fmt::format("{} of {}", info(e.signal).name, job.recordings[r].name);
+    }
+  }
+  return {};
+}
+
+/// The fitted signal that is explained worst.
+std::string worst_signal(const Job& job, const FitResult& result) {
+  double worst = -1.0;
+  std::string name;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    for (const SignalError& e : result.recordings[r].signals) {
+      const double chi_square = e.prediction_reduced_chi_square.value_or(e.reduced_chi_square);
+      if (!e.fitted || chi_square <= worst) continue;
+      worst = chi_square;
+      name = fmt::format("{} of {} ({:.3g} times its noise)", info(e.signal).name,
+                         job.recordings[r].name, std::sqrt(chi_square));
+    }
+  }
+  return name;
+}
+
+std::string open_parameters(const FitResult& result) {
+  std::string names;
+  for (const ParameterResult& p : result.parameters)
+    if (!p.uncertainty.determined && !p.uncertainty.at_bound)
+      names += (names.empty() ? "" : ", ") + p.name;
+  return names;
+}
+
+/// Sets status, usable and verdict.
+void conclude(const Job& job, const SolveResult& solved, FitResult& result) {
+  result.status = !solved.usable      ? Status::failed
+                  : solved.converged ? Status::converged
+                                     : Status::not_converged;
+  if (result.status == Status::failed) {
+    result.verdict = "No usable fit: the simulation cannot be carried through at the initial values. "
+                     "Check them, and the axis file, for impossible values.";
+    return;
+  }
+  if (result.status == Status::not_converged) {
+    result.verdict = fmt::format(
+        "No usable fit: no minimum was found within {} iterations. Try --starts 20, or free fewer "
+        "parameters.",
+        job.options.max_iterations);
+    return;
+  }
+  if (const std::string hopeless = hopeless_signal(job, result); !hopeless.empty()) {
+    result.verdict = fmt::format(
+        "No usable fit: the model follows the {} no better than a constant would. Try other initial "
+        "values, --starts 20, or check units and signs of the columns.",
+        hopeless);
+    return;
+  }
+  result.usable = true;
+  const double chi_square = result.reduced_chi_square;
+  const std::string open = open_parameters(result);
+  if (chi_square < 1.1)
+    result.verdict = fmt::format(
+        "Usable fit: the model explains the recordings down to the noise (reduced chi-square {:.3f}).",
+        chi_square);
+  else
+    result.verdict = fmt::format(
+        "Usable fit, but the model lacks something: reduced chi-square {:.4g} instead of 1, most in "
+        "the {}.",
+        chi_square, worst_signal(job, result));
+  if (!open.empty()) result.verdict += " These recordings do not determine " + open + ".";
+}
+
+}  // namespace
+
+FitResult estimate(const Job& job, const std::function<void(const Progress&)>& progress) {
+  const ParameterSpace space(job);
+  const std::vector<Trial> trials = run_starts(job, space, progress);
+  const auto better = [](const Trial& a, const Trial& b) {
+    if (a.result.last.usable != b.result.last.usable) return a.result.last.usable;
+    return a.result.last.cost < b.result.last.cost;
+  };
+  const Trial& best = *std::ranges::min_element(trials, better);
+  const SolveResult& solved = best.result.last;
+
+  FitResult result;
+  for (const Trial& trial : trials)
+    result.starts.push_back({trial.from, space.values(trial.result.last.u),
+                             trial.result.last.usable, trial.result.stages.back().reduced_cost});
+  result.message = solved.message;
+  result.iterations = solved.iterations;
+  result.stages = best.result.stages;
+  result.coupling_rate = best.result.stages.back().coupling_rate;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    result.recordings.push_back(judge(job, space, r, solved.u, result.coupling_rate));
+
+  const Linearization at_solution = linearize(job, space, solved.u, result.coupling_rate);
+  const double freedom =
+      static_cast<double>(at_solution.residuals.size()) - static_cast<double>(space.size());
+  if (at_solution.finite && freedom > 0.0)
+    result.reduced_chi_square = at_solution.residuals.squaredNorm() / freedom;
+  const auto uncertainties = uncertainty(space, solved.u, at_solution, result.reduced_chi_square);
+  const std::vector<double> values = space.values(solved.u);
+  for (std::size_t i = 0; i < space.size(); ++i)
+    result.parameters.push_back({space.name(i), values[i], uncertainties[i]});
+  conclude(job, solved, result);
+  return result;
+}
+
+Model<double> fitted_model(const Job& job, const FitResult& result) {
+  Model<double> model = job.model;
+  const std::vector<double*> member = members(model);
+  for (std::size_t i = 0; i < job.free.size(); ++i)
+    if (!job.free[i].recording) *member[job.free[i].quantity] = result.parameters[i].value;
+  return model;
+}
+
+}  // namespace axisfit

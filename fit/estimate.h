@@ -1,0 +1,81 @@
+// The fit of a job, from its data to a judged result.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fit/continuation.h"
+#include "fit/residual.h"
+#include "fit/uncertainty.h"
+
+namespace axisfit {
+
+enum class Status {
+  converged,      ///< a minimum was found
+  not_converged,  ///< the iteration limit came first
+  failed,         ///< no point could be simulated to the end
+};
+
+/// Differences between a measured and a simulated signal.
+struct SignalError {
+  Signal signal = Signal::velocity;
+  bool fitted = true;
+  double rmse = 0.0;           ///< free-running simulation, in the signal's unit
+  double nrmse_percent = 0.0;  ///< of the measured range
+  double sigma = 0.0;          ///< of the noise
+  bool sigma_given = false;
+  double reduced_chi_square = 0.0;  ///< (rmse / sigma)^2
+  /// The same with the coupling of the fit; only where that is fixed.
+  std::optional<double> prediction_rmse, prediction_reduced_chi_square;
+};
+
+struct RecordingResult {
+  Prediction prediction;  ///< free running
+  std::vector<SignalError> signals;
+};
+
+struct ParameterResult {
+  std::string name;
+  double value = 0.0;
+  ParameterUncertainty uncertainty;
+};
+
+/// How one start of a multistart ended.
+struct StartResult {
+  std::vector<double> from;
+  std::vector<double> to;
+  bool usable = false;
+  double reduced_cost = 0.0;
+};
+
+struct FitResult {
+  Status status = Status::failed;
+  bool usable = false;     ///< may be relied on for what it says: converged, and better than nothing
+  std::string verdict;     ///< one sentence for the user
+  std::string message;     ///< the solver's reason to stop
+  std::vector<ParameterResult> parameters;
+  std::vector<RecordingResult> recordings;
+  double reduced_chi_square = 0.0;  ///< of what was fitted, degrees of freedom counted
+  double coupling_rate = 0.0;       ///< of the last stage
+  int iterations = 0;               ///< of the best start, all stages
+  std::vector<Stage> stages;        ///< of the best start
+  std::vector<StartResult> starts;
+};
+
+/// What a fit tells while it runs. Called from several threads, one at a time.
+struct Progress {
+  int starts_done = 0;
+  int starts = 1;
+  int start = 0;  ///< the start that `stage` belongs to
+  Stage stage;
+};
+
+/// Fits a job. The result depends on the job alone, not on the number of threads.
+FitResult estimate(const Job& job, const std::function<void(const Progress&)>& progress = {});
+
+/// The model with the estimates in place of the free quantities that all recordings share.
+Model<double> fitted_model(const Job& job, const FitResult& result);
+
+}  // namespace axisfit

@@ -1,0 +1,66 @@
+#include "sim/controller.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace axisfit {
+
+double encoder_reading(double position, double pinion_radius, double counts_per_revolution) {
+  if (!(counts_per_revolution > 0.0)) return position;
+  const double count = 2.0 * std::numbers::pi * pinion_radius / counts_per_revolution;
+  return count * std::floor(position / count);
+}
+
+double SlaveControlUnit::sample(long n, double encoder_position) {
+  const double time = static_cast<double>(n) * settings_.period;
+  const double track = std::floor(time / settings_.track_period * (1.0 + 1e-12));
+  const double from = reference_(track * settings_.track_period);
+  const double to = reference_((track + 1.0) * settings_.track_period);
+  const double speed = (to - from) / settings_.track_period;
+  const double position = from + speed * (time - track * settings_.track_period);
+  const double error = position - encoder_position;
+  integral_ += error;
+  const double u = (settings_.k_ff * speed + settings_.k_p * error +
+                    settings_.k_i * settings_.period * integral_) *
+                   settings_.gain;
+  return std::clamp(u, -settings_.limit, settings_.limit);
+}
+
+Schedule simulate_controlled(const Model<double>& model, SlaveControlUnit& unit,
+                             std::span<const double> times,
+                             const std::function<void(std::size_t, const Integrator<double>&)>& read,
+                             const IntegratorOptions& options) {
+  const ControllerSettings& settings = unit.settings();
+  Schedule written;
+  Integrator<double> axis(model, {}, options);
+  const double start = times.front();
+  axis.start(start, 0.0, {});
+  long n = 0;
+  // Reading and writing at the same instant: readings come first.
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    while (true) {
+      const double sampling = start + static_cast<double>(n) * settings.period;
+      const double acting = written.times.size() == static_cast<std::size_t>(n)
+                                ? sampling
+                                : written.times.back() + model.axis.T_d;
+      if (!(acting < times[i])) break;
+      if (!axis.advance_to(acting)) return written;
+      if (written.times.size() == static_cast<std::size_t>(n)) {  // time to sample
+        const double position = model.axis.r_g * axis.state()[2];
+        written.times.push_back(sampling);
+        written.values.push_back(unit.sample(
+            n, encoder_reading(position, model.axis.r_g, settings.counts_per_revolution)));
+      }
+      if (written.times.back() + model.axis.T_d <= value_of(axis.time())) {  // time to act
+        axis.set_command(written.values.back());
+        ++n;
+      }
+    }
+    if (!axis.advance_to(times[i])) return written;
+    read(i, axis);
+  }
+  return written;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,103 @@
+#include "sim/rig.h"
+
+#include <cmath>
+#include <cctype>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+
+#include "sim/simulate.h"
+
+namespace axisfit {
+namespace {
+
+/// Normal numbers of one named stream, the same on every machine (Box and Muller 1958; standard
+/// library distributions differ).
+class NormalStream {
+ public:
+  NormalStream(std::uint64_t seed, std::string_view name) {
+    std::vector<std::uint32_t> words{static_cast<std::uint32_t>(seed),
+                                     static_cast<std::uint32_t>(seed >> 32)};
+    for (const char c : name) words.push_back(static_cast<unsigned char>(c));
+    std::seed_seq sequence(words.begin(), words.end());
+    generator_.seed(sequence);
+  }
+  double next() {
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
+    return radius * std::cos(2.0 * std::numbers::pi * uniform());
+  }
+
+ private:
+  double uniform() { return std::ldexp(static_cast<double>(generator_() >> 11), -53); }  // [0, 1)
+  std::mt19937_64 generator_;
+};
+
+std::vector<double> sampling_times(const RecordingOptions& options) {
+  const auto last = static_cast<std::size_t>(std::llround(options.duration * options.rate));
+  std::vector<double> times;
+  for (std::size_t i = 0; i <= last; ++i) times.push_back(static_cast<double>(i) / options.rate);
+  return times;
+}
+
+}  // namespace
+
+std::string column_name(Signal signal) {
+  std::string unit;
+  for (const char c : info(signal).unit) {
+    if (c == '/') unit += 'p';
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      unit += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return std::string(info(signal).name) + "_" + unit;
+}
+
+Table record(const Rig& rig, const Motion& motion, const RecordingOptions& options) {
+  const std::vector<double> times = sampling_times(options);
+  std::vector<std::vector<double>> readings(options.signals.size());
+  const auto read = [&](std::size_t, const Integrator<double>& axis) {
+    for (std::size_t s = 0; s < options.signals.size(); ++s)
+      readings[s].push_back(reading(axis.equations(), options.signals[s], axis.mode(), axis.state(),
+                                    axis.input()));
+  };
+  IntegratorOptions integrator;
+  integrator.step = options.step;
+  Schedule command;
+  if (const auto* move = std::get_if<MoveMotion>(&motion)) {
+    ControllerSettings settings = rig.controller;
+    if (!options.noise) settings.counts_per_revolution = 0.0;
+    SlaveControlUnit unit(settings, reference_of(*move));
+    command = simulate_controlled(rig.model, unit, times, read, integrator);
+  } else {
+    command = schedule_of(motion, options.duration, rig.controller.period);
+    simulate<double>(rig.model, command, times, read, {}, {}, integrator);
+  }
+  if (!readings.empty() && readings.front().size() != times.size())
+    throw std::runtime_error("the motion cannot be simulated beyond " +
+                             std::to_string(times[readings.front().size()]) +
+                             " s: the state is not finite, or events follow each other without end");
+
+  Table table;
+  table.columns.push_back({"time_s", times});
+  // The command in force from each instant on.
+  Column& written = table.columns.emplace_back(Column{"command_v", {}});
+  std::size_t next = 0;
+  for (const double t : times) {
+    while (next < command.times.size() && command.times[next] <= t) ++next;
+    written.values.push_back(next == 0 ? 0.0 : command.values[next - 1]);
+  }
+  for (std::size_t s = 0; s < options.signals.size(); ++s) {
+    const Signal signal = options.signals[s];
+    Column column{column_name(signal), std::move(readings[s])};
+    NormalStream stream(options.seed, info(signal).name);
+    for (double& x : column.values) {
+      if (!options.noise) break;
+      x += rig.noise[index_of(signal)] * stream.next();
+      if (signal == Signal::position)
+        x = encoder_reading(x, rig.model.axis.r_g, rig.controller.counts_per_revolution);
+    }
+    table.columns.push_back(std::move(column));
+  }
+  return table;
+}
+
+}  // namespace axisfit
