@@ -50,34 +50,6 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
   return nullptr;
 }
 
-/// One column of a recording in SI units: {column: name, unit: m/s, sign: -1, factor: 2}. Nothing
-/// when it could not be read; that has been said. The caller finishes the map.
-std::optional<std::vector<double>> read_column(const RecordingFile& file, ConfigMap& map,
-                                               std::string_view si_unit) {
-  double factor = 1.0;
-  if (const auto unit = map.required("unit")) {
-    if (const auto text = unit->as_string()) {
-      const auto conversion = unit_factor(*text, si_unit);
-      if (const auto* problem = std::get_if<UnitError>(&conversion))
-        unit->error(problem->message);
-      else
-        factor = std::get<double>(conversion);
-    }
-  }
-  if (const auto given = map.optional("factor"))
-    factor *= given->as_number(-1e12, 1e12).value_or(1.0);
-  if (const auto sign = map.optional("sign")) {
-    static const std::vector<std::string> signs{"1", "-1"};
-    if (sign->as_choice(signs).value_or(0) == 1) factor = -factor;
-  }
-  const auto name = map.required("column");
-  const std::vector<double>* column = name ? file.column(*name) : nullptr;
-  if (column == nullptr) return std::nullopt;
-  std::vector<double> values = *column;
-  for (double& x : values) x *= factor;
-  return values;
-}
-
 class JobReader {
  public:
   JobReader(const std::string& path, const std::string& data_directory)
@@ -239,9 +211,7 @@ class JobReader {
   void read_samples(const RecordingFile& data, const ConfigNode& time_node,
                     const ConfigNode& signals_node, const std::optional<ConfigNode>& trim_node,
                     Recording& recording) {
-    ConfigMap time_map(time_node);
-    auto times = read_column(data, time_map, "s");
-    time_map.finish();
+    auto times = read_column(data, time_node, "s");
     double from = -kUnlimited, to = kUnlimited;
     if (trim_node) {
       ConfigMap trim(*trim_node);
@@ -277,15 +247,11 @@ class JobReader {
     if (command && force) {
       force->error("give either the command or the drive force, not both: each drives the axis");
     } else if (force) {
-      ConfigMap map(*force);
-      input = read_column(data, map, "N");
-      map.finish();
+      input = read_column(data, *force, "N");
       // The source turns U into K_f U newtons; a force in newtons needs no gain.
       recording.overrides.emplace_back(find_quantity("K_f")->index, 1.0);
     } else if (command) {
-      ConfigMap map(*command);
-      input = read_column(data, map, "V");
-      map.finish();
+      input = read_column(data, *command, "V");
     } else {
       signals_node.error(force_source ? "the axis is driven by a command or a drive_force: name one "
                                         "of them"

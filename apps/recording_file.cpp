@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "apps/mat_file.h"
+#include "apps/units.h"
 #include "sim/suggest.h"
 #include "sim/table.h"
 
@@ -42,6 +43,40 @@ const std::vector<double>* RecordingFile::column(const ConfigNode& node) const {
 std::string RecordingFile::where(std::size_t row) const {
   return row < lines_.size() ? fmt::format("{}:{}", path_, lines_[row])
                              : fmt::format("{}: row {}", path_, row + 1);
+}
+
+std::optional<std::vector<double>> read_column(const RecordingFile& file, ConfigMap& map,
+                                               std::string_view si_unit) {
+  double factor = 1.0;
+  if (const auto unit = map.required("unit")) {
+    if (const auto text = unit->as_string()) {
+      const auto conversion = unit_factor(*text, si_unit);
+      if (const auto* problem = std::get_if<UnitError>(&conversion))
+        unit->error(problem->message);
+      else
+        factor = std::get<double>(conversion);
+    }
+  }
+  if (const auto given = map.optional("factor"))
+    factor *= given->as_number(-1e12, 1e12).value_or(1.0);
+  if (const auto sign = map.optional("sign")) {
+    static const std::vector<std::string> signs{"1", "-1"};
+    if (sign->as_choice(signs).value_or(0) == 1) factor = -factor;
+  }
+  const auto name = map.required("column");
+  const std::vector<double>* column = name ? file.column(*name) : nullptr;
+  if (column == nullptr) return std::nullopt;
+  std::vector<double> values = *column;
+  for (double& x : values) x *= factor;
+  return values;
+}
+
+std::optional<std::vector<double>> read_column(const RecordingFile& file, const ConfigNode& node,
+                                               std::string_view si_unit) {
+  ConfigMap map(node);
+  auto values = read_column(file, map, si_unit);
+  map.finish();
+  return values;
 }
 
 }  // namespace axisfit

@@ -31,4 +31,14 @@ class RecordingFile {
   std::vector<std::size_t> lines_;              // of the rows
 };
 
+/// One column in SI units, from a map {column: name, unit: mm/s, sign: -1, factor: 2}: the stored
+/// values times factor and sign, converted from the unit. Nothing when something is wrong; that has
+/// been said. The caller finishes the map, which may have more keys.
+std::optional<std::vector<double>> read_column(const RecordingFile& file, ConfigMap& map,
+                                               std::string_view si_unit);
+
+/// The same from a map that has no other keys.
+std::optional<std::vector<double>> read_column(const RecordingFile& file, const ConfigNode& node,
+                                               std::string_view si_unit);
+
 }  // namespace axisfit

@@ -117,14 +117,14 @@ std::string errors_text(const Job& job, const FitResult& result) {
 
 std::string report_text(const JobFile& file, const FitResult& result) {
   const Job& job = file.job;
-  std::string text = recordings_text(job) + "\n" + parameters_text(job, result);
-  text += result.reduced_chi_square > 1.0
-              ? fmt::format("  Standard errors assume independent residuals of the size found, {:.3g} "
-                            "times the noise.\n",
-                            std::sqrt(result.reduced_chi_square))
-              : "  Standard errors assume independent noise of the size stated below.\n";
-  text += "\n" + errors_text(job, result) + "\n" + result.verdict + "\n";
-  return text;
+  const std::string assumption =
+      result.reduced_chi_square > 1.0
+          ? fmt::format("independent residuals of the size found, {:.3g} times the noise",
+                        std::sqrt(result.reduced_chi_square))
+          : "independent noise of the size stated below";
+  return fmt::format("{}\n{}  Standard errors assume {}.\n\n{}\n{}\n", recordings_text(job),
+                     parameters_text(job, result), assumption, errors_text(job, result),
+                     result.verdict);
 }
 
 std::string residuals_csv(const Job& job, const FitResult& result) {

@@ -1,5 +1,6 @@
 #include "apps/units.h"
 
+#include <fmt/format.h>
 #include <udunits2.h>
 
 #include <array>
@@ -209,7 +210,7 @@ std::variant<double, UnitError> unit_factor(std::string_view unit, std::string_v
     if (!dimensionless) message.append(si_unit) += '\'';
     return UnitError{problem, std::move(message)};
   };
-  const std::string quoted = "'" + std::string(unit) + "'";
+  const std::string quoted = fmt::format("'{}'", unit);
 
   const Unit given = target.database.parse(unit);
   if (given == nullptr) return failure(UnitProblem::unknown, "unknown unit " + quoted);

@@ -364,18 +364,23 @@ bool Integrator<T>::advance_to(const T& end) {
     if (!(remaining > negligible)) break;
     const Ladder& ladder = flow_->exact.ladder();
     int level = std::max(level_, search);
+    // The last piece of an interval, of whatever length, is for the series, where that holds.
+    const bool piece = ladder.length(level) > remaining + negligible && search == 0 &&
+                       !equations_.has_smooth_forces() && remaining <= ladder.length(ladder.resolved);
     while (level <= ladder.last && ladder.length(level) > remaining + negligible) ++level;
     const bool shortest = level >= ladder.last;
-    const double length = std::min(remaining, ladder.length(std::min(level, ladder.last)));
+    const bool by_series = piece || level > ladder.last;
+    const double length =
+        piece ? remaining : std::min(remaining, ladder.length(std::min(level, ladder.last)));
 
     const State<double> from = plain_state();
     const State<double> to =
-        level > ladder.last ? step_by(plain(), from, length) : step(plain(), from, level);
+        by_series ? step_by(plain(), from, length) : step(plain(), from, level);
     for (const double x : to)
       if (!std::isfinite(x)) return false;
     if (meets_guard(from, to, length)) {
       if (!shortest) {
-        search = level + 1;
+        search = piece ? level : level + 1;
         continue;
       }
       if (const std::optional<Hit> hit = locate(from, to, length)) {
@@ -388,7 +393,7 @@ bool Integrator<T>::advance_to(const T& end) {
     if constexpr (std::is_same_v<T, double>)
       y_ = to;
     else
-      y_ = level > ladder.last ? step_by(exact(), y_, length) : step(exact(), y_, level);
+      y_ = by_series ? step_by(exact(), y_, length) : step(exact(), y_, level);
     move_time(length);
     level_ = std::max(0, level_ - 1);
     if (search > 0 && ++search > ladder.last + 1) search = 0;

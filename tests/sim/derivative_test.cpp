@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <string>
 
 #include "fit/jet.h"
@@ -137,61 +138,65 @@ double rms(const std::vector<double>& values) {
 
 /// Compares the derivatives with differences at several steps, of which the pair that agrees best
 /// among themselves is believed: too long a step is not linear, too short a one is rounding.
-/// Calls judge(comparison) for every quantity and signal. `candidates` are sets of derivatives; they
-/// share the differences.
+/// Calls judge(candidate, comparison) for every quantity and signal. `candidates` are sets of
+/// derivatives; they share the differences.
 void compare(const Experiment& experiment, const std::vector<QuantityEntry>& entries,
              const std::vector<std::vector<Derivative>>& candidates,
              const std::function<void(std::size_t, const Comparison&)>& judge) {
+  constexpr std::size_t kSignalCount = kRecorded.size();
   const Traces<double> signals = experiment.traces(experiment.model);
-  std::array<double, kRecorded.size()> signal_sizes;
-  for (std::size_t s = 0; s < kRecorded.size(); ++s) signal_sizes[s] = rms(signals.signals[s]);
+  std::array<double, kSignalCount> signal_sizes;
+  for (std::size_t s = 0; s < kSignalCount; ++s) signal_sizes[s] = rms(signals.signals[s]);
+  Model<double> model = experiment.model;
+  const auto values = members(model);
   for (std::size_t q = 0; q < entries.size(); ++q) {
-    Model<double> model = experiment.model;
-    const double value = *members(model)[entries[q].index];
-    const double size = natural_size(entries[q], value);
-    std::vector<Difference> steps;
-    for (double step = 0.016; step > 3e-6; step *= 0.25)
-      steps.push_back(difference(experiment, entries[q].index, step * size));
-    for (std::size_t s = 0; s < kRecorded.size(); ++s) {
-      Comparison best;
-      std::vector<double> errors(candidates.size());
-      double least = INFINITY;
-      for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
-        std::vector<double> kept, change;
-        std::vector<std::vector<double>> off(candidates.size());
-        for (std::size_t k = 0; k < experiment.times.size(); ++k) {
-          if (!steps[i].usable[k] || !steps[i + 1].usable[k]) continue;
-          const double coarse = steps[i].values[s][k], fine = steps[i + 1].values[s][k];
-          const double limit = fine + (fine - coarse) / 15.0;  // steps by 4: error by 16
-          kept.push_back(limit);
-          change.push_back(fine - coarse);
+    const double size = natural_size(entries[q], *values[entries[q].index]);
+    std::array<double, kSignalCount> least;
+    least.fill(INFINITY);
+    std::array<std::vector<Comparison>, kSignalCount> best;  // by candidate
+    std::optional<Difference> coarse;
+    bool improving = true;
+    for (double step = 0.016; step > 0.9e-6 && improving; step *= 0.25) {
+      Difference fine = difference(experiment, entries[q].index, step * size);
+      if (coarse) {
+        improving = false;
+        for (std::size_t s = 0; s < kSignalCount; ++s) {
+          std::vector<double> limits, change;
+          std::vector<std::vector<double>> off(candidates.size());
+          for (std::size_t k = 0; k < experiment.times.size(); ++k) {
+            if (!coarse->usable[k] || !fine.usable[k]) continue;
+            const double d = fine.values[s][k] - coarse->values[s][k];
+            limits.push_back(fine.values[s][k] + d / 15.0);  // a fourth of the step: error by 16
+            change.push_back(d);
+            for (std::size_t c = 0; c < candidates.size(); ++c)
+              off[c].push_back(candidates[c][q][s][k] - limits.back());
+          }
+          const double excluded = 1.0 - static_cast<double>(limits.size()) /
+                                            static_cast<double>(experiment.times.size());
+          const double converged = rms(change);
+          // Over the best by far, and on the side of rounding: shorter steps are no use.
+          if (excluded > 0.05 || converged < 2.0 * least[s]) improving = true;
+          // A step that excludes much is so long that it changes what happens.
+          if (excluded > 0.05 || !(converged < least[s])) continue;
+          least[s] = converged;
+          double scale = rms(limits);
+          // A derivative of zero has to be zero in both: the difference but for rounding.
+          if (rms(candidates[0][q][s]) * size < 1e-7 * signal_sizes[s]) {
+            EXPECT_LT(rms(limits) * fine.step, 1e-9 * signal_sizes[s]) << entries[q].name;
+            scale = INFINITY;
+          }
+          const auto relative = [&](double x) { return x == 0.0 ? 0.0 : x / scale; };
+          best[s].clear();
           for (std::size_t c = 0; c < candidates.size(); ++c)
-            off[c].push_back(candidates[c][q][s][k] - limit);
+            best[s].push_back({entries[q].name + " -> " + std::string(info(kRecorded[s]).name),
+                               relative(rms(off[c])), relative(converged), excluded});
         }
-        const double excluded = 1.0 - static_cast<double>(kept.size()) /
-                                          static_cast<double>(experiment.times.size());
-        if (excluded > 0.05) continue;  // the step is so long that it changes what happens
-        const double converged = rms(change);
-        double scale = rms(kept);
-        // A derivative of zero has to be zero in both: the derivative in full, the difference but for
-        // the rounding of the signal.
-        if (rms(candidates[0][q][s]) * size < 1e-7 * signal_sizes[s]) {
-          EXPECT_LT(rms(kept) * steps[i + 1].step, 1e-9 * signal_sizes[s]) << entries[q].name;
-          scale = INFINITY;
-        }
-        if (!(converged < least) && least < INFINITY) continue;
-        least = converged;
-        const auto relative = [&](double x) { return x == 0.0 ? 0.0 : x / scale; };
-        best.convergence = relative(converged);
-        best.excluded = excluded;
-        for (std::size_t c = 0; c < candidates.size(); ++c) errors[c] = relative(rms(off[c]));
       }
-      EXPECT_LT(least, INFINITY) << entries[q].name << ": no usable difference";
-      best.name = entries[q].name + " -> " + std::string(info(kRecorded[s]).name);
-      for (std::size_t c = 0; c < candidates.size(); ++c) {
-        best.error = errors[c];
-        judge(c, best);
-      }
+      coarse = std::move(fine);
+    }
+    for (std::size_t s = 0; s < kSignalCount; ++s) {
+      EXPECT_EQ(best[s].size(), candidates.size()) << entries[q].name << ": no usable difference";
+      for (std::size_t c = 0; c < best[s].size(); ++c) judge(c, best[s][c]);
     }
   }
 }

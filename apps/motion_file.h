@@ -1,0 +1,19 @@
+// Motion files: what to run an axis through, in YAML. docs/motion-file.md has every key.
+#pragma once
+
+#include <string>
+
+#include "sim/rig.h"
+
+namespace axisfit {
+
+struct MotionFile {
+  Motion motion;
+  double duration = 0.0;  ///< s
+};
+
+/// Reads a motion file for a rig. Throws ConfigError with everything that is wrong, among it a
+/// voltage beyond the rig's limit and a move for an axis without a set-velocity input.
+MotionFile read_motion_file(const std::string& path, const Rig& rig);
+
+}  // namespace axisfit

@@ -1,0 +1,111 @@
+// simulate-axis AXIS.yaml MOTION.yaml: a recording as a rig would make it.
+
+#include <iostream>
+#include <sstream>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "apps/axis_file.h"
+#include "apps/motion_file.h"
+#include "apps/output_folder.h"
+#include "apps/version.h"
+#include "sim/rig.h"
+
+namespace {
+
+using namespace axisfit;
+
+struct Arguments {
+  std::string axis, motion, output;
+  std::vector<std::string> changes, signals;
+  RecordingOptions recording;
+  bool exact = false;
+};
+
+constexpr const char* kExamples = R"(Examples:
+  simulate-axis configs/axes/x.yaml configs/motions/step.yaml --output step.csv
+  simulate-axis configs/axes/x.yaml configs/motions/move.yaml --set "M=161 kg" --seed 7 -o move.csv
+  simulate-axis results/fitted.yaml configs/motions/chirp.yaml --signals velocity motor_current
+
+Exit codes: 0 recorded, 2 bad input.)";
+
+/// Applies "NAME=VALUE UNIT".
+void change(const std::string& text, Model<double>& model) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos)
+    throw std::runtime_error(
+        fmt::format("--set '{}': write NAME=VALUE, for example --set 'M=161 kg'", text));
+  Diagnostics diagnostics;
+  const std::string yaml = text.substr(0, equals) + ": '" + text.substr(equals + 1) + "'";
+  if (const auto root = ConfigNode::parse(yaml, "--set", diagnostics)) {
+    ConfigMap map(*root);
+    for (const QuantityEntry& entry : quantity_list())
+      if (is_used(entry, model.structure))
+        if (const auto value = map.optional(entry.name))
+          *members(model)[entry.index] =
+              read_value(*value, entry.quantity).value_or(entry.quantity.lower);
+    map.finish();
+  }
+  diagnostics.throw_if_any();
+}
+
+void run(Arguments arguments) {
+  Diagnostics diagnostics;
+  auto rig = read_axis_file(arguments.axis, diagnostics);
+  diagnostics.throw_if_any();
+  for (const std::string& text : arguments.changes) change(text, rig->model);
+  if (const std::string reason = refusal(rig->model); !reason.empty())
+    throw std::runtime_error(reason);
+  const MotionFile motion = read_motion_file(arguments.motion, *rig);
+  RecordingOptions& options = arguments.recording;
+  options.duration = motion.duration;
+  options.noise = !arguments.exact;
+  for (const std::string& name : arguments.signals) options.signals.push_back(*signal_by_name(name));
+  std::ostringstream text;
+  write_csv(text, record(*rig, motion.motion, options), arguments.exact ? 0 : 9);
+  if (arguments.output.empty())
+    std::cout << text.str();
+  else
+    write_file(arguments.output, text.str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  std::vector<std::string> signals;
+  for (const SignalInfo& signal : kSignalTable) signals.emplace_back(signal.name);
+  arguments.signals = {"position", "velocity", "acceleration", "tachometer", "motor_current"};
+  CLI::App app{"Runs an axis through a motion and records it as a rig would: sampled, with noise, "
+               "encoder counts, sensor bias and gain.",
+               "simulate-axis"};
+  app.footer(kExamples);
+  app.set_version_flag("--version", std::string("axisfit ") + kVersion);
+  app.add_option("AXIS.yaml", arguments.axis, "the axis (docs/axis-file.md)")->required();
+  app.add_option("MOTION.yaml", arguments.motion, "the motion (docs/motion-file.md)")->required();
+  app.add_option("-o,--output", arguments.output, "CSV file; default: standard output");
+  app.add_option("--set", arguments.changes, "change a quantity: NAME=VALUE, with its unit")
+      ->take_all()
+      ->allow_extra_args(false);
+  app.add_option("--signals", arguments.signals, "signals to record")
+      ->check(CLI::IsMember(signals))
+      ->capture_default_str();
+  app.add_option("--rate", arguments.recording.rate, "samples per second")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+  app.add_option("--seed", arguments.recording.seed, "seed of the noise")->capture_default_str();
+  app.add_flag("--exact", arguments.exact, "no noise, encoder not quantised, all digits");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    run(std::move(arguments));
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 2;
+  }
+}

@@ -1,0 +1,159 @@
+#include "sim/model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "fit/jet.h"
+#include "tests/sim/axes.h"
+
+namespace axisfit {
+namespace {
+
+TEST(QuantityList, HasUniqueNamesInTheOrderOfTheMembers) {
+  std::set<std::string> names;
+  std::size_t index = 0;
+  for (const QuantityEntry& entry : quantity_list()) {
+    EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
+    EXPECT_EQ(entry.index, index++);
+    EXPECT_EQ(find_quantity(entry.name), &entry);
+  }
+  Model<double> model = paper_axis();
+  EXPECT_EQ(members(model).size(), quantity_list().size());
+  EXPECT_EQ(members(model)[find_quantity("B_a")->index], &model.axis.B_a);
+  EXPECT_EQ(members(model)[find_quantity("coulomb_friction.F_c")->index],
+            &std::get<CoulombFriction<double>>(model.effects).F_c);
+  EXPECT_EQ(members(model)[find_quantity("velocity.bias")->index],
+            &model.instruments[index_of(Signal::velocity)].bias);
+  EXPECT_EQ(members(model)[find_quantity("initial.y6")->index], &model.initial[6]);
+}
+
+TEST(QuantityList, DescribesEveryQuantity) {
+  for (const QuantityEntry& entry : quantity_list()) {
+    const Quantity& q = entry.quantity;
+    EXPECT_FALSE(q.symbol.empty());
+    EXPECT_FALSE(q.unit.empty()) << entry.name;
+    EXPECT_FALSE(q.meaning.empty()) << entry.name;
+    EXPECT_LT(q.lower, q.upper) << entry.name;
+    if (!std::isnan(q.standard)) {
+      EXPECT_GE(q.standard, q.lower) << entry.name;
+      EXPECT_LE(q.standard, q.upper) << entry.name;
+    }
+  }
+}
+
+TEST(QuantityList, RangesHoldThePapersAxis) {
+  Model<double> model = paper_axis();
+  for (const QuantityEntry& entry : quantity_list()) {
+    const double value = *members(model)[entry.index];
+    EXPECT_GE(value, entry.quantity.lower) << entry.name;
+    EXPECT_LE(value, entry.quantity.upper) << entry.name;
+  }
+}
+
+TEST(QuantityList, DoesNotKnowOtherNames) {
+  for (const char* name : {"", "b_a", "F_c", "initial.y2", "velocity", "velocity.", ".B_a"})
+    EXPECT_EQ(find_quantity(name), nullptr) << name;
+}
+
+TEST(Convert, GoesThereAndBackWithoutLoss) {
+  using J = ceres::Jet<double, 2>;
+  Model<double> model = paper_axis();
+  model.structure = {Drive::current_source, Transmission::rigid, EffectSet(0b101)};
+  double value = 0.1;
+  for (double* member : members(model)) *member = value *= -1.03;
+  const Model<J> differentiated = convert<J>(model);
+  const Model<double> back = convert<double>(differentiated);
+  EXPECT_EQ(back.structure.drive, model.structure.drive);
+  EXPECT_EQ(back.structure.transmission, model.structure.transmission);
+  EXPECT_EQ(back.structure.effects, model.structure.effects);
+  std::vector<double> before, after;
+  visit_quantities(model, [&](auto, const auto&, double x) { before.push_back(x); });
+  visit_quantities(back, [&](auto, const auto&, double x) { after.push_back(x); });
+  EXPECT_EQ(before, after);
+  visit_quantities(differentiated, [&](auto, const auto&, const J& x) {
+    EXPECT_FALSE(ScalarTraits<J>::has_derivative(x));
+  });
+}
+
+TEST(InitialState, PutsTheMotorWhereTheArmIs) {
+  Model<double> model = paper_axis();
+  model.initial = {0.3, 0.2, 5e-6, 0.01, 1.0, 2.0, 3.0};
+  const State<double> y = initial_state(model);
+  EXPECT_EQ(y[0], 0.3);
+  EXPECT_EQ(y[1], 0.2);
+  EXPECT_NEAR(model.axis.r_g * y[2] - y[0], 5e-6, 1e-16);
+  EXPECT_NEAR(model.axis.r_g * y[3] - y[1], 0.01, 1e-15);
+  EXPECT_EQ(y[4], 1.0);
+  EXPECT_EQ(y[5], 2.0);
+  EXPECT_EQ(y[6], 3.0);
+}
+
+std::set<std::string> unused_of(const Structure& structure, const std::string& group_not = "?") {
+  std::set<std::string> names;
+  for (const QuantityEntry& entry : quantity_list())
+    if (!is_used(entry, structure) && entry.group != group_not) names.insert(entry.name);
+  return names;
+}
+
+TEST(IsUsed, FollowsTheStructure) {
+  const std::set<std::string> effects{"coulomb_friction.F_c", "constant_force.F_0",
+                                      "quadratic_drag.c"};
+  const auto with_effects = [&](std::set<std::string> names) {
+    names.insert(effects.begin(), effects.end());
+    return names;
+  };
+  EXPECT_EQ(unused_of({Drive::velocity_loop, Transmission::backlash, {}}), with_effects({"K_f"}));
+  const std::set<std::string> loop{"R", "L", "K_e", "V_s", "K_v", "initial.y6", "K_f"};
+  EXPECT_EQ(unused_of({Drive::current_source, Transmission::backlash, {}}), with_effects(loop));
+  EXPECT_EQ(unused_of({Drive::velocity_loop, Transmission::rigid, {}}),
+            with_effects({"K_f", "H", "b_g", "k_g", "initial.x", "initial.dx"}));
+  EXPECT_EQ(unused_of({Drive::force_source, Transmission::rigid, {}}),
+            with_effects({"R",   "L",   "K_e", "K_m", "J_m", "B_m", "K_t", "r_g", "H",
+                          "T_z", "T_p", "T_r", "K_1", "K_2", "K_i", "V_s", "V_L", "b_g",
+                          "k_g", "K_v", "initial.x", "initial.dx", "initial.y4", "initial.y5",
+                          "initial.y6"}));
+  Structure structure;
+  structure.effects.set();
+  EXPECT_EQ(unused_of(structure), std::set<std::string>{"K_f"});
+}
+
+TEST(IsUsed, WhatIsNotUsedHasNoInfluence) {
+  const auto times = instants(100, 1e-3);
+  for (const Drive drive : {Drive::velocity_loop, Drive::current_source, Drive::force_source})
+    for (const Transmission transmission : {Transmission::backlash, Transmission::rigid}) {
+      Model<double> model = paper_axis();
+      model.structure = {drive, transmission, {}};
+      if (drive == Drive::force_source && transmission == Transmission::rigid)
+        model.axis.J_m = model.axis.B_m = 0.0;  // as refused or defaulted by whoever reads the axis
+      const auto before = run(model, step_command(), times);
+      for (const QuantityEntry& entry : quantity_list()) {
+        if (is_used(entry, model.structure) || entry.group == "initial") continue;
+        if (drive == Drive::force_source && transmission == Transmission::rigid &&
+            (entry.name == "J_m" || entry.name == "B_m" || entry.name == "r_g"))
+          continue;
+        Model<double> changed = model;
+        *members(changed)[entry.index] = 1.7;
+        const auto after = run(changed, step_command(), times);
+        for (std::size_t k = 0; k < times.size(); ++k)
+          for (std::size_t i : {0U, 1U, 2U, 3U, 6U})
+            ASSERT_NEAR(after.states[k][i], before.states[k][i],
+                        1e-8 * (1e-3 + std::abs(before.states[k][i])))
+                << entry.name << " y" << i;
+      }
+    }
+}
+
+TEST(Refusal, OfAGearWithoutMotorInertia) {
+  Model<double> model = paper_axis();
+  EXPECT_EQ(refusal(model), "");
+  model.axis.J_m = 0.0;
+  EXPECT_NE(refusal(model).find("J_m"), std::string::npos);
+  model.structure.transmission = Transmission::rigid;
+  EXPECT_EQ(refusal(model), "");
+}
+
+}  // namespace
+}  // namespace axisfit
