@@ -101,6 +101,31 @@ std::optional<double> read_value(const ConfigNode& node, const Quantity& quantit
   return node.as_quantity(quantity.unit, quantity.lower, quantity.upper);
 }
 
+const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& structure) {
+  const std::string name = key.text();
+  const QuantityEntry* entry = find_quantity(name);
+  if (entry != nullptr && is_used(*entry, structure)) return entry;
+  if (entry != nullptr) {
+    const bool parameter = entry->group.empty() || entry->group == "initial";
+    key.error(parameter
+                  ? fmt::format("{} has no part in this axis: its drive or transmission leaves it out",
+                                name)
+                  : fmt::format("{} needs the effect: add it to the axis or job, as in 'effects: {{{}: "
+                                "{{{}: ...}}}}'",
+                                name, entry->group, entry->quantity.symbol));
+    return nullptr;
+  }
+  std::vector<std::string> names;
+  for (const QuantityEntry& e : quantity_list())
+    if (is_used(e, structure)) names.push_back(e.name);
+  const std::string near = nearest(name, names);
+  key.error(fmt::format("there is no quantity '{}'; {}", name,
+                        near.empty() ? "the axis has its parameters, effect.parameter, signal.gain, "
+                                       "signal.bias and initial.y0 ... initial.y6"
+                                     : fmt::format("did you mean '{}'?", near)));
+  return nullptr;
+}
+
 void read_effects(const ConfigNode& node, Model<double>& model) {
   ConfigMap map(node);
   visit_effects(model.effects, [&](std::size_t index, auto& effect) {
@@ -124,15 +149,19 @@ std::optional<Rig> read_axis_file(const std::string& path, Diagnostics& diagnost
   Rig rig;
   ConfigMap map(*root);
   if (const auto name = map.optional("name")) rig.name = name->as_string().value_or("");
-  if (const auto drive = map.required("drive"))
-    rig.model.structure.drive = static_cast<Drive>(drive->as_choice(kDrives).value_or(0));
-  if (const auto transmission = map.required("transmission"))
-    rig.model.structure.transmission =
-        static_cast<Transmission>(transmission->as_choice(kTransmissions).value_or(0));
+  std::optional<std::size_t> drive, transmission;
+  if (const auto given = map.required("drive")) drive = given->as_choice(kDrives);
+  if (const auto given = map.required("transmission"))
+    transmission = given->as_choice(kTransmissions);
+  rig.model.structure.drive = static_cast<Drive>(drive.value_or(0));
+  rig.model.structure.transmission = static_cast<Transmission>(transmission.value_or(0));
   if (const auto effects = map.optional("effects")) read_effects(*effects, rig.model);
   const auto parameters = map.required("parameters");
-  if (parameters) read_parameters(*parameters, rig.model);
-  if (const auto initial = map.optional("initial")) read_initial(*initial, rig.model);
+  const auto initial = map.optional("initial");
+  if (drive && transmission) {  // what quantities an axis has depends on them
+    if (parameters) read_parameters(*parameters, rig.model);
+    if (initial) read_initial(*initial, rig.model);
+  }
   if (const auto instruments = map.optional("instruments")) read_instruments(*instruments, rig);
   if (const auto controller = map.optional("controller"))
     read_controller(*controller, rig.controller);

@@ -16,6 +16,9 @@ std::optional<Rig> read_axis_file(const std::string& path, Diagnostics& diagnost
 /// Reads `effects: {name: {symbol: quantity}}` into a model: an effect is on because it is written.
 void read_effects(const ConfigNode& node, Model<double>& model);
 
+/// The quantity that a key names, or null with a diagnostic that suggests one.
+const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& structure);
+
 /// Reads the value of a quantity within its natural range.
 std::optional<double> read_value(const ConfigNode& node, const Quantity& quantity);
 

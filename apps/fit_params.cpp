@@ -82,7 +82,13 @@ int run(const Arguments& arguments) {
   }
   const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - begin;
 
+  // What was found is shown before anything can go wrong with writing it.
   const std::string json = result_json(file, result, wall_time.count()).dump(2) + "\n";
+  if (arguments.json)
+    std::cout << json;
+  else if (!arguments.quiet)
+    std::cout << report_text(file, result);
+  if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
   if (!arguments.output.empty()) {
     Rig fitted = file.rig;
     fitted.model = fitted_model(file.job, result);
@@ -93,10 +99,6 @@ int run(const Arguments& arguments) {
                                     {"fitted.yaml", format_axis_file(fitted, comment)},
                                     {"residuals.csv", residuals_csv(file.job, result)}});
   }
-  if (arguments.json)
-    std::cout << json;
-  else if (!arguments.quiet)
-    std::cout << report_text(file, result);
   return result.usable ? kUsable : kNoUsableFit;
 }
 
@@ -112,11 +114,12 @@ int main(int argc, char** argv) {
   app.add_option("--data", arguments.data, "folder of the recordings, if not the job file's");
   app.add_option("--output", arguments.output,
                  "folder for result.json, fitted.yaml and residuals.csv");
-  app.add_flag("--json", arguments.json, "print result.json instead of the table");
-  app.add_flag("--quiet", arguments.quiet, "print nothing but errors");
+  auto* json = app.add_flag("--json", arguments.json, "print result.json instead of the table");
+  app.add_flag("--quiet", arguments.quiet, "print nothing but errors")->excludes(json);
   app.add_option("--threads", arguments.threads, "number of threads; default: all cores")
       ->check(CLI::Range(1, 1024));
-  app.add_option("--seed", arguments.seed, "seed of the random starts; default: the job's");
+  app.add_option("--seed", arguments.seed, "seed of the random starts; default: the job's")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--starts", arguments.starts,
                  "number of starts, the first from the initial values; default: the job's")
       ->check(CLI::Range(1, 1000000));

@@ -28,28 +28,6 @@ std::string unit_text(double value, std::string_view unit) {
   return is_dimensionless(unit) ? fmt::format("{:g}", value) : fmt::format("{:g} {}", value, unit);
 }
 
-/// The quantity that a key names, or null with a diagnostic that suggests one.
-const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& structure) {
-  const std::string name = key.text();
-  const QuantityEntry* entry = find_quantity(name);
-  if (entry != nullptr && is_used(*entry, structure)) return entry;
-  if (entry != nullptr) {
-    key.error(fmt::format("{} has no part in this axis: its drive, transmission or effects leave "
-                          "it out",
-                          name));
-    return nullptr;
-  }
-  std::vector<std::string> names;
-  for (const QuantityEntry& e : quantity_list())
-    if (is_used(e, structure)) names.push_back(e.name);
-  const std::string near = nearest(name, names);
-  key.error(fmt::format("there is no quantity '{}'; {}", name,
-                        near.empty() ? "the axis has its parameters, effect.parameter, signal.gain, "
-                                       "signal.bias and initial.y0 ... initial.y6"
-                                     : fmt::format("did you mean '{}'?", near)));
-  return nullptr;
-}
-
 class JobReader {
  public:
   JobReader(const std::string& path, const std::string& data_directory)
@@ -89,7 +67,8 @@ class JobReader {
     const auto file = node.as_string();
     if (!file) return false;
     result_.axis_file = resolve(node, *file, {});
-    if (!fs::exists(result_.axis_file)) {
+    std::error_code unreadable;
+    if (!fs::exists(result_.axis_file, unreadable)) {
       node.error(fmt::format("there is no axis file {}", result_.axis_file));
       return false;
     }
@@ -103,10 +82,12 @@ class JobReader {
     FitOptions& options = result_.job.options;
     ConfigMap map(node);
     if (const auto coupling = map.optional("coupling")) {
-      if (coupling->is_scalar()) {
-        static const std::vector<std::string> modes{"continuation", "none"};
-        options.coupling = coupling->as_choice(modes).value_or(0) == 0 ? CouplingMode::continuation
-                                                                      : CouplingMode::none;
+      if (coupling->text() == "continuation") {
+        options.coupling = CouplingMode::continuation;
+      } else if (coupling->text() == "none") {
+        options.coupling = CouplingMode::none;
+      } else if (!coupling->is_map()) {
+        coupling->error("coupling must be continuation, none, or for example {fixed: 300 1/s}");
       } else {
         ConfigMap fixed(*coupling);
         options.coupling = CouplingMode::fixed;
@@ -115,14 +96,20 @@ class JobReader {
         fixed.finish();
       }
     }
-    if (const auto rate = map.optional("first_coupling"))
-      options.coupling_rate = rate->as_quantity("1/s", 1e-3, 1e6).value_or(0.0);
+    if (const auto rate = map.optional("first_coupling")) {
+      if (options.coupling == CouplingMode::continuation)
+        options.coupling_rate = rate->as_quantity("1/s", 1e-3, 1e6).value_or(0.0);
+      else
+        rate->error("first_coupling is where a continuation starts: it needs coupling: continuation");
+    }
     if (const auto loss = map.optional("loss")) {
       static const std::vector<std::string> losses{"squares", "huber"};
       options.loss = static_cast<Loss>(loss->as_choice(losses).value_or(0));
     }
-    if (const auto width = map.optional("huber_width"))
+    if (const auto width = map.optional("huber_width")) {
       options.huber_width = width->as_number(0.1, 1e3).value_or(3.0);
+      if (options.loss != Loss::huber) width->error("huber_width needs loss: huber");
+    }
     const auto integer = [&](const char* key, std::int64_t lower, std::int64_t upper, auto& value) {
       if (const auto given = map.optional(key))
         if (const auto read = given->as_integer(lower, upper))
@@ -177,7 +164,8 @@ class JobReader {
       static const std::vector<std::string> states{"given", "data"};
       recording.initial_state = static_cast<InitialState>(state->as_choice(states).value_or(0));
     }
-    if (const auto n = map.optional("initial_samples"))
+    const auto initial_samples = map.optional("initial_samples");
+    if (const auto& n = initial_samples)
       recording.initial_samples =
           static_cast<std::size_t>(n->as_integer(4, 1000000).value_or(20));
     if (const auto score = map.optional("score_initial_samples"))
@@ -195,6 +183,11 @@ class JobReader {
       }
     }
     if (data && time && signals) read_samples(*data, *time, *signals, trim, recording);
+    if (!recording.score_initial_samples && recording.times.size() >= 10 &&
+        recording.initial_samples >= recording.times.size())
+      initial_samples.value_or(node).error(
+          fmt::format("{} initial samples that are not scored leave nothing of {} to score",
+                      recording.initial_samples, recording.times.size()));
     map.finish();
     result_.job.recordings.push_back(std::move(recording));
   }
@@ -206,12 +199,15 @@ class JobReader {
         if (const auto given = read_value(value, entry->quantity))
           recording.overrides.emplace_back(entry->index, *given);
     map.finish();
+    Model<double> model = result_.rig.model;
+    for (const auto& [index, value] : recording.overrides) *members(model)[index] = value;
+    if (const std::string reason = refusal(model); !reason.empty()) node.error(reason);
   }
 
   void read_samples(const RecordingFile& data, const ConfigNode& time_node,
                     const ConfigNode& signals_node, const std::optional<ConfigNode>& trim_node,
                     Recording& recording) {
-    auto times = read_column(data, time_node, "s");
+    const auto times = read_times(data, time_node);
     double from = -kUnlimited, to = kUnlimited;
     if (trim_node) {
       ConfigMap trim(*trim_node);
@@ -220,16 +216,6 @@ class JobReader {
       if (const auto t = trim.optional("to"))
         to = t->as_quantity("s", -kUnlimited, kUnlimited).value_or(to);
       trim.finish();
-    }
-    if (times) {
-      for (std::size_t i = 1; i < times->size(); ++i) {
-        if ((*times)[i] > (*times)[i - 1]) continue;
-        time_node.error(fmt::format("{}: time {:g} s does not come after {:g} s: samples must be in "
-                                    "the order of time, each once",
-                                    data.where(i), (*times)[i], (*times)[i - 1]));
-        times.reset();
-        break;
-      }
     }
     const auto trimmed = [&](std::vector<double> values) {
       std::vector<double> kept;
@@ -249,7 +235,10 @@ class JobReader {
     } else if (force) {
       input = read_column(data, *force, "N");
       // The source turns U into K_f U newtons; a force in newtons needs no gain.
-      recording.overrides.emplace_back(find_quantity("K_f")->index, 1.0);
+      const std::size_t gain = find_quantity("K_f")->index;
+      if (std::ranges::any_of(recording.overrides, [&](const auto& o) { return o.first == gain; }))
+        force->error("a drive_force is in newtons already: remove K_f from 'set'");
+      recording.overrides.emplace_back(gain, 1.0);
     } else if (command) {
       input = read_column(data, *command, "V");
     } else {
@@ -257,10 +246,12 @@ class JobReader {
                                         "of them"
                                       : "the axis is driven by the command: name its column");
     }
+    bool any_named = false;
     for (const SignalInfo& signal : kSignalTable) {
       if (signal.signal == Signal::drive_force && force_source) continue;
       const auto given = signals.optional(signal.name);
       if (!given) continue;
+      any_named = true;
       ConfigMap map(*given);
       Measurement measurement;
       measurement.signal = signal.signal;
@@ -268,12 +259,12 @@ class JobReader {
       if (const auto fit = map.optional("fit")) measurement.fitted = fit->as_bool().value_or(true);
       const auto sigma = map.optional("sigma");
       if (sigma) {
-        measurement.sigma = sigma->as_quantity(signal.unit, 1e-300, kUnlimited).value_or(1.0);
+        measurement.sigma = read_sigma(*sigma, signal.unit);
         measurement.sigma_given = true;
       }
       map.finish();
       if (!values || !times) continue;
-      if (!same_length(data, *given, *values, *times)) continue;
+      if (!same_length(*given, *values, *times)) continue;
       measurement.values = trimmed(std::move(*values));
       if (!sigma) {
         measurement.sigma = noise_from_differences(measurement.values);
@@ -285,7 +276,7 @@ class JobReader {
       recording.measurements.push_back(std::move(measurement));
     }
     signals.finish();
-    if (!times || !input || !same_length(data, signals_node, *input, *times)) return;
+    if (!times || !input || !same_length(force ? *force : *command, *input, *times)) return;
     // Commands from before the first sample kept still act on it.
     std::vector<double> command_times, commands;
     for (std::size_t i = 0; i < times->size() && (*times)[i] <= to; ++i) {
@@ -301,11 +292,15 @@ class JobReader {
       recording.times = {0.0, 1.0};
       return;
     }
-    if (std::ranges::none_of(recording.measurements, &Measurement::fitted))
+    if (!any_named)
       signals_node.error(fmt::format("nothing to compare with: name at least one of {}",
                                      fmt::join(kSignalTable | std::views::transform(
                                                                   &SignalInfo::name),
                                                ", ")));
+    else if (recording.role == Role::fit && !recording.measurements.empty() &&
+             std::ranges::none_of(recording.measurements, &Measurement::fitted))
+      signals_node.error("nothing to fit: every signal says fit: false; drop that from one, or give "
+                         "the recording the role validate");
     if (recording.initial_state == InitialState::data) {
       if (recording.find(Signal::position) == nullptr && recording.find(Signal::velocity) == nullptr)
         signals_node.error("initial_state: data needs a recorded position or velocity");
@@ -313,12 +308,18 @@ class JobReader {
     }
   }
 
-  static bool same_length(const RecordingFile& data, const ConfigNode& node,
-                          const std::vector<double>& values, const std::vector<double>& times) {
+  static bool same_length(const ConfigNode& node, const std::vector<double>& values,
+                          const std::vector<double>& times) {
     if (values.size() == times.size()) return true;
-    node.error(fmt::format("{} has {} values but the time has {}", data.where(0), values.size(),
+    node.error(fmt::format("{} has {} values but the time has {}", node.name(), values.size(),
                            times.size()));
     return false;
+  }
+
+  static double read_sigma(const ConfigNode& node, std::string_view unit) {
+    const auto sigma = node.as_quantity(unit, 0.0, kUnlimited);
+    if (sigma == 0.0) node.error("sigma must be above zero: residuals are divided by it");
+    return sigma.value_or(1.0);
   }
 
   void read_free(const ConfigNode& node) {
@@ -327,7 +328,8 @@ class JobReader {
       if (const QuantityEntry* entry = quantity_named(key, result_.rig.model.structure))
         read_free_parameter(value, *entry);
     map.finish();
-    if (map.entries().empty()) node.error("nothing is free: name at least one quantity to fit");
+    if (node.is_map() && map.entries().empty())
+      node.error("nothing is free: name at least one quantity to fit");
   }
 
   void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry) {
@@ -338,7 +340,9 @@ class JobReader {
     std::optional<std::pair<double, double>> bounds;
     std::optional<std::size_t> scale;
     bool per_recording = false, initial_given = false;
-    ConfigMap map(node);
+    // "M:" alone is as good as "M: {}".
+    Diagnostics none;
+    ConfigMap map(node.is_null() ? *ConfigNode::parse("{}", node.file(), none) : node);
     if (const auto initial = map.optional("initial")) {
       initial_given = true;
       parameter.initial = read_value(*initial, quantity).value_or(parameter.initial);
@@ -357,7 +361,7 @@ class JobReader {
       if (const auto mean = prior.required("mean"))
         parameter.prior->mean = read_value(*mean, quantity).value_or(0.0);
       if (const auto sigma = prior.required("sigma"))
-        parameter.prior->sigma = sigma->as_quantity(quantity.unit, 1e-300, kUnlimited).value_or(1.0);
+        parameter.prior->sigma = read_sigma(*sigma, quantity.unit);
       prior.finish();
     }
     map.finish();
@@ -389,9 +393,13 @@ class JobReader {
       for (const Recording& r : result_.job.recordings)
         for (const auto& [index, value] : r.overrides)
           if (!p.recording && index == p.quantity && entry.group != "initial")
-            node.error(fmt::format("{} is fitted for all recordings but set for '{}': remove one, or "
-                                   "say per_recording: true",
-                                   entry.name, r.name));
+            node.error(entry.name == "K_f"
+                           ? fmt::format("K_f cannot be fitted to '{}', whose drive_force is in "
+                                         "newtons already",
+                                         r.name)
+                           : fmt::format("{} is fitted for all recordings but set for '{}': remove "
+                                         "one, or say per_recording: true",
+                                         entry.name, r.name));
       result_.job.free.push_back(p);
     };
     if (!per_recording) {

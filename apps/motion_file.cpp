@@ -102,10 +102,17 @@ class MotionReader {
     if (!path || !time || !command) return motion;
     try {
       const RecordingFile data((root_.directory() / *path).lexically_normal().string());
-      const auto times = read_column(data, *time, "s"), values = read_column(data, *command, "V");
+      const auto times = read_times(data, *time), values = read_column(data, *command, "V");
       if (!times || !values) return motion;
+      const double limit = rig_.controller.limit;
+      const auto beyond =
+          std::ranges::find_if(*values, [&](double v) { return std::abs(v) > limit; });
       if (times->size() != values->size() || times->empty())
         command->error("the time and the command must have the same number of values");
+      else if (beyond != values->end())
+        command->error(fmt::format(
+            "{}: a command of {:.12g} V is beyond the controller's limit of {:.12g} V",
+            data.where(static_cast<std::size_t>(beyond - values->begin())), *beyond, limit));
       else
         motion.schedule = schedule_from_samples(*times, *values);
     } catch (const RecordingError& error) {

@@ -4,9 +4,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <stdexcept>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 /// Writes a new file through to the disk.
 void write_through(const fs::path& path, const std::string& contents) {
   const auto fail = [&] {
-    throw std::runtime_error(fmt::format("cannot write {}: {}", path.string(), std::strerror(errno)));
+    throw fs::filesystem_error("cannot write", path,
+                               std::error_code(errno, std::generic_category()));
   };
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) fail();
@@ -37,6 +38,12 @@ void write_through(const fs::path& path, const std::string& contents) {
   if (!good) fail();
 }
 
+/// What went wrong, without the names of temporary files.
+std::string reason(const std::exception& error) {
+  const auto* known = dynamic_cast<const fs::filesystem_error*>(&error);
+  return known != nullptr ? known->code().message() : error.what();
+}
+
 }  // namespace
 
 void write_folder(const std::string& folder,
@@ -49,9 +56,20 @@ void write_folder(const std::string& folder,
                                                  ? target.filename().string()
                                                  : target.parent_path().filename().string(),
                            ::getpid());
+  // What a failure must remove again: the topmost folder that was not there.
+  std::error_code ignored;
+  fs::path made = partial;
+  while (fs::symlink_status(made.parent_path(), ignored).type() == fs::file_type::not_found)
+    made = made.parent_path();
   try {
     fs::create_directories(partial);
-    for (const auto& [name, contents] : files) write_through(partial / name, contents);
+    for (const auto& [name, contents] : files) {
+      write_through(partial / name, contents);
+      // Found out before anything is replaced.
+      if (fs::is_directory(target / name))
+        throw fs::filesystem_error("cannot replace", target / name,
+                                   std::make_error_code(std::errc::is_a_directory));
+    }
     if (!fs::exists(target)) {
       fs::rename(partial, target.has_filename() ? target : target.parent_path());
       return;
@@ -59,21 +77,23 @@ void write_folder(const std::string& folder,
     for (const auto& [name, contents] : files) fs::rename(partial / name, target / name);
     fs::remove_all(partial);
   } catch (const std::exception& error) {
-    std::error_code ignored;
-    fs::remove_all(partial, ignored);
-    throw std::runtime_error(fmt::format("results not written to {}: {}", folder, error.what()));
+    fs::remove_all(made, ignored);
+    throw std::runtime_error(fmt::format("results not written to {}: {}", folder, reason(error)));
   }
 }
 
 void write_file(const std::string& path, const std::string& contents) {
+  std::error_code ignored;
+  // Devices and pipes must not be replaced by a file.
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
+    throw std::runtime_error(fmt::format("{} not written: it is there and not a file", path));
   const fs::path partial = fmt::format("{}.partial-{}", path, ::getpid());
   try {
     write_through(partial, contents);
     fs::rename(partial, path);
   } catch (const std::exception& error) {
-    std::error_code ignored;
     fs::remove(partial, ignored);
-    throw std::runtime_error(fmt::format("{} not written: {}", path, error.what()));
+    throw std::runtime_error(fmt::format("{} not written: {}", path, reason(error)));
   }
 }
 

@@ -1,5 +1,8 @@
 #include "apps/recording_file.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -25,7 +28,14 @@ RecordingFile::RecordingFile(const std::string& path) : path_(path) {
 const std::vector<double>* RecordingFile::column(const ConfigNode& node) const {
   const auto name = node.as_string();
   if (!name) return nullptr;
-  if (const auto found = columns_.find(*name); found != columns_.end()) return &found->second;
+  if (const auto found = columns_.find(*name); found != columns_.end()) {
+    const std::vector<double>& values = found->second;
+    const auto gap = std::ranges::find_if_not(values, [](double x) { return std::isfinite(x); });
+    if (gap == values.end()) return &values;
+    node.error(fmt::format("{}: '{}' is not finite there: cut the recording or fill the gap",
+                           where(static_cast<std::size_t>(gap - values.begin())), *name));
+    return nullptr;
+  }
   if (const auto ignored = ignored_.find(*name); ignored != ignored_.end()) {
     node.error(fmt::format("'{}' in {} is {}: export it as a numeric array", *name, path_,
                            ignored->second));
@@ -77,6 +87,19 @@ std::optional<std::vector<double>> read_column(const RecordingFile& file, const 
   auto values = read_column(file, map, si_unit);
   map.finish();
   return values;
+}
+
+std::optional<std::vector<double>> read_times(const RecordingFile& file, const ConfigNode& node) {
+  auto times = read_column(file, node, "s");
+  for (std::size_t i = 1; times && i < times->size(); ++i) {
+    const double before = (*times)[i - 1], time = (*times)[i];
+    if (time > before) continue;
+    node.error(fmt::format("{}: time {:.12g} s does not come after {:.12g} s: samples must be in "
+                           "the order of time, each once",
+                           file.where(i), time, before));
+    return std::nullopt;
+  }
+  return times;
 }
 
 }  // namespace axisfit

@@ -41,4 +41,7 @@ std::optional<std::vector<double>> read_column(const RecordingFile& file, Config
 std::optional<std::vector<double>> read_column(const RecordingFile& file, const ConfigNode& node,
                                                std::string_view si_unit);
 
+/// The times of the samples, s, which must increase; nothing, with a diagnostic, otherwise.
+std::optional<std::vector<double>> read_times(const RecordingFile& file, const ConfigNode& node);
+
 }  // namespace axisfit

@@ -1,5 +1,6 @@
 // simulate-axis AXIS.yaml MOTION.yaml: a recording as a rig would make it.
 
+#include <algorithm>
 #include <iostream>
 #include <sstream>
 
@@ -37,15 +38,15 @@ void change(const std::string& text, Model<double>& model) {
     throw std::runtime_error(
         fmt::format("--set '{}': write NAME=VALUE, for example --set 'M=161 kg'", text));
   Diagnostics diagnostics;
-  const std::string yaml = text.substr(0, equals) + ": '" + text.substr(equals + 1) + "'";
+  std::string value = text.substr(equals + 1);
+  for (std::size_t at = 0; (at = value.find('\'', at)) != std::string::npos; at += 2)
+    value.insert(at, 1, '\'');  // how YAML writes a quote within quotes
+  const std::string yaml = text.substr(0, equals) + ": '" + value + "'";
   if (const auto root = ConfigNode::parse(yaml, "--set", diagnostics)) {
-    ConfigMap map(*root);
-    for (const QuantityEntry& entry : quantity_list())
-      if (is_used(entry, model.structure))
-        if (const auto value = map.optional(entry.name))
-          *members(model)[entry.index] =
-              read_value(*value, entry.quantity).value_or(entry.quantity.lower);
-    map.finish();
+    for (ConfigMap map(*root); const auto& [key, given] : map.entries())
+      if (const QuantityEntry* entry = quantity_named(key, model.structure))
+        *members(model)[entry->index] =
+            read_value(given, entry->quantity).value_or(entry->quantity.lower);
   }
   diagnostics.throw_if_any();
 }
@@ -59,15 +60,27 @@ void run(Arguments arguments) {
     throw std::runtime_error(reason);
   const MotionFile motion = read_motion_file(arguments.motion, *rig);
   RecordingOptions& options = arguments.recording;
+  constexpr double kMostRows = 2e7;
+  if (motion.duration * options.rate > kMostRows)
+    throw std::runtime_error(
+        fmt::format("{}: {:g} s at {:g} samples per second are more than {:g} rows: choose a shorter "
+                    "duration or a lower --rate",
+                    arguments.motion, motion.duration, options.rate, kMostRows));
   options.duration = motion.duration;
   options.noise = !arguments.exact;
-  for (const std::string& name : arguments.signals) options.signals.push_back(*signal_by_name(name));
+  for (const std::string& name : arguments.signals) {
+    const Signal signal = *signal_by_name(name);
+    if (std::ranges::find(options.signals, signal) != options.signals.end())
+      throw std::runtime_error(fmt::format("--signals: {} is named twice", name));
+    options.signals.push_back(signal);
+  }
   std::ostringstream text;
   write_csv(text, record(*rig, motion.motion, options), arguments.exact ? 0 : 9);
   if (arguments.output.empty())
-    std::cout << text.str();
+    std::cout << text.str() << std::flush;
   else
     write_file(arguments.output, text.str());
+  if (!std::cout) throw std::runtime_error("cannot write to standard output");
 }
 
 }  // namespace
@@ -94,7 +107,9 @@ int main(int argc, char** argv) {
   app.add_option("--rate", arguments.recording.rate, "samples per second")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
-  app.add_option("--seed", arguments.recording.seed, "seed of the noise")->capture_default_str();
+  app.add_option("--seed", arguments.recording.seed, "seed of the noise")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app.add_flag("--exact", arguments.exact, "no noise, encoder not quantised, all digits");
   try {
     app.parse(argc, argv);

@@ -9,15 +9,6 @@
 namespace axisfit {
 namespace {
 
-double residual_count(const Job& job) {
-  double n = 0.0;
-  for (const Recording& r : job.recordings)
-    if (r.role == Role::fit)
-      for (const Measurement& m : r.measurements)
-        if (m.fitted) n += static_cast<double>(r.times.size());
-  return n;
-}
-
 double longest_duration(const Job& job) {
   double longest = 0.0;
   for (const Recording& r : job.recordings)
@@ -30,6 +21,69 @@ bool can_be_coupled(const Job& job) {
     return r.role == Role::fit && coupling_for(r, 1.0).active();
   });
 }
+
+/// The stages of one continuation, from `rate` down to a free-running simulation.
+class Continuation {
+ public:
+  Continuation(const Job& job, const ParameterSpace& space,
+               const std::function<void(const Stage&)>& progress)
+      : job_(job), space_(space), progress_(progress) {}
+
+  /// Solves at one rate; `final` with the full accuracy.
+  SolveResult solve_stage(const Eigen::VectorXd& u, double rate, bool final) {
+    SolveOptions options;
+    options.max_iterations =
+        final ? job_.options.max_iterations : std::min(job_.options.max_iterations, 20);
+    options.function_tolerance = final ? 1e-10 : 1e-4;
+    options.keep_to_start = !final;
+    SolveResult solved = solve(job_, space_, u, rate, options);
+    iterations_ += solved.iterations;
+    stages_.push_back({rate, solved.reduced_cost, solved.iterations, true});
+    return solved;
+  }
+
+  SolveResult run(const Eigen::VectorXd& start, double rate) {
+    // Below this rate the coupling cannot do anything within the recording any more.
+    const double slowest = 1.0 / longest_duration(job_);
+    double ratio = 3.0;
+    SolveResult held = solve_stage(start, rate, false);
+    report();
+    double held_cost = stages_.back().reduced_cost;
+    while (held.usable && rate > 0.0) {
+      double next = rate / ratio;
+      if (next < slowest) next = 0.0;
+      SolveResult solved = solve_stage(held.u, next, next == 0.0);
+      Stage& latest = stages_.back();
+      // The residual may grow as the hold loosens, if the model lacks something, but not by leaps:
+      // those mean that the simulation lost the data between two rates.
+      const bool lost = !solved.usable || latest.reduced_cost > 3.0 * held_cost + 1.0;
+      latest.accepted = !lost || ratio < 1.3;
+      report();
+      if (!latest.accepted) {
+        ratio = std::sqrt(ratio);
+        continue;
+      }
+      held_cost = latest.reduced_cost;
+      held = std::move(solved);
+      rate = next;
+      ratio = std::min(ratio * 1.5, 5.0);
+    }
+    return held;
+  }
+
+  void report() const {
+    if (progress_) progress_(stages_.back());
+  }
+  const std::vector<Stage>& stages() const { return stages_; }
+  int iterations() const { return iterations_; }
+
+ private:
+  const Job& job_;
+  const ParameterSpace& space_;
+  const std::function<void(const Stage&)>& progress_;
+  std::vector<Stage> stages_;
+  int iterations_ = 0;
+};
 
 }  // namespace
 
@@ -48,59 +102,29 @@ double first_coupling_rate(const Job& job) {
 ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
                                     const Eigen::VectorXd& start,
                                     const std::function<void(const Stage&)>& progress) {
-  const FitOptions& options = job.options;
-  const double n = residual_count(job);
+  Continuation continuation(job, space, progress);
   ContinuationResult result;
-  int iterations = 0;
-  const auto stage = [&](const Eigen::VectorXd& u, double rate, bool final) {
-    SolveOptions solver;
-    solver.max_iterations = final ? options.max_iterations : std::min(options.max_iterations, 20);
-    solver.function_tolerance = final ? 1e-10 : 1e-4;
-    SolveResult solved = solve(job, space, u, rate, solver);
-    iterations += solved.iterations;
-    result.stages.push_back({rate, 2.0 * solved.cost / n, solved.iterations, true});
-    return solved;
-  };
-  const auto report = [&] {
-    if (progress) progress(result.stages.back());
-  };
-
-  if (options.coupling != CouplingMode::continuation || !can_be_coupled(job)) {
+  if (job.options.coupling != CouplingMode::continuation || !can_be_coupled(job)) {
     const double rate =
-        options.coupling == CouplingMode::fixed ? first_coupling_rate(job) : 0.0;
-    result.last = stage(start, rate, true);
-    report();
-    return result;
-  }
-
-  // Below this rate the coupling cannot do anything within the recording any more.
-  const double slowest = 1.0 / longest_duration(job);
-  double rate = first_coupling_rate(job);
-  double ratio = 3.0;
-  SolveResult held = stage(start, rate, false);
-  report();
-  while (held.usable && rate > 0.0) {
-    const double held_cost = result.stages.back().reduced_cost;
-    double next = rate / ratio;
-    if (next < slowest) next = 0.0;
-    SolveResult solved = stage(held.u, next, next == 0.0);
-    Stage& latest = result.stages.back();
-    // The residual may grow as the hold loosens, if the model lacks something, but not by leaps:
-    // those mean that the simulation lost the data between two rates.
-    const bool lost = !solved.usable || latest.reduced_cost > 3.0 * held_cost + 1.0;
-    latest.accepted = !lost || ratio < 1.3;
-    report();
-    if (!latest.accepted) {
-      latest.reduced_cost = held_cost;  // for the comparison with the next try
-      ratio = std::sqrt(ratio);
-      continue;
+        job.options.coupling == CouplingMode::fixed ? first_coupling_rate(job) : 0.0;
+    result.last = continuation.solve_stage(start, rate, true);
+    continuation.report();
+  } else {
+    // A firm hold feeds the noise of the measurement into the simulation, which can bias what the
+    // data hardly show beyond return: where the end does not explain the data, begin less firmly.
+    constexpr int kAttempts = 3;
+    constexpr double kExplained = 1.1;
+    double rate = first_coupling_rate(job);
+    for (int attempt = 0; attempt < kAttempts; ++attempt, rate /= 5.0) {
+      SolveResult solved = continuation.run(start, rate);
+      const bool better = attempt == 0 || (solved.usable && (!result.last.usable ||
+                                                             solved.cost < result.last.cost));
+      if (better) result.last = std::move(solved);
+      if (result.last.usable && result.last.reduced_cost < kExplained) break;
     }
-    held = std::move(solved);
-    rate = next;
-    ratio = std::min(ratio * 1.5, 5.0);
   }
-  result.last = std::move(held);
-  result.last.iterations = iterations;
+  result.last.iterations = continuation.iterations();
+  result.stages = continuation.stages();
   return result;
 }
 

@@ -22,8 +22,8 @@ struct Stage {
 };
 
 struct ContinuationResult {
-  SolveResult last;  ///< of the last stage; `iterations` is the sum over all stages
-  std::vector<Stage> stages;
+  SolveResult last;  ///< the best end of an attempt; `iterations` is the sum over all stages
+  std::vector<Stage> stages;  ///< of all attempts, in turn
 };
 
 /// The rate at which the continuation starts unless the job says otherwise: as firm as the sampling

@@ -13,29 +13,6 @@
 namespace axisfit {
 namespace {
 
-/// The initial values (first start), or values drawn around them.
-std::vector<double> draw_start(const Job& job, int start) {
-  std::seed_seq seeds{job.options.seed & 0xffffffffu, job.options.seed >> 32,
-                      static_cast<std::uint64_t>(start)};
-  std::mt19937_64 generator(seeds);
-  std::vector<double> values;
-  for (const FreeParameter& p : job.free) {
-    // Between -1 and 1. Standard distributions differ between libraries, this does not.
-    const double z = std::ldexp(static_cast<double>(generator() >> 11), -52) - 1.0;
-    double value = p.initial;
-    if (start > 0) {
-      if (p.logarithmic)
-        value *= std::pow(job.options.spread, z);
-      else if (p.initial != 0.0)
-        value += z * job.options.spread * std::abs(p.initial);
-      else
-        value = 0.5 * (p.lower + p.upper) + 0.01 * z * (p.upper - p.lower);
-    }
-    values.push_back(std::clamp(value, p.lower, p.upper));
-  }
-  return values;
-}
-
 struct Trial {
   std::vector<double> from;
   ContinuationResult result;
@@ -201,6 +178,28 @@ void conclude(const Job& job, const SolveResult& solved, FitResult& result) {
 
 }  // namespace
 
+std::vector<double> draw_start(const Job& job, int start) {
+  std::seed_seq seeds{job.options.seed & 0xffffffffu, job.options.seed >> 32,
+                      static_cast<std::uint64_t>(start)};
+  std::mt19937_64 generator(seeds);
+  std::vector<double> values;
+  for (const FreeParameter& p : job.free) {
+    // Between -1 and 1. Standard distributions differ between libraries, this does not.
+    const double z = std::ldexp(static_cast<double>(generator() >> 11), -52) - 1.0;
+    double value = p.initial;
+    if (start > 0) {
+      if (p.logarithmic)
+        value *= std::pow(job.options.spread, z);
+      else if (p.initial != 0.0)
+        value += z * job.options.spread * std::abs(p.initial);
+      else
+        value = 0.5 * (p.lower + p.upper) + 0.01 * z * (p.upper - p.lower);
+    }
+    values.push_back(std::clamp(value, p.lower, p.upper));
+  }
+  return values;
+}
+
 FitResult estimate(const Job& job, const std::function<void(const Progress&)>& progress) {
   const ParameterSpace space(job);
   const std::vector<Trial> trials = run_starts(job, space, progress);
@@ -214,11 +213,11 @@ FitResult estimate(const Job& job, const std::function<void(const Progress&)>& p
   FitResult result;
   for (const Trial& trial : trials)
     result.starts.push_back({trial.from, space.values(trial.result.last.u),
-                             trial.result.last.usable, trial.result.stages.back().reduced_cost});
+                             trial.result.last.usable, trial.result.last.reduced_cost});
   result.message = solved.message;
   result.iterations = solved.iterations;
   result.stages = best.result.stages;
-  result.coupling_rate = best.result.stages.back().coupling_rate;
+  result.coupling_rate = solved.coupling_rate;
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     result.recordings.push_back(judge(job, space, r, solved.u, result.coupling_rate));
 

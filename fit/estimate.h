@@ -72,6 +72,10 @@ struct Progress {
   Stage stage;
 };
 
+/// Where start number `start` begins: the initial values for the first, values drawn around them for
+/// the others, by the job's seed and spread and the start's number alone.
+std::vector<double> draw_start(const Job& job, int start);
+
 /// Fits a job. The result depends on the job alone, not on the number of threads.
 FitResult estimate(const Job& job, const std::function<void(const Progress&)>& progress = {});
 

@@ -38,6 +38,28 @@ class PriorCost : public ceres::CostFunction {
   std::size_t parameter_;
 };
 
+/// u - start
+class KeepCost : public ceres::CostFunction {
+ public:
+  explicit KeepCost(Eigen::VectorXd start) : start_(std::move(start)) {
+    set_num_residuals(static_cast<int>(start_.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(start_.size()));
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const Eigen::Index n = start_.size();
+    Eigen::Map<Eigen::VectorXd>(residuals, n) =
+        Eigen::Map<const Eigen::VectorXd>(parameters[0], n) - start_;
+    if (jacobians != nullptr && jacobians[0] != nullptr)
+      Eigen::Map<Eigen::MatrixXd>(jacobians[0], n, n).setIdentity();
+    return true;
+  }
+
+ private:
+  Eigen::VectorXd start_;
+};
+
 std::vector<std::unique_ptr<ceres::CostFunction>> costs(const Job& job, const ParameterSpace& space,
                                                         double coupling_rate) {
   std::vector<std::unique_ptr<ceres::CostFunction>> list;
@@ -63,6 +85,7 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
   double* u = result.u.data();
   for (auto& cost : costs(job, space, coupling_rate))
     problem.AddResidualBlock(cost.release(), nullptr, u);
+  if (options.keep_to_start) problem.AddResidualBlock(new KeepCost(start), nullptr, u);
   for (std::size_t i = 0; i < space.size(); ++i) {
     const int index = static_cast<int>(i);
     const double lower = space.internal(i, space[i].lower);
@@ -83,6 +106,8 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
   result.usable = summary.IsSolutionUsable();
   result.converged = summary.termination_type == ceres::CONVERGENCE;
   result.cost = summary.final_cost;
+  result.reduced_cost = 2.0 * result.cost / problem.NumResiduals();
+  result.coupling_rate = coupling_rate;
   result.iterations = static_cast<int>(summary.iterations.size());
   result.message = summary.message;
   return result;

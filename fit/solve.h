@@ -13,6 +13,9 @@ struct SolveOptions {
   int max_iterations = 50;
   double function_tolerance = 1e-8;   ///< relative change of the cost at which to stop
   double parameter_tolerance = 1e-9;  ///< relative change of the parameters at which to stop
+  /// Whether to keep to the start, with the weight of one residual per e-fold of a parameter: what
+  /// the data do not show then stays where it is instead of running off to a bound.
+  bool keep_to_start = false;
 };
 
 struct SolveResult {
@@ -20,6 +23,8 @@ struct SolveResult {
   bool converged = false;  ///< a tolerance was reached
   Eigen::VectorXd u;
   double cost = 0.0;  ///< half the sum of squared residuals, priors included
+  double reduced_cost = 0.0;   ///< 2 cost / number of residuals
+  double coupling_rate = 0.0;  ///< as asked for
   int iterations = 0;
   std::string message;  ///< the solver's own reason to stop
 };

@@ -17,13 +17,14 @@ struct Recorded {
 Recorded recorded(const Model<double>& model, const Schedule& command,
                   std::span<const double> times) {
   Recorded result;
-  const auto outcome = simulate(model, command, times, [&](std::size_t, const Integrator<double>& axis) {
-    const auto read = [&](Signal signal) {
-      return reading(axis.equations(), signal, axis.mode(), axis.state(), axis.input());
-    };
-    result.velocity.push_back(read(Signal::velocity));
-    result.position.push_back(read(Signal::position));
-  });
+  const auto outcome =
+      simulate(model, command, times, [&](std::size_t, const Integrator<double>& axis) {
+        const auto read = [&](Signal signal) {
+          return reading(axis.equations(), signal, axis.mode(), axis.state(), axis.input());
+        };
+        result.velocity.push_back(read(Signal::velocity));
+        result.position.push_back(read(Signal::position));
+      });
   EXPECT_TRUE(outcome.finished);
   return result;
 }
@@ -48,14 +49,14 @@ double rms(const std::vector<double>& values) {
                    static_cast<double>(values.size()));
 }
 
-const Coupling kCouplings[] = {Coupling::to_velocity(30.0, false), Coupling::to_velocity(1000.0, true),
-                               Coupling::to_position(100.0)};
+const Coupling kCouplings[] = {Coupling::to_velocity(30.0, false),
+                               Coupling::to_velocity(1000.0, true), Coupling::to_position(100.0)};
 
 TEST(Coupling, DoesNothingToAModelThatIsRight) {
   const Model<double> model = paper_axis();
   for (const Coupling& coupling : kCouplings) {
-    SCOPED_TRACE(testing::Message() << coupling.velocity << " " << coupling.position << " "
-                                    << coupling.acceleration);
+    SCOPED_TRACE(testing::Message()
+                 << coupling.velocity << " " << coupling.position << " " << coupling.acceleration);
     // What is left is the error of the line between samples: it falls with the square of their
     // distance, down to which the motion has to be smooth.
     double before = 0.0;
@@ -79,8 +80,8 @@ TEST(Coupling, StaysOnAMotionThatIsALineBetweenSamplesExactly) {
   const auto times = instants(500, 1e-3);
   const Schedule command{{0.0}, {24.0}};
   const Recorded data = recorded(model, command, times);
-  for (const double force : coupling_forces(model, command, times,
-                                            Coupling::to_velocity(1000.0, false), data))
+  for (const double force :
+       coupling_forces(model, command, times, Coupling::to_velocity(1000.0, false), data))
     ASSERT_NEAR(force, 0.0, 1e-10);
 }
 
@@ -105,7 +106,8 @@ TEST(Coupling, ForceConvergesToWhatTheModelLacks) {
   Model<double> pushed = mass;
   add_effect<ConstantForce>(pushed).F_0 = F;
   const Recorded line = recorded(pushed, push, times);
-  const auto approach = coupling_forces(mass, push, times, Coupling::to_velocity(50.0, false), line);
+  const auto approach =
+      coupling_forces(mass, push, times, Coupling::to_velocity(50.0, false), line);
   for (std::size_t k = 0; k < times.size(); ++k)
     ASSERT_NEAR(approach[k], F * (1.0 - std::exp(-50.0 * times[k])), 1e-9 * F);
 }
@@ -147,8 +149,8 @@ TEST(Coupling, LeavesTheGearForceAlone) {
   const auto free = run(model, step_command(), times);
   std::vector<double> position;
   for (const State<double>& y : free.states) position.push_back(y[2] * model.axis.r_g + 0.02);
-  const auto held = run(model, step_command(), times, {}, Coupling{0.0, 50.0, 0.0},
-                        Measured{{}, position});
+  const auto held =
+      run(model, step_command(), times, {}, Coupling{0.0, 50.0, 0.0}, Measured{{}, position});
   for (std::size_t k = 0; k < times.size(); ++k) {
     const auto gear = [&](const State<double>& y) { return model.axis.r_g * y[2] - y[0]; };
     ASSERT_NEAR(gear(held.states[k]), gear(free.states[k]), 1e-12);

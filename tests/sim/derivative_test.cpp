@@ -40,8 +40,8 @@ struct Experiment {
         at, command, times,
         [&](std::size_t, const Integrator<T>& axis) {
           for (std::size_t s = 0; s < kRecorded.size(); ++s)
-            result.signals[s].push_back(reading(axis.equations(), kRecorded[s], axis.mode(),
-                                                axis.state(), axis.input()));
+            result.signals[s].push_back(
+                reading(axis.equations(), kRecorded[s], axis.mode(), axis.state(), axis.input()));
           result.events.push_back(axis.events());
         },
         coupling, Measured{velocity, position}, options);
@@ -263,8 +263,8 @@ TEST(Derivatives, EqualDifferencesInTheRigidVariants) {
 TEST(Derivatives, EqualDifferencesInACoupledRun) {
   for (const Coupling& coupling : {Coupling::to_velocity(30.0, true), Coupling::to_position(300.0),
                                    Coupling::to_velocity(3000.0, false)}) {
-    SCOPED_TRACE(testing::Message() << coupling.velocity << " " << coupling.position << " "
-                                    << coupling.acceleration);
+    SCOPED_TRACE(testing::Message()
+                 << coupling.velocity << " " << coupling.position << " " << coupling.acceleration);
     Experiment experiment = up_and_back();
     experiment.command = {{0.0, 0.3}, {10.0, 0.0}};
     experiment.times = instants(600, 1e-3);
@@ -287,7 +287,8 @@ TEST(Derivatives, AreWrongWithoutThoseOfTheEvents) {
     entries.push_back(*find_quantity(name));
   const IntegratorOptions without{.event_derivatives = false};
   double largest[2] = {0.0, 0.0};
-  compare(experiment, entries, {by_jets(experiment, entries), by_jets(experiment, entries, without)},
+  compare(experiment, entries,
+          {by_jets(experiment, entries), by_jets(experiment, entries, without)},
           [&](std::size_t candidate, const Comparison& c) {
             largest[candidate] = std::max(largest[candidate], c.error);
           });

@@ -17,7 +17,8 @@ struct NamedCommand {
 };
 
 std::vector<NamedCommand> commands() {
-  return {{"step", step_command()}, {"levels", level_command()}, {"staircase", staircase_command()}};
+  return {
+      {"step", step_command()}, {"levels", level_command()}, {"staircase", staircase_command()}};
 }
 
 Model<double> axis_with_gain(double K_v) {
@@ -110,6 +111,17 @@ TEST(Integrator, DoesNotDependOnItsStepWhereTheLoopRings) {
   EXPECT_LT(largest_difference(standard.states, small.states), 1e-8);
 }
 
+TEST(Integrator, PassesAGuardThatIsReachedAndLeftWithinTheShortestStep) {
+  // A run that touches the motor voltage's limit so briefly that, at these steps, the state at the
+  // event belongs to both sides of it.
+  Model<double> model = paper_axis();
+  model.axis.T_p = 0.0071;
+  model.axis.K_v = 300.0;
+  const auto times = instants(900, 1e-3);
+  for (const double step : {5e-4, 4e-4, 2e-4, 1e-4, 3e-5})
+    EXPECT_TRUE(run(model, step_command(), times, {.step = step}).finished) << step;
+}
+
 TEST(Integrator, ReadingsDoNotDependOnHowOftenTheyAreTaken) {
   const Model<double> model = paper_axis();
   const auto coarse = run(model, level_command(), instants(10, 0.1));
@@ -147,19 +159,21 @@ Model<double> dragged_gear() {
   model.axis.H = 1e-3;
   model.axis.k_g = 2e4;
   model.axis.b_g = 100.0;
+  model.initial[1] = 0.2;
   add_effect<QuadraticDrag>(model).c = 3000.0;
   return model;
 }
 
 TEST(Integrator, IsOfFourthOrderAcrossEventsWithSmoothForces) {
   // Events cut the steps around them into pieces, more or fewer by chance, and with them the error
-  // of a single run: it is the rms over many runs that falls by 16.
+  // of a single run: it is the rms over many runs that falls by 16. The arm never turns: the second
+  // derivative of the drag jumps at zero velocity, which costs one order there.
   constexpr int kMembers = 40;
   const Model<double> model = dragged_gear();
   const auto times = instants(12, 0.04);
   const auto member = [&](int i, double step) {
     const double scale = 1.0 + 0.01 * i;
-    const Schedule command{{0.0, 0.16, 0.32}, {400.0 * scale, -600.0 * scale, 300.0 * scale}};
+    const Schedule command{{0.0, 0.16, 0.32}, {400.0 * scale, -50.0 * scale, 300.0 * scale}};
     return run(model, command, times, {.step = step});
   };
   double before = 0.0;
@@ -172,6 +186,7 @@ TEST(Integrator, IsOfFourthOrderAcrossEventsWithSmoothForces) {
       ASSERT_TRUE(exact.finished && result.finished);
       ASSERT_EQ(result.events, exact.events);
       events += result.events.back();
+      for (const State<double>& y : exact.states) ASSERT_GT(y[1], 0.01);
       for (std::size_t k = 0; k < times.size(); ++k)
         sum += std::pow(result.states[k][1] - exact.states[k][1], 2);
     }

@@ -111,10 +111,11 @@ TEST(IsUsed, FollowsTheStructure) {
   EXPECT_EQ(unused_of({Drive::velocity_loop, Transmission::rigid, {}}),
             with_effects({"K_f", "H", "b_g", "k_g", "initial.x", "initial.dx"}));
   EXPECT_EQ(unused_of({Drive::force_source, Transmission::rigid, {}}),
-            with_effects({"R",   "L",   "K_e", "K_m", "J_m", "B_m", "K_t", "r_g", "H",
-                          "T_z", "T_p", "T_r", "K_1", "K_2", "K_i", "V_s", "V_L", "b_g",
-                          "k_g", "K_v", "initial.x", "initial.dx", "initial.y4", "initial.y5",
-                          "initial.y6"}));
+            with_effects({"R",         "L",          "K_e",        "K_m",        "J_m",
+                          "B_m",       "K_t",        "r_g",        "H",          "T_z",
+                          "T_p",       "T_r",        "K_1",        "K_2",        "K_i",
+                          "V_s",       "V_L",        "b_g",        "k_g",        "K_v",
+                          "initial.x", "initial.dx", "initial.y4", "initial.y5", "initial.y6"}));
   Structure structure;
   structure.effects.set();
   EXPECT_EQ(unused_of(structure), std::set<std::string>{"K_f"});

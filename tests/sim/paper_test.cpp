@@ -41,8 +41,8 @@ Transient changed(Change&& change) {
 /// Half the swing of the acceleration from `begin` to `end` (s).
 double swing(const Run<double>& run, double begin, double end) {
   const auto at = [](double t) { return static_cast<std::ptrdiff_t>(std::lround(t / kDt)); };
-  const auto [low, high] = std::minmax_element(run.acceleration.begin() + at(begin),
-                                               run.acceleration.begin() + at(end));
+  const auto [low, high] =
+      std::minmax_element(run.acceleration.begin() + at(begin), run.acceleration.begin() + at(end));
   return 0.5 * (*high - *low);
 }
 
@@ -143,7 +143,8 @@ Ringing ringing(const Model<double>& model) {
   const auto mean = [&](std::size_t k) {
     const Axis<double>& a = model.axis;
     return (saturated_velocity(a, dt * static_cast<double>(k) + 1e-5) -
-            saturated_velocity(a, dt * static_cast<double>(k) - 1e-5)) / 2e-5;
+            saturated_velocity(a, dt * static_cast<double>(k) - 1e-5)) /
+           2e-5;
   };
   std::vector<double> crossings, peaks;
   double peak = 0.0;
@@ -171,8 +172,8 @@ TEST(PaperStatements, StiffnessAndDampingSetTheRingingOfTheGearForce) {  // stat
       const double mobility = 1.0 / a.M + 1.0 / motor_mass(a);
       const Ringing found = ringing(model);
       std::cout << "period " << found.period << " decay " << found.decay << " expected "
-                << 2.0 * std::numbers::pi / std::sqrt(k_g * mobility) << " "
-                << 0.5 * b_g * mobility << "\n";
+                << 2.0 * std::numbers::pi / std::sqrt(k_g * mobility) << " " << 0.5 * b_g * mobility
+                << "\n";
       EXPECT_NEAR(found.period * std::sqrt(k_g * mobility) / (2.0 * std::numbers::pi), 1.0, 0.03);
       EXPECT_NEAR(found.decay / (0.5 * b_g * mobility), 1.0, 0.1);
     }

@@ -42,7 +42,8 @@ State<T> unit(std::size_t j) {
   return e;
 }
 
-/// Largest errors of the columns of exp, Psi and Xi at a level, by the largest entry of each matrix.
+/// Largest errors of the columns of exp, Psi and Xi at a level, by the largest entry of each
+/// matrix.
 void expect_exact(const Matrix<double>& a, double step, int least, double tolerance) {
   const Ladder ladder = ladder_for(a, step, least);
   const Propagator<double> propagator(a, ladder, true);
@@ -170,7 +171,8 @@ TEST(Propagator, StepsCompose) {
   const Matrix<double> a = stiff_matrix(1e5);
   const Propagator<double> propagator(a, ladder_for(a, 0.5e-3, 3), true);
   const SparseMatrix<double> sparse(a);
-  const State<double> y{0.1, 0.2, 15.0, 30.0, 2.0, -50.0, 3.0}, slope{0.0, 1.0, 2.0, 3.0, 0.0, 5.0, 7.0};
+  const State<double> y{0.1, 0.2, 15.0, 30.0, 2.0, -50.0, 3.0},
+      slope{0.0, 1.0, 2.0, 3.0, 0.0, 5.0, 7.0};
   const auto rate = [&](const State<double>& at, double t) {
     State<double> f{};
     for (std::size_t i = 0; i < kStates; ++i) f[i] = slope[i] * t;
@@ -187,7 +189,8 @@ TEST(Propagator, StepsCompose) {
 
 TEST(Propagator, CarriesDerivatives) {
   using J = ceres::Jet<double, 1>;
-  const State<double> y{0.1, 0.2, 15.0, 30.0, 2.0, -50.0, 3.0}, slope{0.0, 1.0, 2.0, 3.0, 0.0, 5.0, 7.0};
+  const State<double> y{0.1, 0.2, 15.0, 30.0, 2.0, -50.0, 3.0},
+      slope{0.0, 1.0, 2.0, 3.0, 0.0, 5.0, 7.0};
   // By an entry of the stiff row, of the oscillator, and by one that is zero.
   for (const auto& [row, column, size] :
        {std::tuple<std::size_t, std::size_t, double>{6, 6, 1e5}, {1, 0, 3e4}, {2, 6, 1.0}}) {

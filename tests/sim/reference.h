@@ -1,10 +1,10 @@
 // An independent simulator of the paper's axis, to judge the one under test by.
 //
 // It shares no code with sim/: equations (1) to (6) as printed, F_s = 0, and the classical
-// Runge-Kutta method with a fixed tiny step. No event is located: a step whose ends lie on different
-// branches of (2), (3) or (5) is merely taken again in many smaller ones. Where the gear force jumps,
-// by b_g times the closing speed, the error is of the order of such a small step times the jump, and
-// a comparison has to show that it falls with their number.
+// Runge-Kutta method with a fixed tiny step. No event is located: a step whose ends lie on
+// different branches of (2), (3) or (5) is merely taken again in many smaller ones. Where the gear
+// force jumps, by b_g times the closing speed, the error is of the order of such a small step times
+// the jump, and a comparison has to show that it falls with their number.
 #pragma once
 
 #include <algorithm>

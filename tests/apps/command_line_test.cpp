@@ -1,0 +1,343 @@
+// The programs as their users run them.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <matio.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/table.h"
+#include "tests/apps/files.h"
+#include "tests/apps/fit_job.h"
+
+extern char** environ;
+
+namespace axisfit {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Names = std::set<std::string>;
+
+const std::string kXAxis = AXISFIT_CONFIGS "/axes/x.yaml";
+
+struct Outcome {
+  int exit_code = -1;
+  std::string out, err;
+};
+
+class CommandLineTest : public ::testing::Test {
+ protected:
+  CommandLineTest() { write_recordings(folder_); }
+
+  /// Runs a program with its standard output going to a file; returns its exit code.
+  int spawn(const std::string& program, std::vector<std::string> arguments,
+            const std::string& out) {
+    arguments.insert(arguments.begin(), std::string(AXISFIT_BIN) + "/" + program);
+    std::vector<char*> argv;
+    for (std::string& a : arguments) argv.push_back(a.data());
+    argv.push_back(nullptr);
+    const std::string err = outputs_.path("err");
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    constexpr int kNew = O_WRONLY | O_CREAT | O_TRUNC;
+    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), kNew, 0600);
+    posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), kNew, 0600);
+    pid_t child = 0;
+    const int failed = posix_spawn(&child, argv[0], &actions, nullptr, argv.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (failed != 0) throw std::runtime_error("cannot run " + arguments.front());
+    int status = 0;
+    if (waitpid(child, &status, 0) != child) throw std::runtime_error("lost " + program);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  Outcome run(const std::string& program, std::vector<std::string> arguments) {
+    const int exit_code = spawn(program, std::move(arguments), outputs_.path("out"));
+    return {exit_code, outputs_.read("out"), outputs_.read("err")};
+  }
+  Outcome fit(std::vector<std::string> arguments) {
+    return run("fit-params", std::move(arguments));
+  }
+  Outcome simulate(std::vector<std::string> arguments) {
+    return run("simulate-axis", std::move(arguments));
+  }
+
+  std::string job(const std::string& text = fit_job()) { return folder_.write("job.yaml", text); }
+  std::string motion() {
+    return folder_.write("motion.yaml", "type: step\nlevel: 5 V\nduration: 0.1 s\n");
+  }
+  Table recorded(const std::string& contents) {
+    return read_csv(outputs_.write("recorded.csv", contents));
+  }
+
+  TempFolder folder_, outputs_;
+};
+
+// fit-params
+
+TEST_F(CommandLineTest, HelpHasExamples) {
+  for (const char* program : {"fit-params", "simulate-axis"}) {
+    const Outcome help = run(program, {"--help"});
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_NE(help.out.find("Examples:\n  " + std::string(program) + " "), std::string::npos);
+    EXPECT_NE(help.out.find("Exit codes: 0 "), std::string::npos);
+    EXPECT_EQ(help.err, "");
+    const Outcome version = run(program, {"--version"});
+    EXPECT_EQ(version.exit_code, 0);
+    EXPECT_TRUE(version.out.starts_with("axisfit "));
+  }
+}
+
+TEST_F(CommandLineTest, WrongArgumentsAreBadInput) {
+  const std::string good = job();
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{},
+                                             {"--bogus", good},
+                                             {good, good},
+                                             {good, "--threads", "0"},
+                                             {good, "--starts", "many"},
+                                             {good, "--seed", "-1"},
+                                             {good, "--output"},
+                                             {folder_.path("none.yaml")},
+                                             {folder_.path()}}) {
+    const Outcome outcome = fit(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err, "");
+  }
+}
+
+TEST_F(CommandLineTest, AUsableFitIsReported) {
+  const Outcome outcome = fit({job()});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err, "");  // no progress where nobody looks
+  EXPECT_TRUE(outcome.out.starts_with("Recordings\n"));
+  EXPECT_NE(outcome.out.find("\nUsable fit"), std::string::npos);
+  EXPECT_EQ(outcome.out.find('\r'), std::string::npos);
+  EXPECT_EQ(outcome.out.find('\033'), std::string::npos);
+  EXPECT_EQ(folder_.names(), (Names{"job.yaml", "judge.csv", "short.csv"}));
+}
+
+TEST_F(CommandLineTest, QuietPrintsNothing) {
+  const Outcome outcome = fit({job(), "--quiet"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST_F(CommandLineTest, JsonIsOneDocumentAndNothingElse) {
+  const Outcome outcome = fit({job(), "--json"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err, "");
+  const Json json = Json::parse(outcome.out);  // throws if anything follows
+  EXPECT_EQ(json.at("status"), "converged");
+  EXPECT_GT(json.at("wall_time_s"), 0.0);
+}
+
+TEST_F(CommandLineTest, NoUsableFitHasItsOwnExitCode) {
+  const std::string poor = job(fit_job("{max_iterations: 1, coupling: none}"));
+  const Outcome outcome = fit({poor, "--output", folder_.path("results")});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.out.find("No usable fit"), std::string::npos);
+  // What was found is there to look at.
+  EXPECT_EQ(Json::parse(folder_.read("results/result.json")).at("usable"), false);
+}
+
+TEST_F(CommandLineTest, ABadJobWritesNothing) {
+  const std::string bad =
+      job(replaced(replaced(fit_job(), "B_a:", "B_b:"), "unit: A,", "unit: kg,"));
+  const Outcome outcome = fit({bad, "--output", folder_.path("results"), "--json"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(folder_.without_path(outcome.err),
+            "job.yaml:8:54: 'kg' does not fit a quantity in 'A'; write for example 'A'\n"
+            "job.yaml:16:3: there is no quantity 'B_b'; did you mean 'B_m'?\n");
+  EXPECT_EQ(folder_.names(), (Names{"job.yaml", "judge.csv", "short.csv"}));
+}
+
+TEST_F(CommandLineTest, OutputThatCannotBeWrittenIsAnError) {
+  const Outcome outcome = fit({job(), "--output", folder_.path("job.yaml/results")});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(folder_.without_path(outcome.err),
+            "results not written to job.yaml/results: Not a directory\n");
+  EXPECT_EQ(folder_.names(), (Names{"job.yaml", "judge.csv", "short.csv"}));
+}
+
+TEST_F(CommandLineTest, ResultsServeBothPrograms) {
+  const std::string results = folder_.path("results");
+  const Outcome first = fit({job(), "--output", results, "--json"});
+  ASSERT_EQ(first.exit_code, 0);
+  EXPECT_EQ(folder_.names("results"), (Names{"fitted.yaml", "residuals.csv", "result.json"}));
+  EXPECT_EQ(folder_.read("results/result.json"), first.out);
+  EXPECT_TRUE(folder_.read("results/residuals.csv").starts_with("recording,time_s,velocity_"));
+  const Json found = Json::parse(first.out);
+
+  // The axis that was found moves ...
+  const Outcome moved = simulate({results + "/fitted.yaml", motion()});
+  EXPECT_EQ(moved.exit_code, 0);
+  EXPECT_EQ(moved.err, "");
+  EXPECT_EQ(recorded(moved.out).rows(), 101u);
+
+  // ... and a fit that starts from it stays there.
+  std::string again = fit_job("{}", "results/fitted.yaml");
+  again = replaced(replaced(again, "{initial: 100 N s/m}", "{}"), "{initial: 4 V}", "{}");
+  const Outcome second = fit({job(again), "--json"});
+  ASSERT_EQ(second.exit_code, 0);
+  const Json same = Json::parse(second.out);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Json &a = found.at("parameters")[i], &b = same.at("parameters")[i];
+    EXPECT_EQ(a.at("value"), b.at("initial"));  // to the last digit
+    EXPECT_NEAR(a.at("value"), b.at("value"), 0.01 * a.at("standard_error").get<double>());
+  }
+}
+
+TEST_F(CommandLineTest, ResultsDoNotDependOnTheNumberOfThreads) {
+  const auto result = [&](const std::string& threads, const std::string& seed,
+                          const std::string& starts = "4") {
+    const Outcome outcome =
+        fit({job(), "--json", "--starts", starts, "--seed", seed, "--threads", threads});
+    EXPECT_EQ(outcome.exit_code, 0);
+    Json json = Json::parse(outcome.out);
+    json.erase("wall_time_s");
+    return json;
+  };
+  const Json one = result("1", "3");
+  EXPECT_EQ(one.at("starts").size(), 4u);
+  EXPECT_EQ(one.at("seed"), 3);
+  EXPECT_EQ(one.dump(), result("2", "3").dump());
+  const Json other = result("2", "4", "2");
+  EXPECT_EQ(other.at("starts")[0].at("from"), one.at("starts")[0].at("from"));
+  EXPECT_NE(other.at("starts")[1].at("from"), one.at("starts")[1].at("from"));
+}
+
+TEST_F(CommandLineTest, MatRecordingsFitLikeCsvOnes) {
+  const Table table = read_csv(folder_.path("short.csv"));
+  mat_t* mat = Mat_CreateVer(folder_.path("short.mat").c_str(), nullptr, MAT_FT_MAT5);
+  ASSERT_NE(mat, nullptr);
+  for (const Column& c : table.columns) {
+    std::vector<double> values = c.values;
+    std::array<std::size_t, 2> size{1, values.size()};
+    matvar_t* variable =
+        Mat_VarCreate(c.name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size.data(), values.data(), 0);
+    EXPECT_EQ(Mat_VarWrite(mat, variable, MAT_COMPRESSION_ZLIB), 0);
+    Mat_VarFree(variable);
+  }
+  Mat_Close(mat);
+  const Json csv = Json::parse(fit({job(), "--json"}).out);
+  const Outcome outcome =
+      fit({folder_.write("mat.yaml", replaced(fit_job(), "short.csv", "short.mat")), "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(Json::parse(outcome.out).at("parameters"), csv.at("parameters"));
+}
+
+TEST_F(CommandLineTest, RecordingsMayBeInAnotherFolder) {
+  const TempFolder elsewhere;
+  const std::string path = elsewhere.write("job.yaml", fit_job());
+  EXPECT_EQ(fit({path, "--quiet"}).exit_code, 2);
+  EXPECT_EQ(fit({path, "--quiet", "--data", folder_.path()}).exit_code, 0);
+}
+
+TEST_F(CommandLineTest, AFullDeviceIsAnError) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "There is no /dev/full here.";
+  EXPECT_EQ(spawn("simulate-axis", {kXAxis, motion()}, "/dev/full"), 2);
+  EXPECT_EQ(spawn("fit-params", {job()}, "/dev/full"), 2);
+}
+
+// simulate-axis
+
+TEST_F(CommandLineTest, TheSeedDecidesTheNoise) {
+  const std::string one = simulate({kXAxis, motion(), "--seed", "1"}).out;
+  EXPECT_EQ(one, simulate({kXAxis, motion()}).out);
+  EXPECT_NE(one, simulate({kXAxis, motion(), "--seed", "2"}).out);
+  EXPECT_TRUE(one.starts_with(
+      "time_s,command_v,position_m,velocity_mps,acceleration_mps2,tachometer_v,motor_current_a\n"));
+  // The noise of a signal does not depend on what else is recorded.
+  const std::string alone = simulate({kXAxis, motion(), "--signals", "velocity"}).out;
+  EXPECT_EQ(recorded(alone).find("velocity_mps")->values,
+            recorded(one).find("velocity_mps")->values);
+}
+
+TEST_F(CommandLineTest, OutputGoesToAFile) {
+  const std::string printed = simulate({kXAxis, motion()}).out;
+  const Outcome outcome = simulate({kXAxis, motion(), "-o", folder_.path("step.csv")});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.out + outcome.err, "");
+  EXPECT_EQ(folder_.read("step.csv"), printed);
+  const Outcome failed = simulate({kXAxis, motion(), "-o", folder_.path("none/step.csv")});
+  EXPECT_EQ(failed.exit_code, 2);
+  EXPECT_EQ(folder_.without_path(failed.err),
+            "none/step.csv not written: No such file or directory\n");
+}
+
+TEST_F(CommandLineTest, SetChangesQuantities) {
+  const std::string plain = simulate({kXAxis, motion(), "--exact"}).out;
+  EXPECT_EQ(plain, simulate({kXAxis, motion(), "--exact", "--set", "M=146000 g"}).out);
+  const Outcome heavy =
+      simulate({kXAxis, motion(), "--exact", "--set", "M=200 kg", "--set", "velocity.bias=1 m/s"});
+  EXPECT_EQ(heavy.exit_code, 0);
+  EXPECT_EQ(recorded(heavy.out).find("velocity_mps")->values.front(), 1.0);
+  EXPECT_LT(recorded(heavy.out).find("velocity_mps")->values.back() - 1.0,
+            recorded(plain).find("velocity_mps")->values.back());
+
+  for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
+           {"M=161", "--set:1:4: M needs a unit, for example '161 kg'\n"},
+           {"M=0 kg", "--set:1:4: M must lie between 0.001 kg and 1e+05 kg, not 0 kg\n"},
+           {"m=161 kg", "--set:1:1: unknown key 'm'; did you mean 'M'?\n"},
+           {"M", "--set 'M': write NAME=VALUE, for example --set 'M=161 kg'\n"},
+           {"J_m=0 kg m^2",
+            "J_m must be above zero where the gear has backlash: between the teeth nothing but J_m "
+            "carries the motor torque\n"}}) {
+    const Outcome outcome = simulate({kXAxis, motion(), "--set", text});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err, message);
+  }
+}
+
+TEST_F(CommandLineTest, SignalsAreRecordedInTheOrderGiven) {
+  const Outcome outcome =
+      simulate({kXAxis, motion(), "--signals", "V_c", "position", "--rate", "50"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(outcome.out.starts_with("time_s,command_v,V_c_v,position_m\n0,5,"));
+  EXPECT_EQ(recorded(outcome.out).rows(), 6u);
+  EXPECT_EQ(simulate({kXAxis, motion(), "--signals", "speed"}).exit_code, 2);
+  const Outcome twice = simulate({kXAxis, motion(), "--signals", "position", "position"});
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_EQ(twice.err, "--signals: position is named twice\n");
+}
+
+TEST_F(CommandLineTest, ExactHasNoNoiseAndAllDigits) {
+  const std::string exact = simulate({kXAxis, motion(), "--exact", "--seed", "1"}).out;
+  EXPECT_EQ(exact, simulate({kXAxis, motion(), "--exact", "--seed", "2"}).out);
+  const Table table = recorded(exact);
+  EXPECT_EQ(table.find("velocity_mps")->values.front(), 0.0);
+  EXPECT_EQ(table.find("motor_current_a")->values.front(), 0.0);
+  // Speeds up smoothly: what noise would never do.
+  const std::vector<double>& velocity = table.find("velocity_mps")->values;
+  for (std::size_t i = 20; i < velocity.size(); ++i) EXPECT_GT(velocity[i], velocity[i - 1]);
+  EXPECT_GT(exact.size(), simulate({kXAxis, motion()}).out.size());
+}
+
+TEST_F(CommandLineTest, FilesInTheWrongPlaceAreBadInput) {
+  const Outcome outcome = simulate({motion(), kXAxis});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_TRUE(folder_.without_path(outcome.err)
+                  .starts_with("motion.yaml:1:1: key 'drive' is missing in the file\n"));
+  const Outcome both = simulate({kXAxis, folder_.write("fast.yaml", "type: step\nlevel: 50 V\n")});
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_EQ(folder_.without_path(both.err),
+            "fast.yaml:1:1: key 'duration' is missing in the file\n"
+            "fast.yaml:2:8: level must lie between -10 V and 10 V, not 50 V\n");
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,59 @@
+// The EMPS benchmark, a real axis: the fit finds what others have found.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "apps/job_file.h"
+#include "fit/estimate.h"
+
+namespace axisfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Recordings are not part of the project; see configs/jobs/emps.yaml for where to get them.
+std::string folder_of_recordings() {
+  if (const char* given = std::getenv("AXISFIT_EMPS"); given != nullptr && *given != '\0')
+    return given;
+  return (fs::path(AXISFIT_CONFIGS) / "../../shared/data/emps").lexically_normal().string();
+}
+
+// A. Janot, M. Gautier and M. Brunot, "Data Set and Reference Models of EMPS", 2019: least squares
+// estimates. Their offset is on the side of the friction, F_0 on that of the force.
+TEST(EmpsTest, FitAgreesWithThePublishedEstimates) {
+  const std::string folder = folder_of_recordings();
+  if (!fs::exists(fs::path(folder) / "DATA_EMPS.mat") ||
+      !fs::exists(fs::path(folder) / "DATA_EMPS_PULSES.mat"))
+    GTEST_SKIP()
+        << "There are no EMPS recordings in " << folder
+        << ". To run this test, name their folder in the environment variable AXISFIT_EMPS.";
+
+  const JobFile file = read_job_file(AXISFIT_CONFIGS "/jobs/emps.yaml", folder);
+  const FitResult result = estimate(file.job);
+  EXPECT_EQ(result.status, Status::converged);
+  EXPECT_TRUE(result.usable) << result.verdict;
+
+  std::map<std::string, double> value;
+  for (const ParameterResult& p : result.parameters) {
+    value[p.name] = p.value;
+    EXPECT_TRUE(p.uncertainty.determined) << p.name;
+  }
+  ASSERT_EQ(value.size(), 4u);
+  EXPECT_NEAR(value.at("M"), 95.1089, 0.03 * 95.1089);
+  EXPECT_NEAR(value.at("B_a"), 203.5034, 0.03 * 203.5034);
+  EXPECT_NEAR(value.at("coulomb_friction.F_c"), 20.3935, 0.03 * 20.3935);
+  EXPECT_NEAR(value.at("constant_force.F_0"), 3.1648, 0.10 * 3.1648);
+
+  // The free-running simulation of both recordings stays within a few per cent of the stroke.
+  for (const RecordingResult& recording : result.recordings) {
+    ASSERT_TRUE(recording.prediction.finished);
+    ASSERT_EQ(recording.signals.size(), 1u);
+    EXPECT_LT(recording.signals.front().nrmse_percent, 5.0);
+  }
+}
+
+}  // namespace
+}  // namespace axisfit

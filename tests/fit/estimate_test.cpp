@@ -1,0 +1,134 @@
+#include "fit/estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/fit/example.h"
+
+namespace axisfit {
+namespace {
+
+/// Poor guesses of two parameters that only the ringing and the rise show.
+Job example_job() {
+  Job job;
+  job.model = x_axis();
+  job.recordings = {recorded_step(job.model, 2e-3, 0.05)};
+  job.free = {free_parameter("V_L", 8.0), free_parameter("k_g", 1.5e6)};
+  return job;
+}
+
+TEST(Estimate, FindsTheTruthFromAPoorStart) {
+  const FitResult result = estimate(example_job());
+  ASSERT_TRUE(result.usable) << result.verdict;
+  EXPECT_EQ(result.status, Status::converged);
+  EXPECT_LT(result.reduced_chi_square, 1.1);
+  EXPECT_EQ(result.coupling_rate, 0.0);
+  const double truth[] = {2.7, 5e6};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const ParameterUncertainty& u = result.parameters[i].uncertainty;
+    ASSERT_TRUE(u.determined);
+    EXPECT_LT(std::abs(result.parameters[i].value - truth[i]), 4.0 * u.standard_error);
+    EXPECT_LT(u.standard_error, 0.01 * truth[i]);
+  }
+}
+
+// Without the coupling the ringing leaves the fit in a local minimum: what continuation is for.
+TEST(Estimate, NeedsTheContinuation) {
+  Job job = example_job();
+  job.options.coupling = CouplingMode::none;
+  EXPECT_GT(estimate(job).reduced_chi_square, 2.0);
+}
+
+TEST(Estimate, IsTheSameForAnyNumberOfThreads) {
+  Job job = example_job();
+  job.options.starts = 3;
+  job.options.threads = 1;
+  const FitResult one = estimate(job);
+  job.options.threads = 3;
+  const FitResult three = estimate(job);
+  ASSERT_EQ(one.starts.size(), 3u);
+  for (std::size_t i = 0; i < one.parameters.size(); ++i)
+    EXPECT_EQ(one.parameters[i].value, three.parameters[i].value);
+  for (std::size_t s = 0; s < one.starts.size(); ++s) {
+    EXPECT_EQ(one.starts[s].from, three.starts[s].from);
+    EXPECT_EQ(one.starts[s].to, three.starts[s].to);
+  }
+}
+
+TEST(Estimate, StartsLieWithinTheSpreadAndDifferBySeed) {
+  Job job = example_job();
+  EXPECT_EQ(draw_start(job, 0), (std::vector<double>{8.0, 1.5e6}));
+  for (int start = 1; start < 50; ++start) {
+    const std::vector<double> from = draw_start(job, start);
+    EXPECT_LE(std::abs(std::log(from[0] / 8.0)), std::log(5.0) + 1e-12);
+    EXPECT_NE(from, draw_start(job, start + 1));
+  }
+  const std::vector<double> first = draw_start(job, 1);
+  EXPECT_EQ(draw_start(job, 1), first);
+  job.options.seed = 2;
+  EXPECT_NE(draw_start(job, 1), first);
+}
+
+TEST(Estimate, TakesAPriorForKnowledge) {
+  Job job = example_job();
+  // R hardly shows in a current-controlled axis: the prior decides.
+  job.free.push_back(free_parameter("R", 1.0));
+  job.free.back().prior = Prior{0.56, 0.001};
+  const FitResult result = estimate(job);
+  ASSERT_TRUE(result.usable);
+  EXPECT_NEAR(result.parameters[2].value, 0.56, 0.004);
+  EXPECT_LE(result.parameters[2].uncertainty.standard_error, 0.00101);
+}
+
+TEST(Estimate, SharesParametersAndKeepsOthersPerRecording) {
+  Job job = example_job();
+  Model<double> loaded = job.model;
+  loaded.axis.M = 161.0;
+  Recording second = recorded_step(loaded, 2e-3, 0.05, 2);
+  second.name = "loaded";
+  job.recordings.push_back(second);
+  job.free[1] = free_parameter("M", 130.0);
+  job.free[1].recording = 0;
+  job.free.push_back(job.free[1]);
+  job.free[2].recording = 1;
+  const FitResult result = estimate(job);
+  ASSERT_TRUE(result.usable) << result.verdict;
+  EXPECT_EQ(result.parameters[1].name, "M@step");
+  EXPECT_EQ(result.parameters[2].name, "M@loaded");
+  EXPECT_NEAR(result.parameters[1].value, 146.0, 4.0 * result.parameters[1].uncertainty.standard_error);
+  EXPECT_NEAR(result.parameters[2].value, 161.0, 4.0 * result.parameters[2].uncertainty.standard_error);
+}
+
+TEST(Estimate, JudgesValidationRecordingsThatItDidNotFit) {
+  Job job = example_job();
+  Recording held_out = recorded_step(job.model, 2e-3, 0.05, 5);
+  held_out.name = "held out";
+  held_out.role = Role::validate;
+  job.recordings.push_back(held_out);
+  const FitResult with = estimate(job);
+  job.recordings.pop_back();
+  const FitResult without = estimate(job);
+  EXPECT_EQ(with.parameters[0].value, without.parameters[0].value);
+  ASSERT_EQ(with.recordings.size(), 2u);
+  EXPECT_FALSE(with.recordings[1].signals[0].fitted);
+  EXPECT_NEAR(with.recordings[1].signals[0].reduced_chi_square, 1.0, 0.25);
+}
+
+TEST(Estimate, RefusesAModelThatCannotBeSimulated) {
+  Job job = example_job();
+  job.recordings[0].overrides.emplace_back(find_quantity("J_m")->index, std::nan(""));
+  const FitResult result = estimate(job);
+  EXPECT_FALSE(result.usable);
+  EXPECT_EQ(result.status, Status::failed);
+}
+
+TEST(Estimate, RefusesAFitThatIsNoBetterThanAConstant) {
+  Job job = example_job();
+  for (double& v : job.recordings[0].measurements[0].values) v = -v;  // a wrong sign
+  const FitResult result = estimate(job);
+  EXPECT_FALSE(result.usable) << result.verdict;
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,128 @@
+#include "fit/residual.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/fit/example.h"
+
+namespace axisfit {
+namespace {
+
+struct Evaluated {
+  std::vector<double> residuals, jacobian;
+  bool finite;
+};
+
+Evaluated evaluate(const RecordingCost& cost, const Eigen::VectorXd& u) {
+  Evaluated e;
+  e.residuals.resize(static_cast<std::size_t>(cost.num_residuals()));
+  e.jacobian.resize(e.residuals.size() * static_cast<std::size_t>(u.size()));
+  const double* parameters = u.data();
+  double* jacobian = e.jacobian.data();
+  e.finite = cost.Evaluate(&parameters, e.residuals.data(), &jacobian);
+  return e;
+}
+
+Job example_job() {
+  Job job;
+  job.model = x_axis();
+  job.recordings = {recorded_step(job.model, 2e-3, 0.05)};
+  job.free = {free_parameter("V_L", 2.7), free_parameter("B_a", 200.0),
+              free_parameter("b_g", 1500.0), free_parameter("k_g", 5e6),
+              free_parameter("T_p", 0.04)};
+  return job;
+}
+
+TEST(RecordingCost, IsWhiteNoiseAtTheTruth) {
+  const Job job = example_job();
+  const ParameterSpace space(job);
+  const RecordingCost cost(job, space, 0, {});
+  const Evaluated e = evaluate(cost, space.internal({{2.7, 200.0, 1500.0, 5e6, 0.04}}));
+  ASSERT_TRUE(e.finite);
+  double sum = 0.0;
+  for (const double r : e.residuals) sum += r * r;
+  // 1402 squares of unit normals: mean 1, standard deviation sqrt(2 / 1402) = 0.038
+  EXPECT_NEAR(sum / static_cast<double>(e.residuals.size()), 1.0, 0.15);
+}
+
+// Every width of dual number gives the same columns, and they are those of differences.
+TEST(RecordingCost, JacobianIsThatOfDifferencesForAnyNumberOfParameters) {
+  const char* const names[] = {"V_L", "B_a",  "b_g", "k_g", "T_p", "M",   "J_m", "B_m", "K_t",
+                               "r_g", "T_z",  "T_r", "K_1", "K_2", "K_i", "V_s", "K_v", "R",
+                               "L",   "K_e",  "K_m", "H",   "velocity.gain", "acceleration.gain",
+                               "velocity.bias", "acceleration.bias", "initial.y1"};
+  Job job = example_job();
+  job.free.clear();
+  const std::vector<double*> member = members(job.model);
+  for (const char* name : names) {
+    const double value = *member[find_quantity(name)->index];
+    FreeParameter p = free_parameter(name, value == 0.0 ? 0.01 : value);
+    if (value == 0.0) {
+      p.initial = 0.0;
+      p.lower = -1.0;
+      p.upper = 1.0;
+      p.logarithmic = false;
+    }
+    job.free.push_back(p);
+    const ParameterSpace space(job);
+    std::vector<double> start;
+    for (const FreeParameter& f : job.free) start.push_back(f.initial);
+    const Eigen::VectorXd u = space.internal(start);
+    const RecordingCost cost(job, space, 0, Coupling::to_velocity(100.0, false));
+    const Evaluated e = evaluate(cost, u);
+    ASSERT_TRUE(e.finite);
+    const std::size_t columns = job.free.size(), last = columns - 1;
+    const double step = 1e-6;
+    Eigen::VectorXd above = u, below = u;
+    above[static_cast<Eigen::Index>(last)] += step;
+    below[static_cast<Eigen::Index>(last)] -= step;
+    const Evaluated a = evaluate(cost, above), b = evaluate(cost, below);
+    double error = 0.0, size = 0.0;
+    // Velocity only: the acceleration jumps with the contact, where differences mean nothing.
+    for (std::size_t i = 0; i < e.residuals.size() / 2; ++i) {
+      const double difference = (a.residuals[i] - b.residuals[i]) / (2.0 * step);
+      error += std::pow(e.jacobian[i * columns + last] - difference, 2);
+      size += std::pow(difference, 2);
+    }
+    EXPECT_LE(std::sqrt(error), 2e-4 * std::sqrt(size) + 1e-6) << name;
+  }
+}
+
+TEST(RecordingCost, RejectsWhatCannotBeSimulated) {
+  Job job = example_job();
+  job.free[4].upper = 1e300;
+  const ParameterSpace space(job);
+  const RecordingCost cost(job, space, 0, {});
+  Eigen::VectorXd u = space.internal({{2.7, 200.0, 1500.0, 5e6, 0.04}});
+  u[2] = std::nan("");
+  EXPECT_FALSE(evaluate(cost, u).finite);
+}
+
+TEST(RecordingCost, HuberCountsOutliersLinearly) {
+  Job job = example_job();
+  const ParameterSpace space(job);
+  const Eigen::VectorXd u = space.internal({{2.7, 200.0, 1500.0, 5e6, 0.04}});
+  job.recordings[0].measurements[0].values[300] += 100.0 * 2e-3;  // 100 sigma
+  const RecordingCost squares(job, space, 0, {});
+  const double plain = evaluate(squares, u).residuals[300];
+  job.options.loss = Loss::huber;
+  job.options.huber_width = 3.0;
+  const double robust = evaluate(squares, u).residuals[300];
+  EXPECT_GT(plain, 90.0);
+  EXPECT_NEAR(robust * robust, 2.0 * 3.0 * plain - 9.0, 1e-9);
+}
+
+TEST(CouplingFor, TakesVelocityThenPosition) {
+  Recording recording;
+  EXPECT_FALSE(coupling_for(recording, 100.0).active());
+  recording.measurements.push_back({Signal::position, {}, 1.0, true, true});
+  EXPECT_EQ(coupling_for(recording, 100.0).acceleration, 1e4);
+  recording.measurements.push_back({Signal::velocity, {}, 1.0, true, true});
+  EXPECT_EQ(coupling_for(recording, 100.0).velocity, 100.0);
+  EXPECT_EQ(coupling_for(recording, 100.0).position, 100.0);
+  EXPECT_FALSE(coupling_for(recording, 0.0).active());
+}
+
+}  // namespace
+}  // namespace axisfit
