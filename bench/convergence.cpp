@@ -39,7 +39,6 @@ int main(int argc, char** argv) {
     const std::clock_t begin = std::clock();  // of this process: other loads do not count
     const FitResult result = estimate(one);
     seconds.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
-    if (std::getenv("VERBOSE")) { fmt::print("{} {:.2f} s chi {:.4f} it {}:", start, seconds.back(), result.reduced_chi_square, result.iterations); for (auto& s : result.stages) fmt::print(" [{:.3g}: {:.3g} {}{}]", s.coupling_rate, s.reduced_cost, s.iterations, s.accepted ? "" : "x"); fmt::print("\n"); std::fflush(stdout);}
     if (result.usable && result.reduced_chi_square < 1.1) {
       ++reached;
       for (std::size_t i = 0; i < truth.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "fit/residual.h"
 
@@ -22,6 +23,18 @@ bool can_be_coupled(const Job& job) {
   });
 }
 
+/// A start within a factor of three of another, by a fixed sequence: fits are repeatable.
+Eigen::VectorXd moved(const ParameterSpace& space, Eigen::VectorXd u, int attempt) {
+  std::mt19937_64 generator(static_cast<std::uint64_t>(attempt));
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    const double z = std::ldexp(static_cast<double>(generator() >> 11), -52) - 1.0;
+    double& x = u[static_cast<Eigen::Index>(i)];
+    x = std::clamp(x + z * std::log(3.0), space.internal(i, space[i].lower),
+                   space.internal(i, space[i].upper));
+  }
+  return u;
+}
+
 /// The stages of one continuation, from `rate` down to a free-running simulation.
 class Continuation {
  public:
@@ -30,13 +43,16 @@ class Continuation {
       : job_(job), space_(space), progress_(progress) {}
 
   /// Solves at one rate; `final` with the full accuracy.
-  SolveResult solve_stage(const Eigen::VectorXd& u, double rate, bool final) {
+  SolveResult solve_stage(const Eigen::VectorXd& start, double rate, bool final) {
     SolveOptions options;
-    options.max_iterations =
-        final ? job_.options.max_iterations : std::min(job_.options.max_iterations, 20);
-    options.function_tolerance = final ? 1e-10 : 1e-4;
-    options.keep_to_start = !final;
-    SolveResult solved = solve(job_, space_, u, rate, options);
+    options.max_iterations = job_.options.max_iterations;
+    options.function_tolerance = 1e-10;
+    if (!final) {
+      options.max_iterations = std::min(options.max_iterations, 12);
+      options.function_tolerance = 1e-4;
+      options.keep_to_start = true;
+    }
+    SolveResult solved = solve(job_, space_, start, rate, options);
     iterations_ += solved.iterations;
     stages_.push_back({rate, solved.reduced_cost, solved.iterations, true});
     return solved;
@@ -110,13 +126,15 @@ ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
     result.last = continuation.solve_stage(start, rate, true);
     continuation.report();
   } else {
-    // A firm hold feeds the noise of the measurement into the simulation, which can bias what the
-    // data hardly show beyond return: where the end does not explain the data, begin less firmly.
-    constexpr int kAttempts = 3;
+    // Where the end does not explain the data, begin anew. Less firmly: a firm hold feeds the noise
+    // of the measurement into the simulation, which can bias what the data hardly show beyond
+    // return. And from elsewhere: even held firmly, a controller that saturates has local minima.
+    constexpr int kAttempts = 4;
     constexpr double kExplained = 1.1;
-    double rate = first_coupling_rate(job);
-    for (int attempt = 0; attempt < kAttempts; ++attempt, rate /= 5.0) {
-      SolveResult solved = continuation.run(start, rate);
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      const double rate = first_coupling_rate(job) / (attempt == 1 ? 5.0 : 1.0);
+      const Eigen::VectorXd from = attempt < 2 ? start : moved(space, start, attempt);
+      SolveResult solved = continuation.run(from, rate);
       const bool better = attempt == 0 || (solved.usable && (!result.last.usable ||
                                                              solved.cost < result.last.cost));
       if (better) result.last = std::move(solved);

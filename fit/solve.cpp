@@ -1,5 +1,6 @@
 #include "fit/solve.h"
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -90,9 +91,9 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
     const int index = static_cast<int>(i);
     const double lower = space.internal(i, space[i].lower);
     const double upper = space.internal(i, space[i].upper);
+    u[i] = std::clamp(u[i], lower, upper);  // exp and log may round a start off its bound
     problem.SetParameterLowerBound(u, index, lower);
     problem.SetParameterUpperBound(u, index, upper);
-    u[i] = std::clamp(u[i], lower, upper);  // exp and log may round a start off its bound
   }
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
@@ -105,7 +106,8 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
   ceres::Solve(solver, &problem, &summary);
   result.usable = summary.IsSolutionUsable();
   result.converged = summary.termination_type == ceres::CONVERGENCE;
-  result.cost = summary.final_cost;
+  // The solver reports a negative cost where even the start could not be evaluated.
+  result.cost = result.usable ? summary.final_cost : std::numeric_limits<double>::infinity();
   result.reduced_cost = 2.0 * result.cost / problem.NumResiduals();
   result.coupling_rate = coupling_rate;
   result.iterations = static_cast<int>(summary.iterations.size());

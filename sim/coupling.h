@@ -29,9 +29,11 @@ struct Coupling {
 };
 
 /// What the simulation is held to, at one instant: measured arm velocity m/s and encoder position m.
-struct Target {
-  double velocity = 0.0;
-  double position = 0.0;
+template <class T>
+struct TargetOf {
+  T velocity{0.0};
+  T position{0.0};
 };
+using Target = TargetOf<double>;
 
 }  // namespace axisfit

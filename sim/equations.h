@@ -17,7 +17,7 @@ namespace axisfit {
 template <class T>
 struct Input {
   T command{0.0};  ///< U, V
-  Target target;
+  TargetOf<T> target;
 };
 
 /// Which terms of the right-hand side to include.
@@ -29,18 +29,20 @@ enum class Terms {
 template <class T>
 class Equations {
  public:
-  explicit Equations(const Model<T>& model, const Coupling& coupling = {})
+  explicit Equations(const Model<T>& model, const Coupling& coupling = {},
+                     bool static_friction = false)
       : m_(model),
         coupling_(coupling),
         backlash_(model.structure.transmission == Transmission::backlash),
         dry_level_(slots::friction_level(model.effects, model.structure.effects)),
         constant_force_(slots::constant_force(model.effects, model.structure.effects)),
-        static_friction_(is_in_play(model.axis.F_s)),
+        static_friction_(static_friction || is_in_play(model.axis.F_s)),
         dry_friction_(static_friction_ || slots::have_friction(model.structure.effects)),
         smooth_forces_(slots::have_arm_force(model.structure.effects)) {}
 
   const Model<T>& model() const { return m_; }
   const Coupling& coupling() const { return coupling_; }
+  bool has_static_friction() const { return static_friction_; }
   bool has_dry_friction() const { return dry_friction_; }
   bool has_smooth_forces() const { return smooth_forces_; }
 
@@ -116,7 +118,7 @@ class Equations {
   }
 
   /// Force that the coupling adds to the arm, N: what the model lacks, or noise.
-  T coupling_force(const State<T>& y, const Target& target) const {
+  T coupling_force(const State<T>& y, const TargetOf<T>& target) const {
     return moving_mass() * coupling_acceleration(y, target);
   }
 
@@ -161,14 +163,15 @@ class Equations {
   }
 
   /// Change of rate() per second because the target moves: the terms in `slope` alone.
-  State<T> rate_of_target(const Mode& mode, const Target& slope) const {
+  State<T> rate_of_target(const Mode& mode, const Target& rate) const {
+    const TargetOf<T> slope{T(rate.velocity), T(rate.position)};
     const Model<T>& m = m_;
     State<T> d{};
     if (!coupling_.active()) return d;
     const State<T> origin{};
     // Linear in state and target: what the target alone contributes is the difference.
-    const T e = position_error(origin, slope) - position_error(origin, Target{});
-    const T a = coupling_acceleration(origin, slope) - coupling_acceleration(origin, Target{});
+    const T e = position_error(origin, slope) - position_error(origin, TargetOf<T>{});
+    const T a = coupling_acceleration(origin, slope) - coupling_acceleration(origin, TargetOf<T>{});
     d[0] = coupling_.position * e;
     if (mode.sliding != 0) d[1] = a;
     d[2] = coupling_.position * e / m.axis.r_g;
@@ -291,12 +294,12 @@ class Equations {
     return force;
   }
 
-  T position_error(const State<T>& y, const Target& target) const {
+  T position_error(const State<T>& y, const TargetOf<T>& target) const {
     const auto& [gain, bias] = m_.instruments[index_of(Signal::position)];
     return (target.position - bias) / gain - m_.axis.r_g * y[2];
   }
 
-  T coupling_acceleration(const State<T>& y, const Target& target) const {
+  T coupling_acceleration(const State<T>& y, const TargetOf<T>& target) const {
     const auto& [gain, bias] = m_.instruments[index_of(Signal::velocity)];
     T a(0.0);
     if (coupling_.velocity > 0.0) a += coupling_.velocity * ((target.velocity - bias) / gain - y[1]);

@@ -39,6 +39,8 @@ struct IntegratorOptions {
   bool event_derivatives = true;
   /// Events within one step length before the simulation is given up as chattering.
   int event_limit = 1000;
+  /// Events altogether before it is given up as too slow.
+  long event_budget = 100'000'000;
 };
 
 template <class T>
@@ -49,7 +51,7 @@ class Integrator {
         model_(model),
         plain_model_(convert<double>(model)),
         equations_(model_, coupling),
-        plain_(plain_model_, coupling) {}
+        plain_(plain_model_, coupling, equations_.has_static_friction()) {}
 
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
@@ -58,7 +60,7 @@ class Integrator {
   void start(double time, const T& command, const Target& target) {
     time_ = T(time);
     y_ = initial_state(model_);
-    input_ = {command, target};
+    input_ = {command, {T(target.velocity), T(target.position)}};
     plain_input_ = {value_of(command), target};
     slope_ = {};
     switch_mode(equations_.mode_at(y_, input_));
@@ -73,8 +75,10 @@ class Integrator {
 
   /// From now on the coupling's target is `target` and moves with the rate `slope` per second.
   void set_target(const Target& target, const Target& slope) {
-    input_.target = plain_input_.target = target;
+    input_.target = {T(target.velocity), T(target.position)};
+    plain_input_.target = target;
     slope_ = slope;
+    here_.reset();
     if (equations_.coupling().active()) {
       target_rate_ = equations_.rate_of_target(mode_, slope_);
       plain_target_rate_ = plain_.rate_of_target(mode_, slope_);
@@ -98,6 +102,8 @@ class Integrator {
   struct Flow {
     Propagator<T> exact;
     Propagator<double> plain;
+    double oscillation;  ///< rad/s, the fastest of the mode
+    int longest;         ///< level of the longest step that shows it
   };
 
   struct Hit {
@@ -137,7 +143,26 @@ class Integrator {
                                       view.target_rate, length);
   }
 
-  bool meets_guard(const State<double>& from, const State<double>& to, double length) const;
+  /// Values, rates and tolerances of all guards of the mode at one instant.
+  struct Look {
+    struct Node {
+      double value, rate, tolerance;
+    };
+    std::array<Node, 8> nodes;
+    std::size_t count = 0;
+  };
+  Look look(const View<double>& view, const State<double>& y) const {
+    Look seen;
+    visit_guards_and_rates(view, y, [&](Guard, double g, double rate, double scale) {
+      seen.nodes[seen.count++] = {g, rate, 1e-12 * scale};
+    });
+    return seen;
+  }
+  static bool met_between(const Look& start, const Look* middle, const Look& end, double length);
+  /// Tries a step of `length` on plain values, in pieces that are short enough to see every
+  /// oscillation; `level` is its place in the ladder, or past its end for a step by the series.
+  /// Returns whether a guard is met on the way, otherwise the end in `to` and the guards there.
+  bool meets_guard(const State<double>& from, int level, double length, State<double>& to);
   std::optional<Hit> locate(const State<double>& from, const State<double>& to,
                             double length) const;
   void move_time(double length);
@@ -180,12 +205,14 @@ class Integrator {
   State<double> plain_target_rate_{};
   const Flow* flow_ = nullptr;
   int level_ = 0;  // of the longest step now allowed; falls to 0 as steps grow after an event
+  std::optional<Look> here_;  // the guards at the present state, while they are known
   int events_ = 0;
 };
 
 template <class T>
 void Integrator<T>::switch_mode(const Mode& mode) {
   mode_ = mode;
+  here_.reset();
   flow_ = &flow_of(mode);
   level_ = flow_->exact.ladder().resolved;  // a switch may set off the fastest motions
   if (coupled()) {
@@ -215,9 +242,14 @@ const typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
     // nothing is stiff it has to be short.
     constexpr int kLeastHalvings = 12;
     const Ladder ladder = ladder_for(a, options_.step, kLeastHalvings);
+    // One radian to either side of the middle of a step, where guards are looked at too.
+    const double oscillation = fastest_oscillation(axisfit::value_of(a));
+    const double radians = oscillation * options_.step;
+    const int longest = std::clamp(
+        static_cast<int>(std::ceil(std::log2(std::max(1e-9, radians / 2.0)))), 0, ladder.last);
     flow = std::make_unique<Flow>(
         Flow{Propagator<T>(a, ladder, coupled()),
-             Propagator<double>(axisfit::value_of(a), ladder, coupled())});
+             Propagator<double>(axisfit::value_of(a), ladder, coupled()), oscillation, longest});
   }
   return *flow;
 }
@@ -254,33 +286,76 @@ State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, int level) 
 }
 
 template <class T>
-bool Integrator<T>::meets_guard(const State<double>& from, const State<double>& to,
-                                double length) const {
-  std::array<std::pair<double, double>, 8> before;
-  std::size_t n = 0;
-  visit_guards_and_rates(plain(), from, [&](Guard, double g, double rate, double) {
-    before[n++] = {g, rate};
-  });
-  bool met = false;
-  n = 0;
-  const View<double> view = plain();
-  Input<double> input_to = view.input;
-  input_to.target.velocity += slope_.velocity * length;
-  input_to.target.position += slope_.position * length;
-  const View<double> view_to{view.equations, view.propagator, input_to, view.target_rate};
-  visit_guards_and_rates(view_to, to, [&](Guard, double g1, double r1, double scale) {
-    const auto [g0, r0] = before[n++];
-    if (g1 < -1e-12 * scale) met = true;
-    if (met || !(r0 < 0.0 && r1 > 0.0) || g0 <= 0.0) return;
-    // The guard falls and rises again: the lowest point of the cubic through values and rates.
-    const double d = g1 - g0, b = 3.0 * d - (2.0 * r0 + r1) * length,
-                 a = (r0 + r1) * length - 2.0 * d, c = r0 * length;  // a s^3 + b s^2 + c s + g0
+bool Integrator<T>::met_between(const Look& start, const Look* middle, const Look& end,
+                                double length) {
+  using Node = typename Look::Node;
+  // Whether the cubic through values and rates dips below the margin between its ends.
+  const auto dips = [](const Node& p, const Node& q, double h, double margin) {
+    if (!(p.rate < 0.0 && q.rate > 0.0) || p.value <= 0.0) return false;
+    const double d = q.value - p.value, b = 3.0 * d - (2.0 * p.rate + q.rate) * h,
+                 a = (p.rate + q.rate) * h - 2.0 * d, c = p.rate * h;  // a s^3 + b s^2 + c s + value
     const double root = b * b - 3.0 * a * c;
-    if (root < 0.0) return;
+    if (root < 0.0) return false;
     const double s = -c / (b + std::sqrt(root));
-    if (s > 0.0 && s < 1.0 && ((a * s + b) * s + c) * s + g0 < -1e-12 * scale) met = true;
-  });
-  return met;
+    return s > 0.0 && s < 1.0 && ((a * s + b) * s + c) * s + p.value < margin;
+  };
+  for (std::size_t n = 0; n < end.count; ++n) {
+    const Node &p = start.nodes[n], &q = end.nodes[n];
+    if (q.value < -q.tolerance) return true;
+    if (middle == nullptr) {
+      if (dips(p, q, length, -q.tolerance)) return true;
+      continue;
+    }
+    const Node& half = middle->nodes[n];
+    if (half.value < -half.tolerance) return true;
+    // What the cubic over the whole step gets wrong in the middle tells how far to trust the halves.
+    const double error =
+        std::abs(half.value - 0.5 * (p.value + q.value) - 0.125 * length * (p.rate - q.rate));
+    const double margin = 0.25 * error - q.tolerance;
+    if (dips(p, half, 0.5 * length, margin) || dips(half, q, 0.5 * length, margin)) return true;
+  }
+  return false;
+}
+
+template <class T>
+bool Integrator<T>::meets_guard(const State<double>& from, int level, double length,
+                                State<double>& to) {
+  const Ladder& ladder = flow_->plain.ladder();
+  const View<double> now = plain();
+  if (!here_) here_ = look(now, from);
+  Look start = *here_;
+  const bool by_series = level > ladder.last;
+  const int fine = by_series ? level : std::max(level, flow_->longest);
+  const int pieces = by_series ? 1 : 1 << (fine - level);
+  const double piece = length / pieces;
+  Input<double> input = now.input;
+  const View<double> view{now.equations, now.propagator, input, now.target_rate};
+  const auto move = [&](double t) {
+    input.target.velocity += slope_.velocity * t;
+    input.target.position += slope_.position * t;
+  };
+  // A cubic does without the middle where the fastest oscillation turns by less than this.
+  constexpr double kSmooth = 0.5;  // rad
+  const bool halved = !by_series && fine < ladder.last && flow_->oscillation * piece > kSmooth;
+  to = from;
+  for (int i = 0; i < pieces; ++i) {
+    State<double> middle;
+    if (halved) middle = step(view, to, fine + 1);
+    to = by_series ? step_by(view, to, piece) : step(view, to, fine);
+    for (const double x : to)
+      if (!std::isfinite(x)) return false;
+    Look half;
+    if (halved) {
+      move(0.5 * piece);
+      half = look(view, middle);
+    }
+    move(halved ? 0.5 * piece : piece);
+    const Look end = look(view, to);
+    if (met_between(start, halved ? &half : nullptr, end, piece)) return true;
+    start = end;
+  }
+  here_ = start;
+  return false;
 }
 
 template <class T>
@@ -329,7 +404,7 @@ void Integrator<T>::move_time(double length) {
   time_ += length;
   input_.target.velocity += slope_.velocity * length;
   input_.target.position += slope_.position * length;
-  plain_input_.target = input_.target;
+  plain_input_.target = {value_of(input_.target.velocity), value_of(input_.target.position)};
 }
 
 template <class T>
@@ -346,6 +421,8 @@ void Integrator<T>::pass_event(const Hit& hit) {
   if (!options_.event_derivatives) correction = T(0.0);
   const State<T> f = equations_.rate(mode_, y_, input_);
   for (std::size_t i = 0; i < kStates; ++i) y_[i] += f[i] * correction;
+  input_.target.velocity += slope_.velocity * correction;
+  input_.target.position += slope_.position * correction;
   time_ += correction;
   ++events_;
   switch_mode(equations_.cross(mode_, hit.guard, y_, input_));
@@ -374,34 +451,37 @@ bool Integrator<T>::advance_to(const T& end) {
         piece ? remaining : std::min(remaining, ladder.length(std::min(level, ladder.last)));
 
     const State<double> from = plain_state();
-    const State<double> to =
-        by_series ? step_by(plain(), from, length) : step(plain(), from, level);
-    for (const double x : to)
-      if (!std::isfinite(x)) return false;
-    if (meets_guard(from, to, length)) {
+    State<double> to;
+    if (meets_guard(from, by_series ? ladder.last + 1 : level, length, to)) {
       if (!shortest) {
-        search = piece ? level : level + 1;
+        search = piece ? level : std::max(level, flow_->longest - 1) + 1;
         continue;
       }
       if (const std::optional<Hit> hit = locate(from, to, length)) {
-        if (events_ >= event_limit) return false;
+        if (events_ >= event_limit || events_ >= options_.event_budget) return false;
         pass_event(*hit);
         search = 0;
         continue;
       }
+      here_.reset();
     }
+    for (const double x : to)
+      if (!std::isfinite(x)) return false;
     if constexpr (std::is_same_v<T, double>)
       y_ = to;
     else
       y_ = by_series ? step_by(exact(), y_, length) : step(exact(), y_, level);
     move_time(length);
-    level_ = std::max(0, level_ - 1);
+    // Pieces are as exact as the whole only where there is nothing but the affine part.
+    level_ = std::max(equations_.has_smooth_forces() ? flow_->longest : 0, level_ - 1);
     if (search > 0 && ++search > ladder.last + 1) search = 0;
   }
   // What is left is rounding, and the derivatives of the two instants.
   const T rest = end - time_;
   const State<T> f = equations_.rate(mode_, y_, input_);
   for (std::size_t i = 0; i < kStates; ++i) y_[i] += f[i] * rest;
+  input_.target.velocity += slope_.velocity * rest;
+  input_.target.position += slope_.position * rest;
   time_ = end;
   return true;
 }

@@ -45,6 +45,9 @@ inline double norm(const Matrix<double>& a) {
   return largest;
 }
 
+/// The largest angular frequency among the eigenvalues of a matrix, rad/s.
+double fastest_oscillation(const Matrix<double>& a);
+
 /// A matrix without its zeros. The structure of the axis leaves many.
 template <class T>
 class SparseMatrix {

@@ -12,7 +12,7 @@ namespace {
 /// Poor guesses of two parameters that only the ringing and the rise show.
 Job example_job() {
   Job job;
-  job.model = x_axis();
+  job.model = paper_axis();
   job.recordings = {recorded_step(job.model, 2e-3, 0.05)};
   job.free = {free_parameter("V_L", 8.0), free_parameter("k_g", 1.5e6)};
   return job;

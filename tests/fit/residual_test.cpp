@@ -26,7 +26,7 @@ Evaluated evaluate(const RecordingCost& cost, const Eigen::VectorXd& u) {
 
 Job example_job() {
   Job job;
-  job.model = x_axis();
+  job.model = paper_axis();
   job.recordings = {recorded_step(job.model, 2e-3, 0.05)};
   job.free = {free_parameter("V_L", 2.7), free_parameter("B_a", 200.0),
               free_parameter("b_g", 1500.0), free_parameter("k_g", 5e6),

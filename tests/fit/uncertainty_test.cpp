@@ -13,7 +13,7 @@ namespace {
 class UncertaintyTest : public ::testing::Test {
  protected:
   UncertaintyTest() {
-    job_.model = x_axis();
+    job_.model = paper_axis();
     job_.recordings.resize(1);
     for (const char* name : {"B_a", "b_g", "k_g"}) {
       FreeParameter p = free_parameter(name, 1.0);
