@@ -15,15 +15,16 @@ double quantum(std::span<const double> values) {
     if (d > 1e-12 * size && (step == 0.0 || d < step)) step = d;
   }
   if (step == 0.0) return 0.0;
+  // Small multiples only: over large ones the error of the step itself adds up.
   std::size_t moved = 0, on_grid = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {
     const double multiple = std::abs(values[i] - values[i - 1]) / step;
-    if (multiple < 0.5) continue;
+    if (multiple < 0.5 || multiple > 50.0) continue;
     ++moved;
-    if (std::abs(multiple - std::round(multiple)) < 1e-3 * std::max(1.0, multiple)) ++on_grid;
+    if (std::abs(multiple - std::round(multiple)) < 0.05) ++on_grid;
   }
-  // By chance a tenth of the differences would look like small multiples of the smallest.
-  return on_grid > 9 * moved / 10 && moved > 8 ? step : 0.0;
+  // By chance a tenth of the differences would be that close to a multiple.
+  return moved > 8 && on_grid > 9 * moved / 10 ? step : 0.0;
 }
 
 double noise_from_differences(std::span<const double> values) {

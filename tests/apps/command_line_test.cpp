@@ -291,7 +291,7 @@ TEST_F(CommandLineTest, SetChangesQuantities) {
   for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
            {"M=161", "--set:1:4: M needs a unit, for example '161 kg'\n"},
            {"M=0 kg", "--set:1:4: M must lie between 0.001 kg and 1e+05 kg, not 0 kg\n"},
-           {"m=161 kg", "--set:1:1: unknown key 'm'; did you mean 'M'?\n"},
+           {"m=161 kg", "--set:1:1: there is no quantity 'm'; did you mean 'M'?\n"},
            {"M", "--set 'M': write NAME=VALUE, for example --set 'M=161 kg'\n"},
            {"J_m=0 kg m^2",
             "J_m must be above zero where the gear has backlash: between the teeth nothing but J_m "

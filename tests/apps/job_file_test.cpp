@@ -350,7 +350,7 @@ TEST_F(JobFileTest, OverridesHoldForTheirRecording) {
   EXPECT_EQ(file.job.model.axis.B_a, 8.0);
   EXPECT_EQ(errors(with_lines("    set: {B_q: 1 kN s/m, K_m: 3 N m/A, F_s: -1 N}\n")),
             "job.yaml:4:11: there is no quantity 'B_q'; did you mean 'B_a'?\n"
-            "job.yaml:4:26: K_m has no part in this axis: its drive, transmission or effects leave "
+            "job.yaml:4:26: K_m has no part in this axis: its drive or transmission leaves "
             "it out\n"
             "job.yaml:4:45: F_s must lie between 0 N and 1e+05 N, not -1 N");
 }
@@ -453,8 +453,8 @@ TEST_F(JobFileTest, EffectsOfTheJobAddToThoseOfTheAxis) {
   EXPECT_EQ(file.rig.model.structure.effects.count(), 2u);
   EXPECT_EQ(parameter(file).initial, 3.0);
   EXPECT_EQ(errors_with("M: {}", "constant_force.F_0: {}"),
-            "job.yaml:9:3: constant_force.F_0 has no part in this axis: its drive, transmission or "
-            "effects leave it out");
+            "job.yaml:9:3: constant_force.F_0 needs the effect: add it to the axis or job, as in "
+            "'effects: {constant_force: {F_0: ...}}'");
   EXPECT_EQ(errors(std::string(kJob) + "effects: {drag: {c: 3 N}, constant_force: {}}\n"),
             "job.yaml:10:11: unknown key 'drag'; known keys: coulomb_friction, constant_force, "
             "quadratic_drag\n"
@@ -617,8 +617,7 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
             "9:3: there is no quantity 'friction_of_the_arm'; the axis has its parameters, "
             "effect.parameter, signal.gain, signal.bias and initial.y0 ... initial.y6"},
            {"M: {}", "K_m: {}",
-            "9:3: K_m has no part in this axis: its drive, transmission or effects leave it out"},
-           {"M: {}", "M:", "9:3: M must be a map of keys and values, not empty"},
+            "9:3: K_m has no part in this axis: its drive or transmission leaves it out"},
            {"free:\n  M: {}", "free: {}",
             "8:7: nothing is free: name at least one quantity to fit"},
            {"free:\n  M: {}", "free: [M]",
@@ -650,7 +649,7 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
            {"free:\n", "fit: {coupling:}\nfree:\n",
             "8:7: coupling must be continuation, none, or for example {fixed: 300 1/s}"},
            {"free:\n", "fit: {coupling: none, first_coupling: 3 1/s}\nfree:\n",
-            "8:39: first_coupling is where a continuation starts; this coupling is none"},
+            "8:39: first_coupling is where a continuation starts: it needs coupling: continuation"},
            {"free:\n", "fit: {coupling: {fixd: 3 1/s}}\nfree:\n",
             "8:17: key 'fixed' is missing in coupling\n"
             "job.yaml:8:18: unknown key 'fixd'; did you mean 'fixed'?"},
@@ -716,7 +715,7 @@ colour: red
       "and the permissions\n"
       "job.yaml:10:11: there is no quantity 'M_a'; did you mean 'B_a'?\n"
       "job.yaml:13:18: initial must lie between 0 N s/m and 1e+06 N s/m, not -1 N s/m\n"
-      "job.yaml:14:3: K_t has no part in this axis: its drive, transmission or effects leave "
+      "job.yaml:14:3: K_t has no part in this axis: its drive or transmission leaves "
       "it out\n"
       "job.yaml:15:13: loss must be one of squares, huber, not 'cubes'; did you mean 'huber'?\n"
       "job.yaml:16:1: unknown key 'colour'; known keys: axis, effects, recordings, free, fit");
