@@ -163,6 +163,9 @@ std::optional<Rig> read_axis_file(const std::string& path, Diagnostics& diagnost
     if (initial) read_initial(*initial, rig.model);
   }
   if (const auto instruments = map.optional("instruments")) read_instruments(*instruments, rig);
+  // Without a pinion there is no telling how far a count is, unless it is said.
+  if (!is_used(*find_quantity("r_g"), rig.model.structure))
+    rig.controller.counts_per_revolution = 0.0;
   if (const auto controller = map.optional("controller"))
     read_controller(*controller, rig.controller);
   map.finish();

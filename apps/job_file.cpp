@@ -252,6 +252,10 @@ class JobReader {
       const auto given = signals.optional(signal.name);
       if (!given) continue;
       any_named = true;
+      if (!has_signal(signal.signal, result_.rig.model.structure)) {
+        given->error(fmt::format("the drive of this axis has no {}: remove it", signal.name));
+        continue;
+      }
       ConfigMap map(*given);
       Measurement measurement;
       measurement.signal = signal.signal;
@@ -301,6 +305,9 @@ class JobReader {
              std::ranges::none_of(recording.measurements, &Measurement::fitted))
       signals_node.error("nothing to fit: every signal says fit: false; drop that from one, or give "
                          "the recording the role validate");
+    if (result_.job.options.coupling == CouplingMode::fixed &&
+        recording.find(Signal::position) == nullptr && recording.find(Signal::velocity) == nullptr)
+      signals_node.error("a fixed coupling needs a recorded position or velocity");
     if (recording.initial_state == InitialState::data) {
       if (recording.find(Signal::position) == nullptr && recording.find(Signal::velocity) == nullptr)
         signals_node.error("initial_state: data needs a recorded position or velocity");

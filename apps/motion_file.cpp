@@ -36,10 +36,12 @@ class MotionReader {
       LevelsMotion motion;
       motion.hold = value("hold", "s", 1e-4, 1e6);
       if (const auto levels = map_.required("levels"))
-        if (const auto entries = levels->as_sequence())
+        if (const auto entries = levels->as_sequence()) {
+          if (entries->empty()) levels->error("levels must name at least one voltage");
           for (const ConfigNode& level : *entries)
             motion.levels.push_back(
                 level.as_quantity("V", -rig_.controller.limit, rig_.controller.limit).value_or(0.0));
+        }
       file.motion = std::move(motion);
     } else if (name == "sine" || name == "chirp") {
       SineMotion motion;

@@ -21,6 +21,7 @@ struct Arguments {
   std::string axis, motion, output;
   std::vector<std::string> changes, signals;
   RecordingOptions recording;
+  bool signals_given = false;
   bool exact = false;
 };
 
@@ -72,7 +73,10 @@ void run(Arguments arguments) {
     const Signal signal = *signal_by_name(name);
     if (std::ranges::find(options.signals, signal) != options.signals.end())
       throw std::runtime_error(fmt::format("--signals: {} is named twice", name));
-    options.signals.push_back(signal);
+    if (has_signal(signal, rig->model.structure))
+      options.signals.push_back(signal);
+    else if (arguments.signals_given)
+      throw std::runtime_error(fmt::format("--signals: the drive of this axis has no {}", name));
   }
   std::ostringstream text;
   write_csv(text, record(*rig, motion.motion, options), arguments.exact ? 0 : 9);
@@ -101,7 +105,7 @@ int main(int argc, char** argv) {
   app.add_option("--set", arguments.changes, "change a quantity: NAME=VALUE, with its unit")
       ->take_all()
       ->allow_extra_args(false);
-  app.add_option("--signals", arguments.signals, "signals to record")
+  const auto* chosen = app.add_option("--signals", arguments.signals, "signals to record")
       ->check(CLI::IsMember(signals))
       ->capture_default_str();
   app.add_option("--rate", arguments.recording.rate, "samples per second")
@@ -116,6 +120,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  arguments.signals_given = chosen->count() > 0;
   try {
     run(std::move(arguments));
     return 0;

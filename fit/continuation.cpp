@@ -27,6 +27,7 @@ bool can_be_coupled(const Job& job) {
 Eigen::VectorXd moved(const ParameterSpace& space, Eigen::VectorXd u, int attempt) {
   std::mt19937_64 generator(static_cast<std::uint64_t>(attempt));
   for (std::size_t i = 0; i < space.size(); ++i) {
+    if (!space[i].logarithmic) continue;  // linear ones have no factor, and converge by themselves
     const double z = std::ldexp(static_cast<double>(generator() >> 11), -52) - 1.0;
     double& x = u[static_cast<Eigen::Index>(i)];
     x = std::clamp(x + z * std::log(3.0), space.internal(i, space[i].lower),
@@ -54,7 +55,7 @@ class Continuation {
     }
     SolveResult solved = solve(job_, space_, start, rate, options);
     iterations_ += solved.iterations;
-    stages_.push_back({rate, solved.reduced_cost, solved.iterations, true});
+    stages_.push_back({rate, solved.reduced_cost, solved.iterations, solved.usable});
     return solved;
   }
 
@@ -129,9 +130,10 @@ ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
     // Where the end does not explain the data, begin anew. Less firmly: a firm hold feeds the noise
     // of the measurement into the simulation, which can bias what the data hardly show beyond
     // return. And from elsewhere: even held firmly, a controller that saturates has local minima.
-    constexpr int kAttempts = 4;
+    // A start that cannot even be simulated costs little: there the moves go on for longer.
+    constexpr int kAttempts = 4, kAttemptsToBegin = 16;
     constexpr double kExplained = 1.1;
-    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    for (int attempt = 0; attempt < (result.last.usable ? kAttempts : kAttemptsToBegin); ++attempt) {
       const double rate = first_coupling_rate(job) / (attempt == 1 ? 5.0 : 1.0);
       const Eigen::VectorXd from = attempt < 2 ? start : moved(space, start, attempt);
       SolveResult solved = continuation.run(from, rate);

@@ -104,6 +104,8 @@ std::string hopeless_signal(const Job& job, const FitResult& result) {
     for (std::size_t m = 0; m < result.recordings[r].signals.size(); ++m) {
       const SignalError& e = result.recordings[r].signals[m];
       if (!e.fitted) continue;
+      if (!e.prediction_rmse && !result.recordings[r].prediction.finished)
+        return fmt::format("{} of {}", info(e.signal).name, job.recordings[r].name);
       const double rmse = e.prediction_rmse.value_or(e.rmse);
       const double chi_square = e.prediction_reduced_chi_square.value_or(e.reduced_chi_square);
       if (chi_square > 2.0 && rmse > standard_deviation(job.recordings[r].measurements[m].values))
@@ -190,10 +192,8 @@ std::vector<double> draw_start(const Job& job, int start) {
     if (start > 0) {
       if (p.logarithmic)
         value *= std::pow(job.options.spread, z);
-      else if (p.initial != 0.0)
+      else  // one that begins at zero stays there: it has no size to draw from
         value += z * job.options.spread * std::abs(p.initial);
-      else
-        value = 0.5 * (p.lower + p.upper) + 0.01 * z * (p.upper - p.lower);
     }
     values.push_back(std::clamp(value, p.lower, p.upper));
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +28,7 @@ struct SignalError {
   double sigma = 0.0;          ///< of the noise
   bool sigma_given = false;
   double reduced_chi_square = 0.0;  ///< (rmse / sigma)^2
-  /// The same with the coupling of the fit; only where that is fixed.
+  /// The same with the coupling at which the fit ended; only where that is not zero.
   std::optional<double> prediction_rmse, prediction_reduced_chi_square;
 };
 
@@ -57,7 +58,8 @@ struct FitResult {
   std::string message;     ///< the solver's reason to stop
   std::vector<ParameterResult> parameters;
   std::vector<RecordingResult> recordings;
-  double reduced_chi_square = 0.0;  ///< of what was fitted, degrees of freedom counted
+  /// Of what was fitted, degrees of freedom counted; not a number where nothing was.
+  double reduced_chi_square = std::numeric_limits<double>::quiet_NaN();
   double coupling_rate = 0.0;       ///< of the last stage
   int iterations = 0;               ///< of the best start, all stages
   std::vector<Stage> stages;        ///< of the best start

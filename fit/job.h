@@ -42,9 +42,9 @@ struct Recording {
   Schedule command;           ///< V
   std::vector<Measurement> measurements;
   InitialState initial_state = InitialState::given;
-  /// Samples at the start that are used for the initial state and not scored in a validation.
+  /// Samples at the start from which an initial state is taken.
   std::size_t initial_samples = 20;
-  bool score_initial_samples = true;
+  bool score_initial_samples = true;  ///< false: errors are reported without them
   /// Quantities that differ from the model's in this recording: index in quantity_list(), value.
   std::vector<std::pair<std::size_t, double>> overrides;
 

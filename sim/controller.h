@@ -32,7 +32,7 @@ struct ControllerSettings {
 /// Where the axis should be, m, at a time since the start of the motion, s.
 using Reference = std::function<double(double time)>;
 
-/// r_g y2 as the encoder reports it: rounded to its counts, m.
+/// r_g y2 as the encoder reports it: in whole counts, rounded down, m.
 double encoder_reading(double position, double pinion_radius, double counts_per_revolution);
 
 /// The control law. Holds the integral and the track points of one motion.

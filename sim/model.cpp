@@ -50,6 +50,20 @@ bool is_used(const QuantityEntry& entry, const Structure& structure) {
   return true;
 }
 
+bool has_signal(Signal signal, const Structure& structure) {
+  switch (signal) {
+    case Signal::position:
+    case Signal::velocity:
+    case Signal::acceleration: return true;
+    case Signal::tachometer:
+    case Signal::motor_current:
+    case Signal::preamplifier_voltage:
+    case Signal::drive_force: return structure.drive != Drive::force_source;
+    case Signal::motor_voltage: return structure.drive == Drive::velocity_loop;
+  }
+  return false;
+}
+
 std::string refusal(const Model<double>& model) {
   const Axis<double>& a = model.axis;
   const bool backlash = model.structure.transmission == Transmission::backlash;

@@ -113,6 +113,9 @@ std::vector<T*> members(Model<T>& model) {
 /// Whether a model of this structure makes use of the quantity.
 bool is_used(const QuantityEntry& entry, const Structure& structure);
 
+/// Whether an axis of this structure has the signal at all: a force source has no tachometer.
+bool has_signal(Signal signal, const Structure& structure);
+
 /// Why a model of this structure cannot be simulated; empty when it can.
 std::string refusal(const Model<double>& model);
 

@@ -329,7 +329,7 @@ TEST_F(JobFileTest, InitialStateFromData) {
   EXPECT_EQ(set.job.recordings.front().overrides, (Overrides{{index("initial.y1"), 3.0}}));
 
   EXPECT_EQ(errors(replaced(velocity, "velocity: {column: v, unit: m/s, sigma: 1 mm/s}",
-                            "motor_current: {column: x, unit: A, sigma: 1 A}")),
+                            "acceleration: {column: x, unit: m/s^2, sigma: 1 m/s^2}")),
             "job.yaml:8:7: initial_state: data needs a recorded position or velocity");
 }
 
