@@ -1,9 +1,9 @@
 #include "apps/axis_file.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
-
-#include <fmt/format.h>
 
 #include "apps/units.h"
 #include "sim/suggest.h"
@@ -107,12 +107,13 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
   if (entry != nullptr && is_used(*entry, structure)) return entry;
   if (entry != nullptr) {
     const bool parameter = entry->group.empty() || entry->group == "initial";
-    key.error(parameter
-                  ? fmt::format("{} has no part in this axis: its drive or transmission leaves it out",
-                                name)
-                  : fmt::format("{} needs the effect: add it to the axis or job, as in 'effects: {{{}: "
-                                "{{{}: ...}}}}'",
-                                name, entry->group, entry->quantity.symbol));
+    key.error(
+        parameter
+            ? fmt::format("{} has no part in this axis: its drive or transmission leaves it out",
+                          name)
+            : fmt::format("{} needs the effect: add it to the axis or job, as in 'effects: {{{}: "
+                          "{{{}: ...}}}}'",
+                          name, entry->group, entry->quantity.symbol));
     return nullptr;
   }
   std::vector<std::string> names;
@@ -120,9 +121,10 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
     if (is_used(e, structure)) names.push_back(e.name);
   const std::string near = nearest(name, names);
   key.error(fmt::format("there is no quantity '{}'; {}", name,
-                        near.empty() ? "the axis has its parameters, effect.parameter, signal.gain, "
-                                       "signal.bias and initial.y0 ... initial.y6"
-                                     : fmt::format("did you mean '{}'?", near)));
+                        near.empty()
+                            ? "the axis has its parameters, effect.parameter, signal.gain, "
+                              "signal.bias and initial.y0 ... initial.y6"
+                            : fmt::format("did you mean '{}'?", near)));
   return nullptr;
 }
 

@@ -1,5 +1,5 @@
-// Axis files: an axis, its effects, controller and instruments, in YAML. docs/axis-file.md has every
-// key; they all come from the model's list of quantities.
+// Axis files: an axis, its effects, controller and instruments, in YAML. docs/axis-file.md has
+// every key; they all come from the model's list of quantities.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,8 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
 /// Reads the value of a quantity within its natural range.
 std::optional<double> read_value(const ConfigNode& node, const Quantity& quantity);
 
-/// An axis file that reads back as the same rig, digit for digit. `comment` becomes its first lines.
+/// An axis file that reads back as the same rig, digit for digit. `comment` becomes its first
+/// lines.
 std::string format_axis_file(const Rig& rig, const std::string& comment);
 
 }  // namespace axisfit

@@ -1,14 +1,13 @@
 // fit-params JOB.yaml: fits the model of an axis to recordings of it.
 
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <iostream>
 #include <optional>
-
-#include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "apps/axis_file.h"
 #include "apps/config.h"
@@ -52,7 +51,8 @@ class ProgressLine {
   }
   void show(const Progress& p) {
     if (!visible_) return;
-    std::string line = p.starts > 1 ? fmt::format("start {} of {}: ", p.starts_done + 1, p.starts) : "";
+    std::string line =
+        p.starts > 1 ? fmt::format("start {} of {}: ", p.starts_done + 1, p.starts) : "";
     line += p.stage.coupling_rate > 0.0
                 ? fmt::format("held to the data at {:.3g} 1/s", p.stage.coupling_rate)
                 : "free running";
@@ -92,9 +92,9 @@ int run(const Arguments& arguments) {
   if (!arguments.output.empty()) {
     Rig fitted = file.rig;
     fitted.model = fitted_model(file.job, result);
-    const std::string comment = fmt::format(
-        "Fitted by axisfit {} from {}, starting from {}.\n{}", kVersion, arguments.job,
-        file.axis_file, result.verdict);
+    const std::string comment =
+        fmt::format("Fitted by axisfit {} from {}, starting from {}.\n{}", kVersion, arguments.job,
+                    file.axis_file, result.verdict);
     write_folder(arguments.output, {{"result.json", json},
                                     {"fitted.yaml", format_axis_file(fitted, comment)},
                                     {"residuals.csv", residuals_csv(file.job, result)}});

@@ -1,14 +1,14 @@
 #include "apps/job_file.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <ranges>
 #include <set>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "apps/axis_file.h"
 #include "apps/recording_file.h"
@@ -100,7 +100,8 @@ class JobReader {
       if (options.coupling == CouplingMode::continuation)
         options.coupling_rate = rate->as_quantity("1/s", 1e-3, 1e6).value_or(0.0);
       else
-        rate->error("first_coupling is where a continuation starts: it needs coupling: continuation");
+        rate->error(
+            "first_coupling is where a continuation starts: it needs coupling: continuation");
     }
     if (const auto loss = map.optional("loss")) {
       static const std::vector<std::string> losses{"squares", "huber"};
@@ -166,8 +167,7 @@ class JobReader {
     }
     const auto initial_samples = map.optional("initial_samples");
     if (const auto& n = initial_samples)
-      recording.initial_samples =
-          static_cast<std::size_t>(n->as_integer(4, 1000000).value_or(20));
+      recording.initial_samples = static_cast<std::size_t>(n->as_integer(4, 1000000).value_or(20));
     if (const auto score = map.optional("score_initial_samples"))
       recording.score_initial_samples = score->as_bool().value_or(true);
     if (const auto set = map.optional("set")) read_overrides(*set, recording);
@@ -242,9 +242,10 @@ class JobReader {
     } else if (command) {
       input = read_column(data, *command, "V");
     } else {
-      signals_node.error(force_source ? "the axis is driven by a command or a drive_force: name one "
-                                        "of them"
-                                      : "the axis is driven by the command: name its column");
+      signals_node.error(force_source
+                             ? "the axis is driven by a command or a drive_force: name one "
+                               "of them"
+                             : "the axis is driven by the command: name its column");
     }
     bool any_named = false;
     for (const SignalInfo& signal : kSignalTable) {
@@ -273,9 +274,10 @@ class JobReader {
       if (!sigma) {
         measurement.sigma = noise_from_differences(measurement.values);
         if (!(measurement.sigma > 0.0))
-          given->error(fmt::format("the noise of {} cannot be estimated from these samples: give "
-                                   "its sigma, for example 'sigma: {}'",
-                                   signal.name, unit_text(0.01, signal.unit)));
+          given->error(
+              fmt::format("the noise of {} cannot be estimated from these samples: give "
+                          "its sigma, for example 'sigma: {}'",
+                          signal.name, unit_text(0.01, signal.unit)));
       }
       recording.measurements.push_back(std::move(measurement));
     }
@@ -297,19 +299,20 @@ class JobReader {
       return;
     }
     if (!any_named)
-      signals_node.error(fmt::format("nothing to compare with: name at least one of {}",
-                                     fmt::join(kSignalTable | std::views::transform(
-                                                                  &SignalInfo::name),
-                                               ", ")));
+      signals_node.error(
+          fmt::format("nothing to compare with: name at least one of {}",
+                      fmt::join(kSignalTable | std::views::transform(&SignalInfo::name), ", ")));
     else if (recording.role == Role::fit && !recording.measurements.empty() &&
              std::ranges::none_of(recording.measurements, &Measurement::fitted))
-      signals_node.error("nothing to fit: every signal says fit: false; drop that from one, or give "
-                         "the recording the role validate");
+      signals_node.error(
+          "nothing to fit: every signal says fit: false; drop that from one, or give "
+          "the recording the role validate");
     if (result_.job.options.coupling == CouplingMode::fixed &&
         recording.find(Signal::position) == nullptr && recording.find(Signal::velocity) == nullptr)
       signals_node.error("a fixed coupling needs a recorded position or velocity");
     if (recording.initial_state == InitialState::data) {
-      if (recording.find(Signal::position) == nullptr && recording.find(Signal::velocity) == nullptr)
+      if (recording.find(Signal::position) == nullptr &&
+          recording.find(Signal::velocity) == nullptr)
         signals_node.error("initial_state: data needs a recorded position or velocity");
       initial_state_from_data(recording);
     }
@@ -376,8 +379,8 @@ class JobReader {
     // What has no zero in its range, or is part of every axis, is estimated by its order of
     // magnitude; frictions, biases, delays and initial states may be zero and are not.
     const bool positive = entry.group.empty() && quantity.standard != 0.0 && quantity.lower >= 0.0;
-    parameter.logarithmic = scale ? *scale == 0
-                                  : (bounds ? bounds->first > 0.0 : positive && parameter.initial > 0.0);
+    parameter.logarithmic =
+        scale ? *scale == 0 : (bounds ? bounds->first > 0.0 : positive && parameter.initial > 0.0);
     const auto add = [&](double initial, std::optional<std::size_t> recording) {
       FreeParameter p = parameter;
       p.initial = initial;
@@ -389,9 +392,10 @@ class JobReader {
         p.upper = std::min(p.upper, initial * 100.0);
       }
       if (p.logarithmic && !(p.lower > 0.0 && p.initial > 0.0))
-        node.error(fmt::format("{} on a logarithmic scale needs an initial value and a lower bound "
-                               "above zero",
-                               entry.name));
+        node.error(
+            fmt::format("{} on a logarithmic scale needs an initial value and a lower bound "
+                        "above zero",
+                        entry.name));
       else if (p.initial < p.lower || p.initial > p.upper)
         node.error(fmt::format("the initial value {} of {} lies outside its bounds, {} to {}",
                                unit_text(p.initial, quantity.unit), entry.name,

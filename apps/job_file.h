@@ -15,9 +15,9 @@ struct JobFile {
   std::string axis_file;  ///< as found
 };
 
-/// Reads a job file, its axis file and its recordings. Recordings with relative paths are looked for
-/// below `data_directory`, or next to the job file where that is empty.
-/// Throws ConfigError with everything that is wrong.
+/// Reads a job file, its axis file and its recordings. Recordings with relative paths are looked
+/// for below `data_directory`, or next to the job file where that is empty. Throws ConfigError with
+/// everything that is wrong.
 JobFile read_job_file(const std::string& path, const std::string& data_directory = {});
 
 }  // namespace axisfit

@@ -1,10 +1,10 @@
 #include "apps/motion_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <fmt/format.h>
 
 #include "apps/config.h"
 #include "apps/recording_file.h"
@@ -14,7 +14,8 @@
 namespace axisfit {
 namespace {
 
-const std::vector<std::string> kTypes{"step", "levels", "sine", "chirp", "prbs", "move", "recorded"};
+const std::vector<std::string> kTypes{"step", "levels", "sine",    "chirp",
+                                      "prbs", "move",   "recorded"};
 
 /// Reads the keys of one type of motion. Values that are wrong are reported and left at zero.
 class MotionReader {
@@ -40,7 +41,8 @@ class MotionReader {
           if (entries->empty()) levels->error("levels must name at least one voltage");
           for (const ConfigNode& level : *entries)
             motion.levels.push_back(
-                level.as_quantity("V", -rig_.controller.limit, rig_.controller.limit).value_or(0.0));
+                level.as_quantity("V", -rig_.controller.limit, rig_.controller.limit)
+                    .value_or(0.0));
         }
       file.motion = std::move(motion);
     } else if (name == "sine" || name == "chirp") {
@@ -67,8 +69,9 @@ class MotionReader {
       file.motion = MoveMotion{value("distance", "m", -1e3, 1e3), value("speed", "m/s", 1e-6, 1e3),
                                value("acceleration", "m/s^2", 1e-6, 1e5)};
       if (rig_.model.structure.drive == Drive::force_source)
-        type->error("a move needs the slave control unit, which writes a set velocity; this axis is "
-                    "driven by a force source, which has no set-velocity input");
+        type->error(
+            "a move needs the slave control unit, which writes a set velocity; this axis is "
+            "driven by a force source, which has no set-velocity input");
       else if (rig_.model.axis.T_d >= rig_.controller.period)
         type->error("a move needs a command delay T_d below the controller's period");
     } else {
@@ -83,7 +86,8 @@ class MotionReader {
     const auto given = map_.required(key);
     return given ? given->as_quantity(unit, lower, upper).value_or(0.0) : 0.0;
   }
-  double value(const char* key, std::string_view unit, double lower, double upper, double standard) {
+  double value(const char* key, std::string_view unit, double lower, double upper,
+               double standard) {
     const auto given = map_.optional(key);
     return given ? given->as_quantity(unit, lower, upper).value_or(standard) : standard;
   }

@@ -1,14 +1,13 @@
 #include "apps/output_folder.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
-
-#include <fmt/format.h>
 
 namespace axisfit {
 namespace {
@@ -49,11 +48,11 @@ std::string reason(const std::exception& error) {
 void write_folder(const std::string& folder,
                   const std::vector<std::pair<std::string, std::string>>& files) {
   const fs::path target = fs::absolute(folder).lexically_normal();
-  const fs::path parent = target.has_filename() ? target.parent_path()
-                                                : target.parent_path().parent_path();
+  const fs::path parent =
+      target.has_filename() ? target.parent_path() : target.parent_path().parent_path();
   const fs::path partial =
-      parent / fmt::format(".{}.partial-{}", target.has_filename()
-                                                 ? target.filename().string()
+      parent / fmt::format(".{}.partial-{}",
+                           target.has_filename() ? target.filename().string()
                                                  : target.parent_path().filename().string(),
                            ::getpid());
   // What a failure must remove again: the topmost folder that was not there.

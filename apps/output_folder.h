@@ -8,8 +8,8 @@
 namespace axisfit {
 
 /// Puts files (name, contents) into a folder, which is created if need be. All of them are first
-/// written next to it; if that fails nothing in the folder has changed, the remains are removed, and
-/// std::runtime_error says why. Files of the same names are replaced, others stay.
+/// written next to it; if that fails nothing in the folder has changed, the remains are removed,
+/// and std::runtime_error says why. Files of the same names are replaced, others stay.
 void write_folder(const std::string& folder,
                   const std::vector<std::pair<std::string, std::string>>& files);
 

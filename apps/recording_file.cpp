@@ -1,10 +1,10 @@
 #include "apps/recording_file.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
 
 #include "apps/mat_file.h"
 #include "apps/units.h"
@@ -94,9 +94,10 @@ std::optional<std::vector<double>> read_times(const RecordingFile& file, const C
   for (std::size_t i = 1; times && i < times->size(); ++i) {
     const double before = (*times)[i - 1], time = (*times)[i];
     if (time > before) continue;
-    node.error(fmt::format("{}: time {:.12g} s does not come after {:.12g} s: samples must be in "
-                           "the order of time, each once",
-                           file.where(i), time, before));
+    node.error(
+        fmt::format("{}: time {:.12g} s does not come after {:.12g} s: samples must be in "
+                    "the order of time, each once",
+                    file.where(i), time, before));
     return std::nullopt;
   }
   return times;

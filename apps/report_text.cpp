@@ -1,11 +1,11 @@
 #include "apps/report_text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
-
-#include <fmt/format.h>
 
 #include "sim/table.h"
 
@@ -28,7 +28,10 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows,
     std::string line = " ";
     for (std::size_t c = 0; c < row.size(); ++c) {
       const std::string pad(width[c] - width_of(row[c]), ' ');
-      line.append(1, ' ').append(left[c] ? row[c] : pad).append(left[c] ? pad : row[c]).append(1, ' ');
+      line.append(1, ' ')
+          .append(left[c] ? row[c] : pad)
+          .append(left[c] ? pad : row[c])
+          .append(1, ' ');
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
@@ -71,15 +74,16 @@ std::string parameters_text(const Job& job, const FitResult& result) {
     const Quantity& quantity = quantity_list()[job.free[i].quantity].quantity;
     const double error = u.determined ? u.standard_error : 0.0;
     const bool open = !u.determined && !u.at_bound;
-    rows.push_back(
-        {p.name, std::string(quantity.meaning),
-         open ? fmt::format("~{:.1g}", p.value) : with_digits_of(p.value, error),
-         u.determined ? fmt::format("{:.2g}", error) : "-",
-         u.determined ? fmt::format("{} .. {}", with_digits_of(u.lower, error),
-                                    with_digits_of(u.upper, error))
-                      : "-",
-         fmt::format("{:.4g}", job.free[i].initial), std::string(quantity.unit),
-         u.at_bound ? "at bound" : open ? "not determined" : ""});
+    rows.push_back({p.name, std::string(quantity.meaning),
+                    open ? fmt::format("~{:.1g}", p.value) : with_digits_of(p.value, error),
+                    u.determined ? fmt::format("{:.2g}", error) : "-",
+                    u.determined ? fmt::format("{} .. {}", with_digits_of(u.lower, error),
+                                               with_digits_of(u.upper, error))
+                                 : "-",
+                    fmt::format("{:.4g}", job.free[i].initial), std::string(quantity.unit),
+                    u.at_bound ? "at bound"
+                    : open     ? "not determined"
+                               : ""});
   }
   return "Parameters\n" + aligned(rows, {true, true, false, false, false, false, true, true});
 }
@@ -94,7 +98,9 @@ std::string errors_text(const Job& job, const FitResult& result) {
     for (const SignalError& e : result.recordings[r].signals) {
       const bool finished = result.recordings[r].prediction.finished;
       rows.push_back({recording.name,
-                      recording.role == Role::validate ? "validate" : e.fitted ? "fit" : "compare",
+                      recording.role == Role::validate ? "validate"
+                      : e.fitted                       ? "fit"
+                                                       : "compare",
                       std::string(info(e.signal).name),
                       finished ? fmt::format("{:.4g}", e.rmse) : "-",
                       finished ? fmt::format("{:.3g} %", e.nrmse_percent) : "-",

@@ -9,9 +9,12 @@ using Json = nlohmann::ordered_json;
 
 const char* text(Status status) {
   switch (status) {
-    case Status::converged: return "converged";
-    case Status::not_converged: return "not_converged";
-    case Status::failed: return "failed";
+    case Status::converged:
+      return "converged";
+    case Status::not_converged:
+      return "not_converged";
+    case Status::failed:
+      return "failed";
   }
   return "";
 }
@@ -83,10 +86,8 @@ Json result_json(const JobFile& file, const FitResult& result, double wall_time_
                       {"iterations", s.iterations},
                       {"accepted", s.accepted}});
   for (const StartResult& s : result.starts)
-    starts.push_back({{"from", s.from},
-                      {"to", s.to},
-                      {"usable", s.usable},
-                      {"reduced_cost", s.reduced_cost}});
+    starts.push_back(
+        {{"from", s.from}, {"to", s.to}, {"usable", s.usable}, {"reduced_cost", s.reduced_cost}});
   return {{"version", kVersion},
           {"status", text(result.status)},
           {"usable", result.usable},

@@ -1,11 +1,11 @@
 // simulate-axis AXIS.yaml MOTION.yaml: a recording as a rig would make it.
 
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <sstream>
-
-#include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "apps/axis_file.h"
 #include "apps/motion_file.h"
@@ -63,10 +63,10 @@ void run(Arguments arguments) {
   RecordingOptions& options = arguments.recording;
   constexpr double kMostRows = 2e7;
   if (motion.duration * options.rate > kMostRows)
-    throw std::runtime_error(
-        fmt::format("{}: {:g} s at {:g} samples per second are more than {:g} rows: choose a shorter "
-                    "duration or a lower --rate",
-                    arguments.motion, motion.duration, options.rate, kMostRows));
+    throw std::runtime_error(fmt::format(
+        "{}: {:g} s at {:g} samples per second are more than {:g} rows: choose a shorter "
+        "duration or a lower --rate",
+        arguments.motion, motion.duration, options.rate, kMostRows));
   options.duration = motion.duration;
   options.noise = !arguments.exact;
   for (const std::string& name : arguments.signals) {
@@ -94,9 +94,10 @@ int main(int argc, char** argv) {
   std::vector<std::string> signals;
   for (const SignalInfo& signal : kSignalTable) signals.emplace_back(signal.name);
   arguments.signals = {"position", "velocity", "acceleration", "tachometer", "motor_current"};
-  CLI::App app{"Runs an axis through a motion and records it as a rig would: sampled, with noise, "
-               "encoder counts, sensor bias and gain.",
-               "simulate-axis"};
+  CLI::App app{
+      "Runs an axis through a motion and records it as a rig would: sampled, with noise, "
+      "encoder counts, sensor bias and gain.",
+      "simulate-axis"};
   app.footer(kExamples);
   app.set_version_flag("--version", std::string("axisfit ") + kVersion);
   app.add_option("AXIS.yaml", arguments.axis, "the axis (docs/axis-file.md)")->required();
@@ -106,8 +107,8 @@ int main(int argc, char** argv) {
       ->take_all()
       ->allow_extra_args(false);
   const auto* chosen = app.add_option("--signals", arguments.signals, "signals to record")
-      ->check(CLI::IsMember(signals))
-      ->capture_default_str();
+                           ->check(CLI::IsMember(signals))
+                           ->capture_default_str();
   app.add_option("--rate", arguments.recording.rate, "samples per second")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();

@@ -2,13 +2,13 @@
 // one fit takes on one core. Starts are drawn log-uniformly within the job's spread (5 unless it
 // says otherwise) around the values in the axis file, which for simulated recordings are the truth.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "apps/job_file.h"
 #include "fit/estimate.h"
@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
   fmt::print("processor time of one fit: median {:.2f} s, longest {:.2f} s\n",
              seconds[seconds.size() / 2], seconds.back());
   for (std::size_t i = 0; i < truth.size(); ++i)
-    fmt::print("{}: at most {:.1f} standard errors from the value in the axis file\n", space.name(i),
-               worst[i]);
+    fmt::print("{}: at most {:.1f} standard errors from the value in the axis file\n",
+               space.name(i), worst[i]);
   return 0;
 }

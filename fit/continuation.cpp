@@ -133,12 +133,13 @@ ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
     // A start that cannot even be simulated costs little: there the moves go on for longer.
     constexpr int kAttempts = 4, kAttemptsToBegin = 16;
     constexpr double kExplained = 1.1;
-    for (int attempt = 0; attempt < (result.last.usable ? kAttempts : kAttemptsToBegin); ++attempt) {
+    for (int attempt = 0; attempt < (result.last.usable ? kAttempts : kAttemptsToBegin);
+         ++attempt) {
       const double rate = first_coupling_rate(job) / (attempt == 1 ? 5.0 : 1.0);
       const Eigen::VectorXd from = attempt < 2 ? start : moved(space, start, attempt);
       SolveResult solved = continuation.run(from, rate);
-      const bool better = attempt == 0 || (solved.usable && (!result.last.usable ||
-                                                             solved.cost < result.last.cost));
+      const bool better = attempt == 0 || (solved.usable &&
+                                           (!result.last.usable || solved.cost < result.last.cost));
       if (better) result.last = std::move(solved);
       if (result.last.usable && result.last.reduced_cost < kExplained) break;
     }

@@ -1,5 +1,7 @@
 #include "fit/estimate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -7,8 +9,6 @@
 #include <numeric>
 #include <random>
 #include <thread>
-
-#include <fmt/format.h>
 
 namespace axisfit {
 namespace {
@@ -89,7 +89,8 @@ RecordingResult judge(const Job& job, const ParameterSpace& space, std::size_t i
       error.reduced_chi_square = mean_square / (measurement.sigma * measurement.sigma);
     }
     if (coupled && coupled->finished) {
-      const double mean_square = mean_square_error(measurement.values, coupled->simulated[m], first);
+      const double mean_square =
+          mean_square_error(measurement.values, coupled->simulated[m], first);
       error.prediction_rmse = std::sqrt(mean_square);
       error.prediction_reduced_chi_square = mean_square / (measurement.sigma * measurement.sigma);
     }
@@ -141,12 +142,13 @@ std::string open_parameters(const FitResult& result) {
 
 /// Sets status, usable and verdict.
 void conclude(const Job& job, const SolveResult& solved, FitResult& result) {
-  result.status = !solved.usable      ? Status::failed
+  result.status = !solved.usable     ? Status::failed
                   : solved.converged ? Status::converged
                                      : Status::not_converged;
   if (result.status == Status::failed) {
-    result.verdict = "No usable fit: the simulation cannot be carried through at the initial values. "
-                     "Check them, and the axis file, for impossible values.";
+    result.verdict =
+        "No usable fit: the simulation cannot be carried through at the initial values. "
+        "Check them, and the axis file, for impossible values.";
     return;
   }
   if (result.status == Status::not_converged) {
@@ -158,7 +160,8 @@ void conclude(const Job& job, const SolveResult& solved, FitResult& result) {
   }
   if (const std::string hopeless = hopeless_signal(job, result); !hopeless.empty()) {
     result.verdict = fmt::format(
-        "No usable fit: the model follows the {} no better than a constant would. Try other initial "
+        "No usable fit: the model follows the {} no better than a constant would. Try other "
+        "initial "
         "values, --starts 20, or check units and signs of the columns.",
         hopeless);
     return;
@@ -168,11 +171,13 @@ void conclude(const Job& job, const SolveResult& solved, FitResult& result) {
   const std::string open = open_parameters(result);
   if (chi_square < 1.1)
     result.verdict = fmt::format(
-        "Usable fit: the model explains the recordings down to the noise (reduced chi-square {:.3f}).",
+        "Usable fit: the model explains the recordings down to the noise (reduced chi-square "
+        "{:.3f}).",
         chi_square);
   else
     result.verdict = fmt::format(
-        "Usable fit, but the model lacks something: reduced chi-square {:.4g} instead of 1, most in "
+        "Usable fit, but the model lacks something: reduced chi-square {:.4g} instead of 1, most "
+        "in "
         "the {}.",
         chi_square, worst_signal(job, result));
   if (!open.empty()) result.verdict += " These recordings do not determine " + open + ".";

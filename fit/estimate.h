@@ -53,16 +53,16 @@ struct StartResult {
 
 struct FitResult {
   Status status = Status::failed;
-  bool usable = false;     ///< may be relied on for what it says: converged, and better than nothing
-  std::string verdict;     ///< one sentence for the user
-  std::string message;     ///< the solver's reason to stop
+  bool usable = false;  ///< may be relied on for what it says: converged, and better than nothing
+  std::string verdict;  ///< one sentence for the user
+  std::string message;  ///< the solver's reason to stop
   std::vector<ParameterResult> parameters;
   std::vector<RecordingResult> recordings;
   /// Of what was fitted, degrees of freedom counted; not a number where nothing was.
   double reduced_chi_square = std::numeric_limits<double>::quiet_NaN();
-  double coupling_rate = 0.0;       ///< of the last stage
-  int iterations = 0;               ///< of the best start, all stages
-  std::vector<Stage> stages;        ///< of the best start
+  double coupling_rate = 0.0;  ///< of the last stage
+  int iterations = 0;          ///< of the best start, all stages
+  std::vector<Stage> stages;   ///< of the best start
   std::vector<StartResult> starts;
 };
 
@@ -74,8 +74,8 @@ struct Progress {
   Stage stage;
 };
 
-/// Where start number `start` begins: the initial values for the first, values drawn around them for
-/// the others, by the job's seed and spread and the start's number alone.
+/// Where start number `start` begins: the initial values for the first, values drawn around them
+/// for the others, by the job's seed and spread and the start's number alone.
 std::vector<double> draw_start(const Job& job, int start);
 
 /// Fits a job. The result depends on the job alone, not on the number of threads.

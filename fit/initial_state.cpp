@@ -1,8 +1,7 @@
 #include "fit/initial_state.h"
 
-#include <algorithm>
-
 #include <Eigen/QR>
+#include <algorithm>
 
 namespace axisfit {
 namespace {
@@ -30,8 +29,8 @@ std::pair<double, double> start_of(const std::vector<double>& times,
 void initial_state_from_data(Recording& recording) {
   const auto set = [&](const char* name, double value) {
     const std::size_t index = find_quantity(name)->index;
-    const bool given = std::ranges::any_of(recording.overrides,
-                                           [&](const auto& o) { return o.first == index; });
+    const bool given =
+        std::ranges::any_of(recording.overrides, [&](const auto& o) { return o.first == index; });
     if (!given) recording.overrides.emplace_back(index, value);
   };
   const Measurement* velocity = recording.find(Signal::velocity);
@@ -41,8 +40,7 @@ void initial_state_from_data(Recording& recording) {
     set("initial.y0", y0);
     if (velocity == nullptr) set("initial.y1", y1);
   }
-  if (velocity != nullptr)
-    set("initial.y1", start_of(recording.times, velocity->values, n).first);
+  if (velocity != nullptr) set("initial.y1", start_of(recording.times, velocity->values, n).first);
 }
 
 }  // namespace axisfit

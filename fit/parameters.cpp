@@ -9,7 +9,8 @@ ParameterSpace::ParameterSpace(const Job& job) : job_(job), free_(job.free) {
   for (const FreeParameter& p : free_) {
     // Any size of the parameter's order will do; a zero start takes it from the bounds.
     double magnitude = std::abs(p.initial);
-    if (magnitude == 0.0 && std::isfinite(p.upper - p.lower)) magnitude = 0.01 * (p.upper - p.lower);
+    if (magnitude == 0.0 && std::isfinite(p.upper - p.lower))
+      magnitude = 0.01 * (p.upper - p.lower);
     magnitude_.push_back(magnitude > 0.0 ? magnitude : 1.0);
   }
 }

@@ -1,11 +1,10 @@
 // The free parameters as one vector, on the scales on which they are estimated.
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "fit/job.h"
 

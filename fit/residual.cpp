@@ -130,12 +130,13 @@ bool RecordingCost::Evaluate(double const* const* parameters, double* residuals,
     const auto columns = rest.first(std::min(rest.size(), kWidest));
     rest = rest.subspan(columns.size());
     const std::size_t n = columns.size();
-    const bool finished = n <= 2    ? evaluate<ceres::Jet<double, 2>>(u, residuals, jacobian, columns)
-                          : n <= 4  ? evaluate<ceres::Jet<double, 4>>(u, residuals, jacobian, columns)
-                          : n <= 6  ? evaluate<ceres::Jet<double, 6>>(u, residuals, jacobian, columns)
-                          : n <= 8  ? evaluate<ceres::Jet<double, 8>>(u, residuals, jacobian, columns)
-                          : n <= 12 ? evaluate<ceres::Jet<double, 12>>(u, residuals, jacobian, columns)
-                                    : evaluate<ceres::Jet<double, 24>>(u, residuals, jacobian, columns);
+    const bool finished =
+        n <= 2    ? evaluate<ceres::Jet<double, 2>>(u, residuals, jacobian, columns)
+        : n <= 4  ? evaluate<ceres::Jet<double, 4>>(u, residuals, jacobian, columns)
+        : n <= 6  ? evaluate<ceres::Jet<double, 6>>(u, residuals, jacobian, columns)
+        : n <= 8  ? evaluate<ceres::Jet<double, 8>>(u, residuals, jacobian, columns)
+        : n <= 12 ? evaluate<ceres::Jet<double, 12>>(u, residuals, jacobian, columns)
+                  : evaluate<ceres::Jet<double, 24>>(u, residuals, jacobian, columns);
     if (!finished) return false;
   } while (!rest.empty());
   return true;

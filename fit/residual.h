@@ -1,9 +1,9 @@
 // The whitened residuals of one recording, and their exact Jacobian, as a cost of Ceres Solver.
 #pragma once
 
-#include <vector>
-
 #include <ceres/cost_function.h>
+
+#include <vector>
 
 #include "fit/parameters.h"
 #include "sim/coupling.h"

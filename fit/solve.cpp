@@ -1,12 +1,12 @@
 #include "fit/solve.h"
 
-#include <limits>
-#include <memory>
-#include <vector>
-
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 #include <glog/logging.h>
+
+#include <limits>
+#include <memory>
+#include <vector>
 
 #include "fit/residual.h"
 
@@ -131,8 +131,8 @@ Linearization linearize(const Job& job, const ParameterSpace& space, const Eigen
     RowMajor block(n, u.size());
     const double* parameters = u.data();
     double* jacobian = block.data();
-    result.finite = result.finite &&
-                    cost->Evaluate(&parameters, result.residuals.data() + row, &jacobian);
+    result.finite =
+        result.finite && cost->Evaluate(&parameters, result.residuals.data() + row, &jacobian);
     result.jacobian.middleRows(row, n) = block;
     row += n;
   }

@@ -1,9 +1,8 @@
 // One least-squares solution at one coupling.
 #pragma once
 
-#include <string>
-
 #include <Eigen/Core>
+#include <string>
 
 #include "fit/parameters.h"
 
@@ -22,7 +21,7 @@ struct SolveResult {
   bool usable = false;     ///< the point is finite and no worse than the start
   bool converged = false;  ///< a tolerance was reached
   Eigen::VectorXd u;
-  double cost = 0.0;  ///< half the sum of squared residuals, priors included
+  double cost = 0.0;           ///< half the sum of squared residuals, priors included
   double reduced_cost = 0.0;   ///< 2 cost / number of residuals
   double coupling_rate = 0.0;  ///< as asked for
   int iterations = 0;

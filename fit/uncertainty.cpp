@@ -1,9 +1,8 @@
 #include "fit/uncertainty.h"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-
-#include <Eigen/SVD>
 
 namespace axisfit {
 
@@ -13,7 +12,8 @@ std::vector<ParameterUncertainty> uncertainty(const ParameterSpace& space, const
   std::vector<ParameterUncertainty> result(space.size());
   std::vector<Eigen::Index> inside;
   for (std::size_t i = 0; i < space.size(); ++i) {
-    const double lower = space.internal(i, space[i].lower), upper = space.internal(i, space[i].upper);
+    const double lower = space.internal(i, space[i].lower),
+                 upper = space.internal(i, space[i].upper);
     const double here = u[static_cast<Eigen::Index>(i)];
     const double near = 1e-6 * std::max(1.0, std::min(std::abs(here), upper - lower));
     result[i].at_bound = here - lower < near || upper - here < near;
@@ -48,8 +48,8 @@ std::vector<ParameterUncertainty> uncertainty(const ParameterSpace& space, const
     // An error of more than a factor of e, or one that spans the allowed range, is no knowledge.
     p.determined = space[i].logarithmic
                        ? error < 1.0
-                       : 2.0 * 1.96 * error < space.internal(i, space[i].upper) -
-                                                  space.internal(i, space[i].lower);
+                       : 2.0 * 1.96 * error <
+                             space.internal(i, space[i].upper) - space.internal(i, space[i].lower);
     if (!p.determined) continue;
     p.standard_error = error * space.slope(i, here);
     p.lower = std::max(space[i].lower, space.value(i, here - 1.96 * error));

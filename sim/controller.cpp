@@ -27,10 +27,10 @@ double SlaveControlUnit::sample(long n, double encoder_position) {
   return std::clamp(u, -settings_.limit, settings_.limit);
 }
 
-Schedule simulate_controlled(const Model<double>& model, SlaveControlUnit& unit,
-                             std::span<const double> times,
-                             const std::function<void(std::size_t, const Integrator<double>&)>& read,
-                             const IntegratorOptions& options) {
+Schedule simulate_controlled(
+    const Model<double>& model, SlaveControlUnit& unit, std::span<const double> times,
+    const std::function<void(std::size_t, const Integrator<double>&)>& read,
+    const IntegratorOptions& options) {
   const ControllerSettings& settings = unit.settings();
   Schedule written;
   Integrator<double> axis(model, {}, options);

@@ -5,7 +5,8 @@
 // unit. The paper gives the periods and says that the law combines position, velocity and
 // integrated position; the form and the gains are assumed:
 //
-//   U = clip((k_ff v_ref + k_p e + k_i T_s sum e) 10 V/(m/s), -limit, limit),  e = reference - encoder
+//   U = clip((k_ff v_ref + k_p e + k_i T_s sum e) 10 V/(m/s), -limit, limit),  e = reference -
+//   encoder
 //
 // with the reference interpolated linearly between track points, and v_ref its slope.
 #pragma once
@@ -19,13 +20,13 @@
 namespace axisfit {
 
 struct ControllerSettings {
-  double period = 5e-3;         ///< s, of sampling
-  double track_period = 80e-3;  ///< s, between track points
-  double k_ff = 1.0;            ///< speed feed-forward
-  double k_p = 6.0;             ///< 1/s
-  double k_i = 2.0;             ///< 1/s^2
-  double gain = 10.0;           ///< V/(m/s), set-velocity voltage per speed
-  double limit = 10.0;          ///< V, of U either way
+  double period = 5e-3;                 ///< s, of sampling
+  double track_period = 80e-3;          ///< s, between track points
+  double k_ff = 1.0;                    ///< speed feed-forward
+  double k_p = 6.0;                     ///< 1/s
+  double k_i = 2.0;                     ///< 1/s^2
+  double gain = 10.0;                   ///< V/(m/s), set-velocity voltage per speed
+  double limit = 10.0;                  ///< V, of U either way
   double counts_per_revolution = 4000;  ///< of the encoder on the motor shaft; zero: not quantised
 };
 
@@ -56,9 +57,9 @@ class SlaveControlUnit {
 /// Simulates the axis under its controller, from times[0] on, and calls read(i, axis) at every
 /// instant; returns the commands that were written. Needs model.axis.T_d < period. The schedule
 /// ends early if the simulation fails.
-Schedule simulate_controlled(const Model<double>& model, SlaveControlUnit& unit,
-                             std::span<const double> times,
-                             const std::function<void(std::size_t, const Integrator<double>&)>& read,
-                             const IntegratorOptions& options = {});
+Schedule simulate_controlled(
+    const Model<double>& model, SlaveControlUnit& unit, std::span<const double> times,
+    const std::function<void(std::size_t, const Integrator<double>&)>& read,
+    const IntegratorOptions& options = {});
 
 }  // namespace axisfit

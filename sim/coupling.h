@@ -28,7 +28,8 @@ struct Coupling {
   static Coupling to_position(double rate) { return {0.0, 2.0 * rate, rate * rate}; }
 };
 
-/// What the simulation is held to, at one instant: measured arm velocity m/s and encoder position m.
+/// What the simulation is held to, at one instant: measured arm velocity m/s and encoder position
+/// m.
 template <class T>
 struct TargetOf {
   T velocity{0.0};

@@ -66,16 +66,14 @@ class Equations {
 
   /// Motor current, A.
   T current(const Mode& mode, const State<T>& y) const {
-    return m_.structure.drive == Drive::current_source
-               ? m_.axis.K_i * preamplifier_voltage(mode, y)
-               : y[6];
+    return m_.structure.drive == Drive::current_source ? m_.axis.K_i * preamplifier_voltage(mode, y)
+                                                       : y[6];
   }
 
   /// Motor torque as a force at the rack, N on the arm side.
   T drive_force(const Mode& mode, const State<T>& y, const Input<T>& input) const {
-    return m_.structure.drive == Drive::force_source
-               ? m_.axis.K_f * input.command
-               : m_.axis.K_m * current(mode, y) / m_.axis.r_g;
+    return m_.structure.drive == Drive::force_source ? m_.axis.K_f * input.command
+                                                     : m_.axis.K_m * current(mode, y) / m_.axis.r_g;
   }
 
   /// Position of the pinion relative to the rack, m; (4).
@@ -189,10 +187,8 @@ class Equations {
     if (backlash_) {
       const T x = gear_position(y);
       const double scale = 1e-3 + std::abs(value_of(y[0]));  // m; x is a small difference
-      if (mode.contact != -1)
-        visit(contact_positive, mode.contact == 0 ? p.H - x : x - p.H, scale);
-      if (mode.contact != 1)
-        visit(contact_negative, mode.contact == 0 ? x + p.H : -p.H - x, scale);
+      if (mode.contact != -1) visit(contact_positive, mode.contact == 0 ? p.H - x : x - p.H, scale);
+      if (mode.contact != 1) visit(contact_negative, mode.contact == 0 ? x + p.H : -p.H - x, scale);
     }
     if (m_.structure.drive != Drive::force_source) {
       const T v = preamplifier(y);
@@ -227,15 +223,33 @@ class Equations {
   /// exactly zero.
   Mode cross(Mode mode, Guard guard, State<T>& y, const Input<T>& input) const {
     switch (guard) {
-      case Guard::contact_positive: mode.contact = mode.contact == 0 ? 1 : 0; break;
-      case Guard::contact_negative: mode.contact = mode.contact == 0 ? -1 : 0; break;
-      case Guard::v_c_positive: mode.v_c = mode.v_c == 0 ? 1 : 0; break;
-      case Guard::v_c_negative: mode.v_c = mode.v_c == 0 ? -1 : 0; break;
-      case Guard::v_m_positive: mode.v_m = mode.v_m == 0 ? 1 : 0; break;
-      case Guard::v_m_negative: mode.v_m = mode.v_m == 0 ? -1 : 0; break;
-      case Guard::doublet: mode.doublet = !mode.doublet; break;
-      case Guard::break_away_positive: mode = slide(mode, 1); break;
-      case Guard::break_away_negative: mode = slide(mode, -1); break;
+      case Guard::contact_positive:
+        mode.contact = mode.contact == 0 ? 1 : 0;
+        break;
+      case Guard::contact_negative:
+        mode.contact = mode.contact == 0 ? -1 : 0;
+        break;
+      case Guard::v_c_positive:
+        mode.v_c = mode.v_c == 0 ? 1 : 0;
+        break;
+      case Guard::v_c_negative:
+        mode.v_c = mode.v_c == 0 ? -1 : 0;
+        break;
+      case Guard::v_m_positive:
+        mode.v_m = mode.v_m == 0 ? 1 : 0;
+        break;
+      case Guard::v_m_negative:
+        mode.v_m = mode.v_m == 0 ? -1 : 0;
+        break;
+      case Guard::doublet:
+        mode.doublet = !mode.doublet;
+        break;
+      case Guard::break_away_positive:
+        mode = slide(mode, 1);
+        break;
+      case Guard::break_away_negative:
+        mode = slide(mode, -1);
+        break;
       case Guard::stop:
         y[1] = T(0.0);
         if (!backlash_) y[3] = T(0.0);
@@ -302,7 +316,8 @@ class Equations {
   T coupling_acceleration(const State<T>& y, const TargetOf<T>& target) const {
     const auto& [gain, bias] = m_.instruments[index_of(Signal::velocity)];
     T a(0.0);
-    if (coupling_.velocity > 0.0) a += coupling_.velocity * ((target.velocity - bias) / gain - y[1]);
+    if (coupling_.velocity > 0.0)
+      a += coupling_.velocity * ((target.velocity - bias) / gain - y[1]);
     if (coupling_.acceleration > 0.0) a += coupling_.acceleration * position_error(y, target);
     return a;
   }
@@ -326,14 +341,22 @@ T reading(const Equations<T>& equations, Signal signal, const Mode& mode, const 
   const auto& [gain, bias] = equations.model().instruments[index_of(signal)];
   const auto truth = [&]() -> T {
     switch (signal) {
-      case Signal::position: return p.r_g * y[2];
-      case Signal::velocity: return y[1];
-      case Signal::acceleration: return equations.acceleration(mode, y, input);
-      case Signal::tachometer: return p.K_t * y[3];
-      case Signal::motor_current: return equations.current(mode, y);
-      case Signal::preamplifier_voltage: return equations.preamplifier_voltage(mode, y);
-      case Signal::motor_voltage: return equations.motor_voltage(mode, y);
-      case Signal::drive_force: return equations.drive_force(mode, y, input);
+      case Signal::position:
+        return p.r_g * y[2];
+      case Signal::velocity:
+        return y[1];
+      case Signal::acceleration:
+        return equations.acceleration(mode, y, input);
+      case Signal::tachometer:
+        return p.K_t * y[3];
+      case Signal::motor_current:
+        return equations.current(mode, y);
+      case Signal::preamplifier_voltage:
+        return equations.preamplifier_voltage(mode, y);
+      case Signal::motor_voltage:
+        return equations.motor_voltage(mode, y);
+      case Signal::drive_force:
+        return equations.drive_force(mode, y, input);
     }
     return T(0.0);
   };

@@ -5,13 +5,14 @@
 // moving frame of the affine part, with its value at the start of the step frozen into that part:
 // a constant rest is exact too. Stiffness of the current loop or the gear does not limit the step.
 //
-// Events. After every trial step on plain values all guards of the mode are tested, at its end and,
-// by a cubic through values and rates, within. A step that meets one is cut in halves down to the
-// shortest length of the ladder, where Newton's method on the guard ends the search. Then the step
-// is taken in T, and the crossing time is corrected by -g / g' in T: the event time carries its
-// derivatives, and so does every length that is measured from it. After each event, and after each
-// switch of the command, steps grow again from the shortest, so that fast transients are resolved
-// and what they set off is seen.
+// Events. Every step is first tried on plain values, in pieces that are short against the mode's
+// fastest oscillation, and all guards of the mode are looked at: at the ends of the pieces, by a
+// cubic through values and rates within, and in the middle where that turns much. A step that meets
+// one is cut in halves down to the shortest length of the ladder, where Newton's method on the
+// guard ends the search. Then the step is taken in T, and the crossing time is corrected by -g / g'
+// in T: the event time carries its derivatives, and so does every length that is measured from it.
+// After each event, and after each switch of the command, steps grow again from the shortest, so
+// that fast transients are resolved and what they set off is seen.
 //
 // Limits. Derivatives are those of a fixed sequence of transversal events; where two events
 // coincide or a guard is touched without crossing, they are one-sided. The smooth forces must not
@@ -182,10 +183,11 @@ class Integrator {
     input_ahead.target.velocity += slope_.velocity;
     input_ahead.target.position += slope_.position;
     n = 0;
-    view.equations.visit_guards(mode_, ahead, input_ahead, [&](Guard guard, const S& g, double scale) {
-      visit(guard, values[n].first, g - values[n].first, scale);
-      ++n;
-    });
+    view.equations.visit_guards(mode_, ahead, input_ahead,
+                                [&](Guard guard, const S& g, double scale) {
+                                  visit(guard, values[n].first, g - values[n].first, scale);
+                                  ++n;
+                                });
   }
 
   const IntegratorOptions options_;
@@ -224,8 +226,8 @@ void Integrator<T>::switch_mode(const Mode& mode) {
 template <class T>
 const typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
   // The sign of a contact or limit changes constants, not the matrix.
-  const int key = (mode.contact != 0) | (mode.v_c != 0) << 1 | (mode.v_m != 0) << 2 |
-                  (mode.sliding != 0) << 3;
+  const int key =
+      (mode.contact != 0) | (mode.v_c != 0) << 1 | (mode.v_m != 0) << 2 | (mode.sliding != 0) << 3;
   std::unique_ptr<Flow>& flow = flows_[key];
   if (flow == nullptr) {
     Matrix<T> a;
@@ -247,9 +249,9 @@ const typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
     const double radians = oscillation * options_.step;
     const int longest = std::clamp(
         static_cast<int>(std::ceil(std::log2(std::max(1e-9, radians / 2.0)))), 0, ladder.last);
-    flow = std::make_unique<Flow>(
-        Flow{Propagator<T>(a, ladder, coupled()),
-             Propagator<double>(axisfit::value_of(a), ladder, coupled()), oscillation, longest});
+    flow = std::make_unique<Flow>(Flow{Propagator<T>(a, ladder, coupled()),
+                                       Propagator<double>(axisfit::value_of(a), ladder, coupled()),
+                                       oscillation, longest});
   }
   return *flow;
 }
@@ -293,7 +295,8 @@ bool Integrator<T>::met_between(const Look& start, const Look* middle, const Loo
   const auto dips = [](const Node& p, const Node& q, double h, double margin) {
     if (!(p.rate < 0.0 && q.rate > 0.0) || p.value <= 0.0) return false;
     const double d = q.value - p.value, b = 3.0 * d - (2.0 * p.rate + q.rate) * h,
-                 a = (p.rate + q.rate) * h - 2.0 * d, c = p.rate * h;  // a s^3 + b s^2 + c s + value
+                 a = (p.rate + q.rate) * h - 2.0 * d,
+                 c = p.rate * h;  // a s^3 + b s^2 + c s + value
     const double root = b * b - 3.0 * a * c;
     if (root < 0.0) return false;
     const double s = -c / (b + std::sqrt(root));
@@ -308,7 +311,8 @@ bool Integrator<T>::met_between(const Look& start, const Look* middle, const Loo
     }
     const Node& half = middle->nodes[n];
     if (half.value < -half.tolerance) return true;
-    // What the cubic over the whole step gets wrong in the middle tells how far to trust the halves.
+    // What the cubic over the whole step gets wrong in the middle tells how far to trust the
+    // halves.
     const double error =
         std::abs(half.value - 0.5 * (p.value + q.value) - 0.125 * length * (p.rate - q.rate));
     const double margin = 0.25 * error - q.tolerance;
@@ -370,32 +374,33 @@ std::optional<typename Integrator<T>::Hit> Integrator<T>::locate(const State<dou
     input.target.position += slope_.position * t;
     return input;
   };
-  view.equations.visit_guards(mode_, to, input_at(length), [&](Guard guard, double g, double scale) {
-    if (g >= -1e-12 * scale) return;
-    double low = 0.0, high = length, t = 0.0;
-    for (int i = 0; i < 60 && high - low > 1e-15 * length; ++i) {
-      const Input<double> input = input_at(t);
-      const State<double> y = t > 0.0 ? step_by(view, from, t) : from;
-      double value = 0.0, rate = 0.0;
-      visit_guards_and_rates({view.equations, view.propagator, input, view.target_rate}, y,
-                             [&](Guard other, double g_t, double rate_t, double) {
-                               if (other == guard) value = g_t, rate = rate_t;
-                             });
-      // A guard that starts at zero and rises, as that of an arm which has just broken away, was
-      // not met there.
-      if (value <= 0.0 && !(t == 0.0 && rate > 0.0))
-        high = t;
-      else
-        low = t;
-      if (high <= 0.0 || (value == 0.0 && t > 0.0)) break;
-      const double newton = t - value / rate;
-      const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
-      if (next == t) break;
-      t = next;
-    }
-    const double delay = high <= 0.0 ? 0.0 : t;
-    if (!first || delay < first->delay) first = Hit{guard, delay};
-  });
+  view.equations.visit_guards(
+      mode_, to, input_at(length), [&](Guard guard, double g, double scale) {
+        if (g >= -1e-12 * scale) return;
+        double low = 0.0, high = length, t = 0.0;
+        for (int i = 0; i < 60 && high - low > 1e-15 * length; ++i) {
+          const Input<double> input = input_at(t);
+          const State<double> y = t > 0.0 ? step_by(view, from, t) : from;
+          double value = 0.0, rate = 0.0;
+          visit_guards_and_rates({view.equations, view.propagator, input, view.target_rate}, y,
+                                 [&](Guard other, double g_t, double rate_t, double) {
+                                   if (other == guard) value = g_t, rate = rate_t;
+                                 });
+          // A guard that starts at zero and rises, as that of an arm which has just broken away,
+          // was not met there.
+          if (value <= 0.0 && !(t == 0.0 && rate > 0.0))
+            high = t;
+          else
+            low = t;
+          if (high <= 0.0 || (value == 0.0 && t > 0.0)) break;
+          const double newton = t - value / rate;
+          const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
+          if (next == t) break;
+          t = next;
+        }
+        const double delay = high <= 0.0 ? 0.0 : t;
+        if (!first || delay < first->delay) first = Hit{guard, delay};
+      });
   return first;
 }
 
@@ -411,8 +416,8 @@ template <class T>
 void Integrator<T>::pass_event(const Hit& hit) {
   if (hit.delay > 0.0) y_ = step_by(exact(), y_, hit.delay);
   move_time(hit.delay);
-  // One Newton step on the guard in T. Its value is rounding; its derivatives are those of the event
-  // time.
+  // One Newton step on the guard in T. Its value is rounding; its derivatives are those of the
+  // event time.
   T correction(0.0);
   visit_guards_and_rates(exact(), y_, [&](Guard guard, const T& g, const T& rate, double) {
     if (guard == hit.guard && value_of(rate) != 0.0)
@@ -434,7 +439,8 @@ bool Integrator<T>::advance_to(const T& end) {
   const double last = value_of(end);
   const double negligible = 1e-9 * options_.step;
   const int event_limit =
-      events_ + options_.event_limit * (1 + static_cast<int>((last - value_of(time_)) / options_.step));
+      events_ +
+      options_.event_limit * (1 + static_cast<int>((last - value_of(time_)) / options_.step));
   int search = 0;  // level of the search for an event; 0: no search under way
   while (true) {
     const double remaining = last - value_of(time_);
@@ -443,7 +449,8 @@ bool Integrator<T>::advance_to(const T& end) {
     int level = std::max(level_, search);
     // The last piece of an interval, of whatever length, is for the series, where that holds.
     const bool piece = ladder.length(level) > remaining + negligible && search == 0 &&
-                       !equations_.has_smooth_forces() && remaining <= ladder.length(ladder.resolved);
+                       !equations_.has_smooth_forces() &&
+                       remaining <= ladder.length(ladder.resolved);
     while (level <= ladder.last && ladder.length(level) > remaining + negligible) ++level;
     const bool shortest = level >= ladder.last;
     const bool by_series = piece || level > ladder.last;

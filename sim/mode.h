@@ -18,14 +18,14 @@ struct Mode {
 
 /// The surfaces on which the mode changes. A guard is positive inside the mode.
 enum class Guard : std::uint8_t {
-  contact_positive,   ///< x = H
-  contact_negative,   ///< x = -H
-  v_c_positive,       ///< V_c = V_L
-  v_c_negative,       ///< V_c = -V_L
-  v_m_positive,       ///< V_m = V_s
-  v_m_negative,       ///< V_m = -V_s
-  stop,               ///< y1 = 0 while sliding
-  doublet,            ///< |y1| = w
+  contact_positive,     ///< x = H
+  contact_negative,     ///< x = -H
+  v_c_positive,         ///< V_c = V_L
+  v_c_negative,         ///< V_c = -V_L
+  v_m_positive,         ///< V_m = V_s
+  v_m_negative,         ///< V_m = -V_s
+  stop,                 ///< y1 = 0 while sliding
+  doublet,              ///< |y1| = w
   break_away_positive,  ///< the arm's dry friction is overcome in the positive direction
   break_away_negative,  ///< and in the negative
 };

@@ -40,12 +40,18 @@ bool is_used(const QuantityEntry& entry, const Structure& structure) {
     return true;
   }
   switch (entry.quantity.used_by) {
-    case UsedBy::every_axis: return true;
-    case UsedBy::velocity_loop: return structure.drive == Drive::velocity_loop;
-    case UsedBy::electric_drive: return electric;
-    case UsedBy::force_source: return !electric;
-    case UsedBy::backlash: return backlash;
-    case UsedBy::motor: return electric || backlash;
+    case UsedBy::every_axis:
+      return true;
+    case UsedBy::velocity_loop:
+      return structure.drive == Drive::velocity_loop;
+    case UsedBy::electric_drive:
+      return electric;
+    case UsedBy::force_source:
+      return !electric;
+    case UsedBy::backlash:
+      return backlash;
+    case UsedBy::motor:
+      return electric || backlash;
   }
   return true;
 }
@@ -54,12 +60,15 @@ bool has_signal(Signal signal, const Structure& structure) {
   switch (signal) {
     case Signal::position:
     case Signal::velocity:
-    case Signal::acceleration: return true;
+    case Signal::acceleration:
+      return true;
     case Signal::tachometer:
     case Signal::motor_current:
     case Signal::preamplifier_voltage:
-    case Signal::drive_force: return structure.drive != Drive::force_source;
-    case Signal::motor_voltage: return structure.drive == Drive::velocity_loop;
+    case Signal::drive_force:
+      return structure.drive != Drive::force_source;
+    case Signal::motor_voltage:
+      return structure.drive == Drive::velocity_loop;
   }
   return false;
 }

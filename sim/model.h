@@ -94,9 +94,8 @@ Model<To> convert(const Model<From>& from) {
   Model<To> to;
   to.structure = from.structure;
   std::size_t index = 0;
-  visit_quantities(to, [&](std::string_view, const Quantity&, To& member) {
-    member = To(values[index++]);
-  });
+  visit_quantities(
+      to, [&](std::string_view, const Quantity&, To& member) { member = To(values[index++]); });
   return to;
 }
 
@@ -104,9 +103,8 @@ Model<To> convert(const Model<From>& from) {
 template <class T>
 std::vector<T*> members(Model<T>& model) {
   std::vector<T*> pointers;
-  visit_quantities(model, [&](std::string_view, const Quantity&, T& member) {
-    pointers.push_back(&member);
-  });
+  visit_quantities(
+      model, [&](std::string_view, const Quantity&, T& member) { pointers.push_back(&member); });
   return pointers;
 }
 

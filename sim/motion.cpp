@@ -61,8 +61,8 @@ Schedule schedule_of(const Motion& motion, double duration, double period) {
 Reference reference_of(const MoveMotion& move) {
   const double distance = std::abs(move.distance);
   const double peak = std::min(move.speed, std::sqrt(distance * move.acceleration));
-  const double ramp = peak / move.acceleration;                // s
-  const double cruise = (distance - peak * ramp) / peak;       // s
+  const double ramp = peak / move.acceleration;           // s
+  const double cruise = (distance - peak * ramp) / peak;  // s
   return [=, sign = move.distance < 0.0 ? -1.0 : 1.0, a = move.acceleration](double t) {
     if (distance == 0.0 || t <= 0.0) return 0.0;
     if (t < ramp) return sign * 0.5 * a * t * t;

@@ -6,7 +6,8 @@
 //   y(t + h) = y + Psi(h) f(y) + Xi(h) s        (exact)
 //
 // however stiff A is. Psi and Xi come from their Taylor series at the shortest length and from
-// doubling: with E = exp(hA) - I, E(2h) = 2E + E E, Psi(2h) = 2 Psi + E Psi and Xi(2h) = 2 Xi + E Xi
+// doubling: with E = exp(hA) - I, E(2h) = 2E + E E, Psi(2h) = 2 Psi + E Psi and Xi(2h) = 2 Xi + E
+// Xi
 // + h Psi. (E = A Psi, but that product cancels badly when A is stiff.) All lengths of the doubling
 // are kept: they are what the location of events needs, see integrator.h.
 // Literature: N. J. Higham, Functions of Matrices, SIAM 2008, chapter 10.
@@ -119,8 +120,7 @@ template <class T>
 class Propagator {
  public:
   /// `a` = df/dy. With `with_slope`, Xi is prepared too.
-  Propagator(const Matrix<T>& a, const Ladder& ladder, bool with_slope)
-      : a_(a), ladder_(ladder) {
+  Propagator(const Matrix<T>& a, const Ladder& ladder, bool with_slope) : a_(a), ladder_(ladder) {
     const double h = ladder.length(ladder.last);
     // Psi = h (I + hA/2 + (hA)^2/6 + ...), Xi = h^2 (I/2 + hA/6 + ...)
     Matrix<T> psi = scaled_identity(h), xi = scaled_identity(0.5 * h * h), term = psi;

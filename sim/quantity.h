@@ -14,19 +14,19 @@ inline constexpr double kRequired = std::numeric_limits<double>::quiet_NaN();
 /// When the model makes use of a quantity.
 enum class UsedBy {
   every_axis,
-  velocity_loop,    ///< drive: velocity_loop
-  electric_drive,   ///< drive: velocity_loop or current_source
-  force_source,     ///< drive: force_source
-  backlash,         ///< transmission: backlash
-  motor,            ///< needed unless a force source drives a rigid transmission
+  velocity_loop,   ///< drive: velocity_loop
+  electric_drive,  ///< drive: velocity_loop or current_source
+  force_source,    ///< drive: force_source
+  backlash,        ///< transmission: backlash
+  motor,           ///< needed unless a force source drives a rigid transmission
 };
 
 struct Quantity {
-  std::string_view symbol;   ///< the paper's, for example "B_a"
-  std::string_view unit;     ///< SI, for example "N s/m"; "1" when dimensionless
-  std::string_view meaning;  ///< a few words
-  double lower;              ///< smallest value that makes sense, in `unit`
-  double upper;              ///< largest
+  std::string_view symbol;      ///< the paper's, for example "B_a"
+  std::string_view unit;        ///< SI, for example "N s/m"; "1" when dimensionless
+  std::string_view meaning;     ///< a few words
+  double lower;                 ///< smallest value that makes sense, in `unit`
+  double upper;                 ///< largest
   double standard = kRequired;  ///< value when not given
   UsedBy used_by = UsedBy::every_axis;
 };

@@ -1,7 +1,7 @@
 #include "sim/rig.h"
 
-#include <cmath>
 #include <cctype>
+#include <cmath>
 #include <numbers>
 #include <random>
 #include <stdexcept>
@@ -56,8 +56,8 @@ Table record(const Rig& rig, const Motion& motion, const RecordingOptions& optio
   std::vector<std::vector<double>> readings(options.signals.size());
   const auto read = [&](std::size_t, const Integrator<double>& axis) {
     for (std::size_t s = 0; s < options.signals.size(); ++s)
-      readings[s].push_back(reading(axis.equations(), options.signals[s], axis.mode(), axis.state(),
-                                    axis.input()));
+      readings[s].push_back(
+          reading(axis.equations(), options.signals[s], axis.mode(), axis.state(), axis.input()));
   };
   IntegratorOptions integrator;
   integrator.step = options.step;
@@ -72,9 +72,9 @@ Table record(const Rig& rig, const Motion& motion, const RecordingOptions& optio
     simulate<double>(rig.model, command, times, read, {}, {}, integrator);
   }
   if (!readings.empty() && readings.front().size() != times.size())
-    throw std::runtime_error("the motion cannot be simulated beyond " +
-                             std::to_string(times[readings.front().size()]) +
-                             " s: the state is not finite, or events follow each other without end");
+    throw std::runtime_error(
+        "the motion cannot be simulated beyond " + std::to_string(times[readings.front().size()]) +
+        " s: the state is not finite, or events follow each other without end");
 
   Table table;
   table.columns.push_back({"time_s", times});

@@ -22,16 +22,16 @@ struct Rig {
 };
 
 struct RecordingOptions {
-  double duration = 2.5;     ///< s
-  double rate = 1000.0;      ///< Hz, of all signals
-  std::uint64_t seed = 1;    ///< of the noise; every signal has a stream of its own
-  bool noise = true;         ///< false: exact readings, the encoder not quantised either
-  double step = 0.5e-3;      ///< s, of the integrator
+  double duration = 2.5;        ///< s
+  double rate = 1000.0;         ///< Hz, of all signals
+  std::uint64_t seed = 1;       ///< of the noise; every signal has a stream of its own
+  bool noise = true;            ///< false: exact readings, the encoder not quantised either
+  double step = 0.5e-3;         ///< s, of the integrator
   std::vector<Signal> signals;  ///< which to record, in this order
 };
 
-/// Runs a rig through a motion and records it: columns time_s, command_v, then one per signal, named
-/// by column_name(). The model's instruments give gain and bias, the rig noise, and the
+/// Runs a rig through a motion and records it: columns time_s, command_v, then one per signal,
+/// named by column_name(). The model's instruments give gain and bias, the rig noise, and the
 /// controller's encoder the position's resolution.
 /// Throws std::runtime_error when the motion cannot be simulated to its end.
 Table record(const Rig& rig, const Motion& motion, const RecordingOptions& options);

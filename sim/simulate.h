@@ -22,12 +22,13 @@ struct Measured {
 
 /// How a simulation ended.
 struct SimulationOutcome {
-  bool finished = false;   ///< false: not finite, or chattering without end
+  bool finished = false;    ///< false: not finite, or chattering without end
   std::size_t reached = 0;  ///< number of instants that were read
   int events = 0;
 };
 
-/// Simulates from times[0] on and calls read(i, integrator) at every instant times[i] (s, increasing).
+/// Simulates from times[0] on and calls read(i, integrator) at every instant times[i] (s,
+/// increasing).
 ///
 /// A reading precedes a command that switches at the same instant. With a coupling, the target runs
 /// linearly between the measured values.
@@ -42,7 +43,8 @@ SimulationOutcome simulate(const Model<T>& model, const Schedule& command,
   T in_force(0.0);
   // Commands that acted before the first instant.
   for (; next < command.times.size() &&
-         command.times[next] + value_of(model.axis.T_d) < times.front(); ++next)
+         command.times[next] + value_of(model.axis.T_d) < times.front();
+       ++next)
     in_force = T(command.values[next]);
   axis.start(times.front(), in_force, measured.at(0));
   for (std::size_t i = 0; i < times.size(); ++i) {

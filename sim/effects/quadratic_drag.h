@@ -5,7 +5,8 @@
 
 namespace axisfit {
 
-/// Drag that grows with the square of the velocity, -c y1 |y1|: air, or a lubricant that is churned.
+/// Drag that grows with the square of the velocity, -c y1 |y1|: air, or a lubricant that is
+/// churned.
 ///
 /// Slot: arm_force, newtons on the arm side, a smooth function of the state that is not linear and
 /// so goes through the Runge-Kutta part of the integrator.

@@ -99,8 +99,10 @@ TEST(Estimate, SharesParametersAndKeepsOthersPerRecording) {
   ASSERT_TRUE(result.usable) << result.verdict;
   EXPECT_EQ(result.parameters[1].name, "M@step");
   EXPECT_EQ(result.parameters[2].name, "M@loaded");
-  EXPECT_NEAR(result.parameters[1].value, 146.0, 4.0 * result.parameters[1].uncertainty.standard_error);
-  EXPECT_NEAR(result.parameters[2].value, 161.0, 4.0 * result.parameters[2].uncertainty.standard_error);
+  EXPECT_NEAR(result.parameters[1].value, 146.0,
+              4.0 * result.parameters[1].uncertainty.standard_error);
+  EXPECT_NEAR(result.parameters[2].value, 161.0,
+              4.0 * result.parameters[2].uncertainty.standard_error);
 }
 
 TEST(Estimate, JudgesValidationRecordingsThatItDidNotFit) {

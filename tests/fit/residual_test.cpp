@@ -48,10 +48,33 @@ TEST(RecordingCost, IsWhiteNoiseAtTheTruth) {
 
 // Every width of dual number gives the same columns, and they are those of differences.
 TEST(RecordingCost, JacobianIsThatOfDifferencesForAnyNumberOfParameters) {
-  const char* const names[] = {"V_L", "B_a",  "b_g", "k_g", "T_p", "M",   "J_m", "B_m", "K_t",
-                               "r_g", "T_z",  "T_r", "K_1", "K_2", "K_i", "V_s", "K_v", "R",
-                               "L",   "K_e",  "K_m", "H",   "velocity.gain", "acceleration.gain",
-                               "velocity.bias", "acceleration.bias", "initial.y1"};
+  const char* const names[] = {"V_L",
+                               "B_a",
+                               "b_g",
+                               "k_g",
+                               "T_p",
+                               "M",
+                               "J_m",
+                               "B_m",
+                               "K_t",
+                               "r_g",
+                               "T_z",
+                               "T_r",
+                               "K_1",
+                               "K_2",
+                               "K_i",
+                               "V_s",
+                               "K_v",
+                               "R",
+                               "L",
+                               "K_e",
+                               "K_m",
+                               "H",
+                               "velocity.gain",
+                               "acceleration.gain",
+                               "velocity.bias",
+                               "acceleration.bias",
+                               "initial.y1"};
   Job job = example_job();
   job.free.clear();
   const std::vector<double*> member = members(job.model);
