@@ -229,6 +229,7 @@ class JobReader {
     const bool force_source = result_.rig.model.structure.drive == Drive::force_source;
     const auto command = signals.optional("command");
     const auto force = force_source ? signals.optional("drive_force") : std::nullopt;
+    const auto reference = force_source ? std::nullopt : signals.optional("position_reference");
     std::optional<std::vector<double>> input;
     if (command && force) {
       force->error("give either the command or the drive force, not both: each drives the axis");
@@ -241,11 +242,16 @@ class JobReader {
       recording.overrides.emplace_back(gain, 1.0);
     } else if (command) {
       input = read_column(data, *command, "V");
+      if (reference)
+        reference->error("the command is recorded and drives the axis: remove the reference");
+    } else if (reference) {
+      input = read_reference(data, *reference, signals, times);
     } else {
       signals_node.error(force_source
                              ? "the axis is driven by a command or a drive_force: name one "
                                "of them"
-                             : "the axis is driven by the command: name its column");
+                             : "the axis is driven by the command: name its column, or that of the "
+                               "position_reference, from which the slave control unit makes it");
     }
     bool any_named = false;
     for (const SignalInfo& signal : kSignalTable) {
@@ -316,6 +322,26 @@ class JobReader {
         signals_node.error("initial_state: data needs a recorded position or velocity");
       initial_state_from_data(recording);
     }
+  }
+
+  /// The command that the axis file's slave control unit makes of a recorded position reference.
+  std::optional<std::vector<double>> read_reference(
+      const RecordingFile& data, const ConfigNode& node, ConfigMap& signals,
+      const std::optional<std::vector<double>>& times) const {
+    const auto reference = read_column(data, node, "m");
+    const auto position_node = signals.optional("position");
+    if (!position_node) {
+      node.error(
+          "a position_reference drives the slave control unit, which reads the encoder: name "
+          "the column of the position too");
+      return std::nullopt;
+    }
+    ConfigMap map(*position_node);
+    const auto position = read_column(data, map, "m");
+    if (!reference || !position || !times) return std::nullopt;
+    if (!same_length(node, *reference, *times) || !same_length(*position_node, *position, *times))
+      return std::nullopt;
+    return command_from_reference(result_.rig.controller, *times, *reference, *position);
   }
 
   static bool same_length(const ConfigNode& node, const std::vector<double>& values,

@@ -63,4 +63,30 @@ Schedule simulate_controlled(
   return written;
 }
 
+std::vector<double> command_from_reference(const ControllerSettings& settings,
+                                           std::span<const double> times,
+                                           std::span<const double> reference,
+                                           std::span<const double> position) {
+  SlaveControlUnit unit(settings, [&](double t) {
+    const double instant = times.front() + t;
+    const auto after = std::ranges::lower_bound(times, instant);
+    if (after == times.end()) return reference.back();
+    const auto i = static_cast<std::size_t>(after - times.begin());
+    if (i == 0) return reference.front();
+    const double share = (instant - times[i - 1]) / (times[i] - times[i - 1]);
+    return reference[i - 1] + share * (reference[i] - reference[i - 1]);
+  });
+  std::vector<double> command;
+  long n = 0;
+  double in_force = 0.0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    // Sampling instants fall on samples of the recording, but for rounding.
+    while (times.front() + static_cast<double>(n) * settings.period <=
+           times[i] + 1e-6 * settings.period)
+      in_force = unit.sample(n++, position[i]);
+    command.push_back(in_force);
+  }
+  return command;
+}
+
 }  // namespace axisfit

@@ -62,4 +62,12 @@ Schedule simulate_controlled(
     const std::function<void(std::size_t, const Integrator<double>&)>& read,
     const IntegratorOptions& options = {});
 
+/// The commands (V) that the control law writes for a recorded motion, as a column: the command in
+/// force from each of the instants `times` (s) on, from the recorded reference and encoder position
+/// (m). For recordings that lack the command itself.
+std::vector<double> command_from_reference(const ControllerSettings& settings,
+                                           std::span<const double> times,
+                                           std::span<const double> reference,
+                                           std::span<const double> position);
+
 }  // namespace axisfit

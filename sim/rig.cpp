@@ -82,7 +82,8 @@ Table record(const Rig& rig, const Motion& motion, const RecordingOptions& optio
   Column& written = table.columns.emplace_back(Column{"command_v", {}});
   std::size_t next = 0;
   for (const double t : times) {
-    while (next < command.times.size() && command.times[next] <= t) ++next;
+    // An instant and a sample that are the same may differ by rounding.
+    while (next < command.times.size() && command.times[next] <= t + 1e-9 / options.rate) ++next;
     written.values.push_back(next == 0 ? 0.0 : command.values[next - 1]);
   }
   for (std::size_t s = 0; s < options.signals.size(); ++s) {

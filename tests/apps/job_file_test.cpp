@@ -292,7 +292,8 @@ TEST_F(JobFileTest, ADriveForceReplacesTheCommandOfAForceSource) {
             "job.yaml:6:7: the axis is driven by a command or a drive_force: name one of them");
   EXPECT_EQ(errors(replaced(replaced(kJob, "mass.yaml", "driven.yaml"),
                             "      command: {column: u, unit: V}\n", "")),
-            "job.yaml:6:7: the axis is driven by the command: name its column");
+            "job.yaml:6:7: the axis is driven by the command: name its column, or that of the "
+            "position_reference, from which the slave control unit makes it");
 }
 
 TEST_F(JobFileTest, InitialStateFromData) {
