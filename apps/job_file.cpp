@@ -15,6 +15,7 @@
 #include "apps/units.h"
 #include "fit/initial_state.h"
 #include "fit/noise.h"
+#include "fit/rest.h"
 #include "sim/suggest.h"
 #include "sim/table.h"
 
@@ -168,6 +169,10 @@ class JobReader {
     const auto initial_samples = map.optional("initial_samples");
     if (const auto& n = initial_samples)
       recording.initial_samples = static_cast<std::size_t>(n->as_integer(4, 1000000).value_or(20));
+    if (const auto rest = map.optional("acceleration_at_rest")) {
+      static const std::vector<std::string> choices{"leave_out", "keep"};
+      recording.acceleration_at_rest = rest->as_choice(choices).value_or(0) == 1;
+    }
     if (const auto score = map.optional("score_initial_samples"))
       recording.score_initial_samples = score->as_bool().value_or(true);
     if (const auto set = map.optional("set")) read_overrides(*set, recording);
@@ -322,6 +327,7 @@ class JobReader {
         signals_node.error("initial_state: data needs a recorded position or velocity");
       initial_state_from_data(recording);
     }
+    if (!recording.acceleration_at_rest) leave_out_acceleration_at_rest(recording);
   }
 
   /// The command that the axis file's slave control unit makes of a recorded position reference.

@@ -48,12 +48,16 @@ std::vector<Trial> run_starts(const Job& job, const ParameterSpace& space,
   return trials;
 }
 
-double mean_square_error(const std::vector<double>& measured, const std::vector<double>& simulated,
+double mean_square_error(const Measurement& measured, const std::vector<double>& simulated,
                          std::size_t first) {
   double sum = 0.0;
-  for (std::size_t i = first; i < measured.size(); ++i)
-    sum += (measured[i] - simulated[i]) * (measured[i] - simulated[i]);
-  return sum / static_cast<double>(measured.size() - first);
+  std::size_t n = 0;
+  for (std::size_t i = first; i < simulated.size(); ++i) {
+    if (!measured.counts(i)) continue;
+    sum += (measured.values[i] - simulated[i]) * (measured.values[i] - simulated[i]);
+    ++n;
+  }
+  return n > 0 ? sum / static_cast<double>(n) : 0.0;
 }
 
 double standard_deviation(const std::vector<double>& values) {
@@ -82,15 +86,14 @@ RecordingResult judge(const Job& job, const ParameterSpace& space, std::size_t i
     error.sigma_given = measurement.sigma_given;
     if (result.prediction.finished) {
       const double mean_square =
-          mean_square_error(measurement.values, result.prediction.simulated[m], first);
+          mean_square_error(measurement, result.prediction.simulated[m], first);
       const auto [low, high] = std::ranges::minmax(measurement.values);
       error.rmse = std::sqrt(mean_square);
       error.nrmse_percent = high > low ? 100.0 * error.rmse / (high - low) : 0.0;
       error.reduced_chi_square = mean_square / (measurement.sigma * measurement.sigma);
     }
     if (coupled && coupled->finished) {
-      const double mean_square =
-          mean_square_error(measurement.values, coupled->simulated[m], first);
+      const double mean_square = mean_square_error(measurement, coupled->simulated[m], first);
       error.prediction_rmse = std::sqrt(mean_square);
       error.prediction_reduced_chi_square = mean_square / (measurement.sigma * measurement.sigma);
     }

@@ -31,6 +31,10 @@ struct Measurement {
   double sigma = 0.0;          ///< standard deviation of its noise, > 0
   bool sigma_given = false;    ///< false: estimated from the values, see noise.h
   bool fitted = true;          ///< false: compared and reported, not part of the fit
+  /// Samples that are neither fitted nor judged, see rest.h; empty: none.
+  std::vector<bool> left_out;
+
+  bool counts(std::size_t sample) const { return left_out.empty() || !left_out[sample]; }
 };
 
 /// One recording. Samples run over `times`.
@@ -45,6 +49,7 @@ struct Recording {
   /// Samples at the start from which an initial state is taken.
   std::size_t initial_samples = 20;
   bool score_initial_samples = true;  ///< false: errors are reported without them
+  bool acceleration_at_rest = false;  ///< whether it counts while the arm rests, see rest.h
   /// Quantities that differ from the model's in this recording: index in quantity_list(), value.
   std::vector<std::pair<std::size_t, double>> overrides;
 

@@ -1,5 +1,6 @@
 #include "fit/residual.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -8,23 +9,29 @@
 namespace axisfit {
 namespace {
 
-Measured measured(const Recording& recording) {
-  Measured series;
-  if (const Measurement* m = recording.find(Signal::velocity)) series.velocity = m->values;
-  if (const Measurement* m = recording.find(Signal::position)) series.position = m->values;
-  return series;
-}
-
-template <class T, class Read>
+/// Runs a recording through a model, read by a recorder of these signals; `also` sees the axis at
+/// every sample.
+template <class T, class Also>
 SimulationOutcome run(const Job& job, const Recording& recording, const Model<T>& model,
-                      const Coupling& coupling, Read&& read) {
+                      const Coupling& coupling, Recorder<T>& recorder, Also&& also) {
   IntegratorOptions options;
   options.step = job.options.step;
   // A recording shows less than one event per sample. Parameters with which the axis chatters
   // faster, as a controller in a limit cycle, are none to go on from.
   options.event_budget = 200 + static_cast<long>(recording.times.size()) / 2;
-  return simulate<T>(model, recording.command, recording.times, std::forward<Read>(read), coupling,
-                     measured(recording), options);
+  const auto series = [&](Signal signal) {
+    const Measurement* m = coupling.active() ? recording.find(signal) : nullptr;
+    return m == nullptr ? std::vector<double>{} : recorder.refined(m->values);
+  };
+  const std::vector<double> velocity = series(Signal::velocity),
+                            position = series(Signal::position);
+  return simulate<T>(
+      model, recording.command, recorder.instants(),
+      [&](std::size_t i, const Integrator<T>& axis) {
+        recorder.read(axis);
+        if (recorder.is_sample(i)) also(axis);
+      },
+      coupling, {velocity, position}, options);
 }
 
 /// sign(r) sqrt(rho(r^2)) for Huber's rho of width k, and its derivative.
@@ -48,19 +55,26 @@ Coupling coupling_for(const Recording& recording, double rate) {
 Prediction predict(const Job& job, const ParameterSpace& space, std::size_t index, const double* u,
                    const Coupling& coupling) {
   const Recording& recording = job.recordings[index];
+  std::vector<Signal> signals;
+  for (const Measurement& m : recording.measurements) signals.push_back(m.signal);
+  const Model<double> model = space.model_at(u, index);
+  Recorder<double> recorder(model.instruments, signals, recording.times);
   Prediction prediction;
-  prediction.simulated.assign(recording.measurements.size(), {});
   const SimulationOutcome outcome =
-      run<double>(job, recording, space.model_at(u, index), coupling,
-                  [&](std::size_t, const Integrator<double>& axis) {
-                    for (std::size_t m = 0; m < recording.measurements.size(); ++m)
-                      prediction.simulated[m].push_back(
-                          reading(axis.equations(), recording.measurements[m].signal, axis.mode(),
-                                  axis.state(), axis.input()));
-                    if (coupling.active())
-                      prediction.coupling_force.push_back(
-                          axis.equations().coupling_force(axis.state(), axis.input().target));
-                  });
+      run(job, recording, model, coupling, recorder, [&](const Integrator<double>& axis) {
+        const Equations<double>& equations = axis.equations();
+        const State<double>& y = axis.state();
+        const double drive = equations.drive_force(axis.mode(), y, axis.input());
+        prediction.samples.push_back(
+            {axis.input().command, y[0], y[1], y[2],
+             equations.current(axis.mode(), y, axis.input()), drive,
+             model.structure.transmission == Transmission::rigid
+                 ? drive
+                 : equations.gear_force(axis.mode(), y),
+             coupling.active() ? equations.coupling_force(y, axis.input().target) : 0.0});
+      });
+  for (std::size_t m = 0; m < signals.size(); ++m)
+    prediction.simulated.push_back(recorder.readings(m));
   prediction.finished = outcome.finished;
   prediction.events = outcome.events;
   return prediction;
@@ -70,11 +84,18 @@ RecordingCost::RecordingCost(const Job& job, const ParameterSpace& space, std::s
                              const Coupling& coupling)
     : job_(job), space_(space), recording_(recording), coupling_(coupling) {
   const Recording& r = job.recordings[recording];
-  for (std::size_t m = 0; m < r.measurements.size(); ++m)
-    if (r.measurements[m].fitted) fitted_.push_back(m);
+  std::ptrdiff_t residuals = 0;
+  for (std::size_t m = 0; m < r.measurements.size(); ++m) {
+    const Measurement& measurement = r.measurements[m];
+    if (!measurement.fitted) continue;
+    fitted_.push_back(m);
+    signals_.push_back(measurement.signal);
+    residuals += static_cast<std::ptrdiff_t>(r.times.size()) -
+                 std::ranges::count(measurement.left_out, true);
+  }
   for (std::size_t i = 0; i < space.size(); ++i)
     if (space.applies(i, recording)) applicable_.push_back(i);
-  set_num_residuals(static_cast<int>(fitted_.size() * r.times.size()));
+  set_num_residuals(static_cast<int>(residuals));
   mutable_parameter_block_sizes()->push_back(static_cast<int>(space.size()));
 }
 
@@ -82,7 +103,6 @@ template <class T>
 bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobian,
                              std::span<const std::size_t> columns) const {
   const Recording& recording = job_.recordings[recording_];
-  const std::size_t samples = recording.times.size();
   Model<T> model = convert<T>(space_.model_at(u, recording_));
   if constexpr (!std::is_same_v<T, double>) {
     const std::vector<T*> member = members(model);
@@ -90,29 +110,32 @@ bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobia
       member[space_[columns[k]].quantity]->v[static_cast<Eigen::Index>(k)] =
           space_.slope(columns[k], u[columns[k]]);
   }
+  Recorder<T> recorder(model.instruments, signals_, recording.times);
+  if (!run(job_, recording, model, coupling_, recorder, [](const Integrator<T>&) {}).finished)
+    return false;
   bool finite = true;
-  const SimulationOutcome outcome =
-      run<T>(job_, recording, model, coupling_, [&](std::size_t i, const Integrator<T>& axis) {
-        for (std::size_t f = 0; f < fitted_.size(); ++f) {
-          const Measurement& m = recording.measurements[fitted_[f]];
-          const T simulated =
-              reading(axis.equations(), m.signal, axis.mode(), axis.state(), axis.input());
-          double r = (m.values[i] - value_of(simulated)) / m.sigma, weight = 1.0;
-          if (job_.options.loss == Loss::huber)
-            std::tie(r, weight) = robust(r, job_.options.huber_width);
-          const std::size_t row = f * samples + i;
-          residuals[row] = r;
-          finite = finite && std::isfinite(r);
-          if constexpr (!std::is_same_v<T, double>) {
-            for (std::size_t k = 0; k < columns.size(); ++k) {
-              const double d = -weight * simulated.v[static_cast<Eigen::Index>(k)] / m.sigma;
-              jacobian[row * space_.size() + columns[k]] = d;
-              finite = finite && std::isfinite(d);
-            }
-          }
+  std::size_t row = 0;
+  for (std::size_t f = 0; f < fitted_.size(); ++f) {
+    const Measurement& m = recording.measurements[fitted_[f]];
+    const std::vector<T> simulated = recorder.readings(f);
+    for (std::size_t i = 0; i < simulated.size(); ++i) {
+      if (!m.counts(i)) continue;
+      double r = (m.values[i] - value_of(simulated[i])) / m.sigma, weight = 1.0;
+      if (job_.options.loss == Loss::huber)
+        std::tie(r, weight) = robust(r, job_.options.huber_width);
+      residuals[row] = r;
+      finite = finite && std::isfinite(r);
+      if constexpr (!std::is_same_v<T, double>) {
+        for (std::size_t k = 0; k < columns.size(); ++k) {
+          const double d = -weight * simulated[i].v[static_cast<Eigen::Index>(k)] / m.sigma;
+          jacobian[row * space_.size() + columns[k]] = d;
+          finite = finite && std::isfinite(d);
         }
-      });
-  return outcome.finished && finite;
+      }
+      ++row;
+    }
+  }
+  return finite;
 }
 
 bool RecordingCost::Evaluate(double const* const* parameters, double* residuals,

@@ -6,17 +6,29 @@
 #include <vector>
 
 #include "fit/parameters.h"
-#include "sim/coupling.h"
+#include "sim/recorder.h"
 #include "sim/simulate.h"
 
 namespace axisfit {
 
-/// What the simulation says of a recording: per measurement, in the recording's order, one value
-/// per sample.
+/// The simulated axis at one sample, SI, forces on the arm side.
+struct Sample {
+  double command = 0.0;         ///< V
+  double position = 0.0;        ///< m, of the arm
+  double velocity = 0.0;        ///< m/s, of the arm
+  double motor_angle = 0.0;     ///< rad
+  double current = 0.0;         ///< A
+  double drive_force = 0.0;     ///< N
+  double gear_force = 0.0;      ///< N; of a rigid transmission the drive force
+  double coupling_force = 0.0;  ///< N, zero when uncoupled
+};
+
+/// What the simulation says of a recording.
 struct Prediction {
   bool finished = false;
-  std::vector<std::vector<double>> simulated;  ///< in each signal's unit
-  std::vector<double> coupling_force;          ///< N, per sample; empty when uncoupled
+  /// Per measurement, in the recording's order, one value per sample, in the signal's unit.
+  std::vector<std::vector<double>> simulated;
+  std::vector<Sample> samples;
   int events = 0;
 };
 
@@ -28,7 +40,8 @@ Prediction predict(const Job& job, const ParameterSpace& space, std::size_t reco
 Coupling coupling_for(const Recording& recording, double rate);
 
 /// Residuals (measured - simulated) / sigma of all fitted measurements of a recording, measurement
-/// by measurement. One parameter block: the whole vector u of the space.
+/// by measurement, without the samples that are left out. One parameter block: the whole vector u
+/// of the space.
 ///
 /// A point whose simulation does not finish makes Evaluate return false: for the solver a rejected
 /// step. With a Huber loss every residual r is replaced by sign(r) sqrt(rho(r^2)), so that the sum
@@ -52,6 +65,7 @@ class RecordingCost : public ceres::CostFunction {
   std::size_t recording_;
   Coupling coupling_;
   std::vector<std::size_t> fitted_;      // indices of measurements
+  std::vector<Signal> signals_;          // their signals
   std::vector<std::size_t> applicable_;  // indices of parameters
 };
 

@@ -24,11 +24,13 @@ enum class Transmission {
   rigid,     ///< arm and motor are one mass: J = J_m + r_g^2 M
 };
 
-/// Number of state variables.
-inline constexpr std::size_t kStates = 7;
+/// Number of state variables of the paper, and with those of effects.
+inline constexpr std::size_t kPaperStates = 7;
+inline constexpr std::size_t kStates = 10;
 
 /// y0 arm position m | y1 arm velocity m/s | y2 motor angle rad | y3 motor velocity rad/s |
-/// y4, y5 preamplifier V, V/s | y6 motor current A.
+/// y4, y5 preamplifier V, V/s | y6 motor current A |
+/// y7 what a lagging drive follows, V | y8, y9 displacement of an elastic mode m, m/s.
 /// States that a variant lacks stay at their initial value.
 template <class T>
 using State = std::array<T, kStates>;

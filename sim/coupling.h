@@ -34,6 +34,13 @@ template <class T>
 struct TargetOf {
   T velocity{0.0};
   T position{0.0};
+
+  /// Moves along the rate `slope` per second for `length` seconds.
+  template <class U>
+  void move(const TargetOf<double>& slope, const U& length) {
+    velocity += slope.velocity * length;
+    position += slope.position * length;
+  }
 };
 using Target = TargetOf<double>;
 

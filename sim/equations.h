@@ -13,38 +13,59 @@
 
 namespace axisfit {
 
-/// What acts on the axis from outside, at one instant.
+/// What acts on the axis at one instant besides its state.
 template <class T>
 struct Input {
   T command{0.0};  ///< U, V
   TargetOf<T> target;
+  T time{0.0};  ///< s, of the recording
+  Memory<T> memory;
 };
 
 /// Which terms of the right-hand side to include.
 enum class Terms {
   affine,  ///< all that is affine in state and input
-  all,     ///< with the state-dependent forces of effects
+  all,     ///< with the other forces of effects
+};
+
+/// What of the model is in play: the same for all scalar types of one simulation.
+struct PartsInPlay {
+  EffectSet effects;
+  slots::Needs needs;
+  bool backlash, static_friction, directions, spring, asymmetric, slope, load, curved_load, elastic,
+      lagging, lag_in_play;
 };
 
 template <class T>
 class Equations {
  public:
-  explicit Equations(const Model<T>& model, const Coupling& coupling = {},
-                     bool static_friction = false)
+  explicit Equations(const Model<T>& model, const Coupling& coupling = {})
+      : Equations(model, coupling,
+                  parts_of(model, slots::in_play(model.effects, model.structure.effects))) {}
+
+  /// With what is in play given: from a model in another scalar type, which may show more of it.
+  Equations(const Model<T>& model, const Coupling& coupling, const PartsInPlay& parts)
       : m_(model),
         coupling_(coupling),
-        backlash_(model.structure.transmission == Transmission::backlash),
-        dry_level_(slots::friction_level(model.effects, model.structure.effects)),
-        constant_force_(slots::constant_force(model.effects, model.structure.effects)),
-        static_friction_(static_friction || is_in_play(model.axis.F_s)),
-        dry_friction_(static_friction_ || slots::have_friction(model.structure.effects)),
-        smooth_forces_(slots::have_arm_force(model.structure.effects)) {}
+        slots_(slots::affine(model.effects, parts.effects)),
+        is_(parts) {}
 
   const Model<T>& model() const { return m_; }
   const Coupling& coupling() const { return coupling_; }
-  bool has_static_friction() const { return static_friction_; }
-  bool has_dry_friction() const { return dry_friction_; }
-  bool has_smooth_forces() const { return smooth_forces_; }
+  const PartsInPlay& parts() const { return is_; }
+  bool has_smooth_forces() const {
+    return is_.needs.arm_force || is_.needs.friction_curve || is_.needs.motor_torque ||
+           is_.curved_load;
+  }
+  /// Whether the signs of contact and motion change more than constants.
+  bool signs_matter() const { return is_.asymmetric || is_.slope || is_.load; }
+  /// What a drive lag of zero adds to the dead time of a force source: nothing, but its derivative.
+  T lag_of_switching() const {
+    const bool adds = is_.lag_in_play && m_.structure.drive == Drive::force_source;
+    return adds ? slots_.drive_lag : T(0.0);
+  }
+  /// Number of states in use, from the first on.
+  std::size_t states() const { return is_.elastic ? 10 : is_.lagging ? 8 : 7; }
 
   /// Preamplifier output before its limit, V; (2).
   T preamplifier(const State<T>& y) const { return y[4] + m_.axis.T_z * y[5]; }
@@ -54,26 +75,56 @@ class Equations {
     return mode.v_c == 0 ? preamplifier(y) : double(mode.v_c) * m_.axis.V_L;
   }
 
+  /// What the power stage follows, V: V_c, late by the drive's lag.
+  T power_stage_input(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    if (is_.lagging) return y[7];
+    T v = preamplifier_voltage(mode, y);
+    // The derivative at zero lag: v(t - T_l) = v - T_l v'.
+    if (is_.lag_in_play && mode.v_c == 0)
+      v -= slots_.drive_lag * (y[5] + m_.axis.T_z * preamplifier_curvature(y, input));
+    return v;
+  }
+
   /// Motor voltage before its limit, V; (3).
-  T motor_demand(const Mode& mode, const State<T>& y) const {
-    return m_.axis.K_v * (preamplifier_voltage(mode, y) - y[6] / m_.axis.K_i);
+  T motor_demand(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    return m_.axis.K_v * (power_stage_input(mode, y, input) - y[6] / m_.axis.K_i);
   }
 
   /// V_m, behind the limit, V; (3).
-  T motor_voltage(const Mode& mode, const State<T>& y) const {
-    return mode.v_m == 0 ? motor_demand(mode, y) : double(mode.v_m) * m_.axis.V_s;
+  T motor_voltage(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    return mode.v_m == 0 ? motor_demand(mode, y, input) : double(mode.v_m) * m_.axis.V_s;
   }
 
   /// Motor current, A.
-  T current(const Mode& mode, const State<T>& y) const {
-    return m_.structure.drive == Drive::current_source ? m_.axis.K_i * preamplifier_voltage(mode, y)
-                                                       : y[6];
+  T current(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    switch (m_.structure.drive) {
+      case Drive::velocity_loop:
+        return y[6];
+      case Drive::current_source:
+        return m_.axis.K_i * power_stage_input(mode, y, input);
+      case Drive::force_source:
+        break;
+    }
+    return T(0.0);
+  }
+
+  /// U with the drive's offset, V.
+  T command(const Input<T>& input) const { return input.command + slots_.command_offset; }
+
+  /// Force at the rack of the motor's current alone, N on the arm side.
+  T current_force(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    return m_.structure.drive == Drive::force_source
+               ? m_.axis.K_f * (is_.lagging ? y[7] : command(input))
+               : m_.axis.K_m * current(mode, y, input) / m_.axis.r_g;
   }
 
   /// Motor torque as a force at the rack, N on the arm side.
-  T drive_force(const Mode& mode, const State<T>& y, const Input<T>& input) const {
-    return m_.structure.drive == Drive::force_source ? m_.axis.K_f * input.command
-                                                     : m_.axis.K_m * current(mode, y) / m_.axis.r_g;
+  T drive_force(const Mode& mode, const State<T>& y, const Input<T>& input,
+                Terms terms = Terms::all) const {
+    T force = current_force(mode, y, input);
+    if (is_.needs.motor_torque && terms == Terms::all)
+      force += motor_torque(mode, y, input) / m_.axis.r_g;
+    return force;
   }
 
   /// Position of the pinion relative to the rack, m; (4).
@@ -86,33 +137,39 @@ class Equations {
            (m_.axis.r_g * y[3] - y[1]) * m_.axis.b_g;
   }
 
-  /// Largest dry friction at the arm's present velocity, N >= 0; (6) and effects.
-  T friction_level(bool in_doublet) const {
-    return in_doublet ? dry_level_ + m_.axis.F_s : dry_level_;
-  }
-
   /// All forces on the moving mass but dry friction and coupling, N on the arm side.
   T applied_force(const Mode& mode, const State<T>& y, const Input<T>& input,
                   Terms terms = Terms::all) const {
-    T force = constant_force_ - m_.axis.B_a * y[1];
-    if (backlash_)
+    T force = slots_.constant_force - m_.axis.B_a * y[1];
+    if (is_.spring) force -= slots_.stiffness * y[0];
+    if (is_.asymmetric) force -= double(mode.sliding) * slots_.viscous_asymmetry * y[1];
+    if (is_.elastic) force += slots_.elastic_mass * elastic_rate(y);
+    if (is_.backlash)
       force += gear_force(mode, y);
     else
-      force += drive_force(mode, y, input) - m_.axis.B_m * y[1] / (m_.axis.r_g * m_.axis.r_g);
-    if (smooth_forces_ && terms == Terms::all)
-      force += slots::arm_force(m_.effects, m_.structure.effects, y);
+      force +=
+          drive_force(mode, y, input, terms) - m_.axis.B_m * y[1] / (m_.axis.r_g * m_.axis.r_g);
+    if (is_.needs.arm_force && terms == Terms::all)
+      force += slots::arm_force(m_.effects, is_.effects, instant(mode, y, input));
     return force;
   }
 
   /// The mass that applied_force moves, kg.
   T moving_mass() const {
-    return backlash_ ? m_.axis.M : m_.axis.M + m_.axis.J_m / (m_.axis.r_g * m_.axis.r_g);
+    T mass = m_.axis.M + slots_.added_mass;
+    if (is_.elastic) mass -= slots_.elastic_mass;
+    return is_.backlash ? mass : mass + m_.axis.J_m / (m_.axis.r_g * m_.axis.r_g);
   }
 
   /// y1' of the model itself, without coupling, m/s^2: what an accelerometer reads.
-  T acceleration(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+  T acceleration(const Mode& mode, const State<T>& y, const Input<T>& input,
+                 Terms terms = Terms::all) const {
     if (mode.sliding == 0) return T(0.0);
-    return (applied_force(mode, y, input) - friction(mode)) / moving_mass();
+    T force = applied_force(mode, y, input, terms);
+    if (is_.directions)
+      force -=
+          double(mode.sliding) * dry_friction(mode.doublet, mode.sliding, mode, y, input, terms);
+    return force / moving_mass();
   }
 
   /// Force that the coupling adds to the arm, N: what the model lacks, or noise.
@@ -124,11 +181,10 @@ class Equations {
   State<T> rate(const Mode& mode, const State<T>& y, const Input<T>& input,
                 Terms terms = Terms::all) const {
     const Axis<T>& p = m_.axis;
-    const auto& [y0, y1, y2, y3, y4, y5, y6] = y;
     State<T> d{};
-    d[0] = y1;
-    if (mode.sliding != 0)
-      d[1] = (applied_force(mode, y, input, terms) - friction(mode)) / moving_mass();
+    d[0] = y[1];
+    d[1] = acceleration(mode, y, input, terms);
+    const T own_acceleration = d[1];
     T follow(0.0), push(0.0);
     if (coupling_.active()) {
       follow = coupling_.position * position_error(y, input.target);
@@ -136,28 +192,47 @@ class Equations {
       d[0] += follow;
       if (mode.sliding != 0) d[1] += coupling_acceleration(y, input.target);
     }
-    if (backlash_) {
-      const T torque = p.r_g * drive_force(mode, y, input);
-      d[2] = y3 + follow / p.r_g;
-      d[3] = (torque - p.B_m * y3 - p.r_g * gear_force(mode, y)) / p.J_m + push / p.r_g;
+    if (is_.backlash) {
+      const T torque = p.r_g * drive_force(mode, y, input, terms);
+      d[2] = y[3] + follow / p.r_g;
+      d[3] = (torque - p.B_m * y[3] - p.r_g * gear_force(mode, y)) / p.J_m + push / p.r_g;
     } else {
       d[2] = d[0] / p.r_g;
       d[3] = d[1] / p.r_g;
     }
     if (m_.structure.drive != Drive::force_source) {
-      d[4] = y5;
-      d[5] = (p.K_1 * input.command - p.K_2 * p.K_t * y3 - y4 - (p.T_p + p.T_r) * y5) /
-             (p.T_p * p.T_r);
+      d[4] = y[5];
+      d[5] = preamplifier_curvature(y, input);
     }
     if (m_.structure.drive == Drive::velocity_loop)
-      d[6] = (motor_voltage(mode, y) - p.R * y6 - p.K_e * y3) / p.L;
+      d[6] = (motor_voltage(mode, y, input) - p.R * y[6] - p.K_e * y[3]) / p.L;
+    if (is_.lagging) d[7] = (undelayed_input(mode, y, input) - y[7]) / slots_.drive_lag;
+    if (is_.elastic) {
+      d[8] = y[9];
+      d[9] = -elastic_rate(y) - own_acceleration;
+    }
     return d;
   }
 
-  /// y1' due to the state-dependent forces of effects alone, m/s^2: the part that is not affine.
-  T smooth_acceleration(const Mode& mode, const State<T>& y) const {
-    if (mode.sliding == 0) return T(0.0);
-    return slots::arm_force(m_.effects, m_.structure.effects, y) / moving_mass();
+  /// The part of rate() that is not affine.
+  State<T> smooth_rate(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    const Axis<T>& p = m_.axis;
+    State<T> d{};
+    T arm(0.0), motor(0.0);
+    if (is_.needs.motor_torque) motor = motor_torque(mode, y, input) / p.r_g;
+    if (mode.sliding != 0) {
+      const Instant<T> at = instant(mode, y, input);
+      arm = slots::arm_force(m_.effects, is_.effects, at);
+      if (is_.needs.friction_curve)
+        arm -= double(mode.sliding) * slots::friction_curve(m_.effects, is_.effects, at);
+      if (is_.curved_load)
+        arm -= double(mode.sliding) * slots_.load_friction * load(mode, y, input);
+      if (!is_.backlash) arm += motor;
+      d[1] = arm / moving_mass();
+      if (is_.elastic) d[9] = -d[1];
+    }
+    d[3] = is_.backlash ? p.r_g * motor / p.J_m : d[1] / p.r_g;
+    return d;
   }
 
   /// Change of rate() per second because the target moves: the terms in `slope` alone.
@@ -173,55 +248,53 @@ class Equations {
     d[0] = coupling_.position * e;
     if (mode.sliding != 0) d[1] = a;
     d[2] = coupling_.position * e / m.axis.r_g;
-    d[3] = (backlash_ ? coupling_.acceleration * e : d[1]) / m.axis.r_g;
+    d[3] = (is_.backlash ? coupling_.acceleration * e : d[1]) / m.axis.r_g;
     return d;
   }
 
   /// Calls visit(guard, value, scale) for every surface that ends `mode`. The value is positive
-  /// inside, affine in state and input; `scale` is its natural size, for tolerances.
+  /// inside; it is affine in state and input but where an arm sticks under forces that are not.
+  /// `scale` is its natural size, for tolerances.
   template <class Visitor>
   void visit_guards(const Mode& mode, const State<T>& y, const Input<T>& input,
                     Visitor&& visit) const {
     const Axis<T>& p = m_.axis;
     using enum Guard;
-    if (backlash_) {
-      const T x = gear_position(y);
-      const double scale = 1e-3 + std::abs(value_of(y[0]));  // m; x is a small difference
-      if (mode.contact != -1) visit(contact_positive, mode.contact == 0 ? p.H - x : x - p.H, scale);
-      if (mode.contact != 1) visit(contact_negative, mode.contact == 0 ? x + p.H : -p.H - x, scale);
-    }
-    if (m_.structure.drive != Drive::force_source) {
-      const T v = preamplifier(y);
-      const double scale = value_of(p.V_L);
-      if (mode.v_c != -1) visit(v_c_positive, mode.v_c == 0 ? p.V_L - v : v - p.V_L, scale);
-      if (mode.v_c != 1) visit(v_c_negative, mode.v_c == 0 ? v + p.V_L : -p.V_L - v, scale);
-    }
-    if (m_.structure.drive == Drive::velocity_loop) {
-      const T v = motor_demand(mode, y);
-      const double scale = value_of(p.V_s) + value_of(p.K_v) * value_of(p.V_L) * 1e-3;
-      if (mode.v_m != -1) visit(v_m_positive, mode.v_m == 0 ? p.V_s - v : v - p.V_s, scale);
-      if (mode.v_m != 1) visit(v_m_negative, mode.v_m == 0 ? v + p.V_s : -p.V_s - v, scale);
-    }
-    if (dry_friction_) {
+    // A value x between -limit and limit, or held (`side`) beyond one of them.
+    const auto between = [&](Guard positive, Guard negative, int side, const T& x, const T& limit,
+                             double scale) {
+      if (side != -1) visit(positive, side == 0 ? limit - x : x - limit, scale);
+      if (side != 1) visit(negative, side == 0 ? x + limit : -limit - x, scale);
+    };
+    if (is_.backlash)  // x is a small difference of positions
+      between(contact_positive, contact_negative, mode.contact, gear_position(y), p.H,
+              1e-3 + std::abs(value_of(y[0])));
+    if (m_.structure.drive != Drive::force_source)
+      between(v_c_positive, v_c_negative, mode.v_c, preamplifier(y), p.V_L, value_of(p.V_L));
+    if (m_.structure.drive == Drive::velocity_loop)
+      between(v_m_positive, v_m_negative, mode.v_m, motor_demand(mode, y, input), p.V_s,
+              value_of(p.V_s) + value_of(p.K_v) * value_of(p.V_L) * 1e-3);
+    if (is_.directions) {
       if (mode.sliding == 0) {
         const T force = stick_force(mode, y, input);
-        const T level = friction_level(static_friction_);
-        const double scale = 1.0 + value_of(level);  // N
-        visit(break_away_positive, level - force, scale);
-        visit(break_away_negative, level + force, scale);
+        const T forward = holding_force(mode, 1, y, input);
+        const T backward = holding_force(mode, -1, y, input);
+        const double scale = 1.0 + std::abs(value_of(forward)) + std::abs(value_of(backward));  // N
+        visit(break_away_positive, forward - force, scale);
+        visit(break_away_negative, backward + force, scale);
       } else {
         const T speed = double(mode.sliding) * y[1];
         const double scale = 1e-3;  // m/s
-        if (!static_friction_ || mode.doublet) visit(stop, speed, scale);
-        if (static_friction_)
+        if (!is_.static_friction || mode.doublet) visit(stop, speed, scale);
+        if (is_.static_friction)
           visit(Guard::doublet, mode.doublet ? p.w - speed : speed - p.w, scale);
       }
     }
   }
 
   /// The mode behind a guard that was reached at the state y. A stop sets the arm's velocity to
-  /// exactly zero.
-  Mode cross(Mode mode, Guard guard, State<T>& y, const Input<T>& input) const {
+  /// exactly zero, and is remembered in the input.
+  Mode cross(Mode mode, Guard guard, State<T>& y, Input<T>& input) const {
     switch (guard) {
       case Guard::contact_positive:
         mode.contact = mode.contact == 0 ? 1 : 0;
@@ -251,8 +324,11 @@ class Equations {
         mode = slide(mode, -1);
         break;
       case Guard::stop:
+        if (is_.needs.hysteresis)
+          input.memory = {y[0],
+                          slots::hysteresis(m_.effects, is_.effects, instant(mode, y, input))};
         y[1] = T(0.0);
-        if (!backlash_) y[3] = T(0.0);
+        if (!is_.backlash) y[3] = T(0.0);
         mode.sliding = 0;
         break;
     }
@@ -264,9 +340,9 @@ class Equations {
   Mode settle(const Mode& mode, const State<T>& y, const Input<T>& input) const {
     if (mode.sliding != 0) return mode;
     const double force = value_of(stick_force(mode, y, input));
-    const double level = value_of(friction_level(static_friction_));
-    if (std::abs(force) <= level) return mode;
-    return slide(mode, force > 0.0 ? 1 : -1);
+    if (force > value_of(holding_force(mode, 1, y, input))) return slide(mode, 1);
+    if (-force > value_of(holding_force(mode, -1, y, input))) return slide(mode, -1);
+    return mode;
   }
 
   /// The mode that belongs to a state at the start.
@@ -276,29 +352,113 @@ class Equations {
       return static_cast<std::int8_t>(value > limit ? 1 : value < -limit ? -1 : 0);
     };
     Mode mode;
-    if (backlash_) mode.contact = side(value_of(gear_position(y)), value_of(p.H));
+    if (is_.backlash) mode.contact = side(value_of(gear_position(y)), value_of(p.H));
     if (m_.structure.drive != Drive::force_source)
       mode.v_c = side(value_of(preamplifier(y)), value_of(p.V_L));
     if (m_.structure.drive == Drive::velocity_loop)
-      mode.v_m = side(value_of(motor_demand(mode, y)), value_of(p.V_s));
+      mode.v_m = side(value_of(motor_demand(mode, y, input)), value_of(p.V_s));
     const double speed = value_of(y[1]);
-    if (!dry_friction_) {
+    if (!is_.directions) {
       mode.sliding = 1;
       return mode;
     }
     mode.sliding = side(speed, 0.0);
-    mode.doublet = mode.sliding != 0 && static_friction_ && std::abs(speed) < value_of(p.w);
+    mode.doublet = mode.sliding != 0 && is_.static_friction && std::abs(speed) < value_of(p.w);
     return settle(mode, y, input);
   }
 
+  /// Completes a state and an input at the start: a lag has passed, a hysteresis is relaxed.
+  void begin(State<T>& y, Input<T>& input) const {
+    if (is_.lagging) y[7] = undelayed_input(mode_at(y, input), y, input);
+    input.memory = {y[0], T(0.0)};
+  }
+
  private:
-  T friction(const Mode& mode) const {
-    return dry_friction_ ? double(mode.sliding) * friction_level(mode.doublet) : T(0.0);
+  /// What the power stage would follow without lag, V.
+  T undelayed_input(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    return m_.structure.drive == Drive::force_source ? command(input)
+                                                     : preamplifier_voltage(mode, y);
+  }
+
+  static PartsInPlay parts_of(const Model<T>& model, const EffectSet& effects) {
+    const Slots<T> slots = slots::affine(model.effects, effects);
+    PartsInPlay is{};
+    is.effects = effects;
+    is.needs = slots::needs(effects);
+    is.backlash = model.structure.transmission == Transmission::backlash;
+    is.static_friction = is_in_play(model.axis.F_s);
+    is.spring = is_in_play(slots.stiffness);
+    is.asymmetric = is_in_play(slots.viscous_asymmetry);
+    is.slope = is_in_play(slots.friction_slope);
+    is.load = is_in_play(slots.load_friction);
+    is.curved_load = is.load && !is.backlash && model.structure.drive != Drive::force_source;
+    is.directions = is.static_friction || is.asymmetric || is.slope || is.load ||
+                    is_in_play(slots.friction_level) || is_in_play(slots.friction_asymmetry) ||
+                    is.needs.friction_curve || is.needs.hysteresis;
+    is.elastic = is_in_play(slots.elastic_mass);
+    is.lagging = value_of(slots.drive_lag) > 0.0;
+    is.lag_in_play = !is.lagging && is_in_play(slots.drive_lag);
+    return is;
+  }
+
+  /// y5', V/s^2; (1).
+  T preamplifier_curvature(const State<T>& y, const Input<T>& input) const {
+    const Axis<T>& p = m_.axis;
+    return (p.K_1 * command(input) - p.K_2 * p.K_t * y[3] - y[4] - (p.T_p + p.T_r) * y[5]) /
+           (p.T_p * p.T_r);
+  }
+
+  /// w^2 q + 2 zeta w q' of the elastic mode, m/s^2.
+  T elastic_rate(const State<T>& y) const {
+    const T& w = slots_.elastic_frequency;
+    return w * (w * y[8] + 2.0 * slots_.elastic_damping * y[9]);
+  }
+
+  Instant<T> instant(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    return {input.time,
+            y[0],
+            y[1],
+            mode.sliding,
+            y[2],
+            current(mode, y, input),
+            m_.axis.r_g * current_force(mode, y, input),
+            input.memory};
+  }
+
+  T motor_torque(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    return slots::motor_torque(m_.effects, is_.effects, instant(mode, y, input));
+  }
+
+  /// Force that the transmission carries, N: of the teeth on the side of their contact, or of the
+  /// motor where there are none.
+  T load(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    if (is_.backlash) return double(mode.contact) * gear_force(mode, y);
+    const T force = current_force(mode, y, input);
+    return force < 0.0 ? -force : force;
+  }
+
+  /// Dry friction against a motion in `direction`, N, (6) and effects. Below zero it drives.
+  T dry_friction(bool in_doublet, int direction, const Mode& mode, const State<T>& y,
+                 const Input<T>& input, Terms terms) const {
+    T level = slots_.friction_level;
+    if (in_doublet) level += m_.axis.F_s;
+    if (is_.directions) level += double(direction) * slots_.friction_asymmetry;
+    if (is_.slope) level += slots_.friction_slope * y[0];
+    if (is_.load && (terms == Terms::all || !is_.curved_load))
+      level += slots_.load_friction * load(mode, y, input);
+    if (is_.needs.friction_curve && terms == Terms::all)
+      level += slots::friction_curve(m_.effects, is_.effects, instant(mode, y, input));
+    return level;
+  }
+
+  /// Dry friction that has to be overcome to set off in `direction`, N.
+  T holding_force(const Mode& mode, int direction, const State<T>& y, const Input<T>& input) const {
+    return dry_friction(is_.static_friction, direction, mode, y, input, Terms::all);
   }
 
   Mode slide(Mode mode, int sign) const {
     mode.sliding = static_cast<std::int8_t>(sign);
-    mode.doublet = static_friction_;
+    mode.doublet = is_.static_friction;
     return mode;
   }
 
@@ -309,15 +469,15 @@ class Equations {
   }
 
   T position_error(const State<T>& y, const TargetOf<T>& target) const {
-    const auto& [gain, bias] = m_.instruments[index_of(Signal::position)];
-    return (target.position - bias) / gain - m_.axis.r_g * y[2];
+    const Instrument<T>& encoder = m_.instruments[index_of(Signal::position)];
+    return (target.position - encoder.bias) / encoder.gain - m_.axis.r_g * y[2];
   }
 
   T coupling_acceleration(const State<T>& y, const TargetOf<T>& target) const {
-    const auto& [gain, bias] = m_.instruments[index_of(Signal::velocity)];
+    const Instrument<T>& meter = m_.instruments[index_of(Signal::velocity)];
     T a(0.0);
     if (coupling_.velocity > 0.0)
-      a += coupling_.velocity * ((target.velocity - bias) / gain - y[1]);
+      a += coupling_.velocity * ((target.velocity - meter.bias) / meter.gain - y[1]);
     if (coupling_.acceleration > 0.0) a += coupling_.acceleration * position_error(y, target);
     return a;
   }
@@ -325,20 +485,16 @@ class Equations {
   // A copy of the model is not needed: equations live as long as the simulation that owns it.
   const Model<T>& m_;
   Coupling coupling_;
-  bool backlash_;
-  T dry_level_;
-  T constant_force_;
-  bool static_friction_;
-  bool dry_friction_;
-  bool smooth_forces_;
+  Slots<T> slots_;
+  PartsInPlay is_;
 };
 
-/// What the instrument for `signal` reads, without noise, in the signal's unit.
+/// What an instrument without lag and delay reads of `signal`, without noise, in its unit.
 template <class T>
 T reading(const Equations<T>& equations, Signal signal, const Mode& mode, const State<T>& y,
           const Input<T>& input) {
   const Axis<T>& p = equations.model().axis;
-  const auto& [gain, bias] = equations.model().instruments[index_of(signal)];
+  const Instrument<T>& instrument = equations.model().instruments[index_of(signal)];
   const auto truth = [&]() -> T {
     switch (signal) {
       case Signal::position:
@@ -350,17 +506,17 @@ T reading(const Equations<T>& equations, Signal signal, const Mode& mode, const 
       case Signal::tachometer:
         return p.K_t * y[3];
       case Signal::motor_current:
-        return equations.current(mode, y);
+        return equations.current(mode, y, input);
       case Signal::preamplifier_voltage:
         return equations.preamplifier_voltage(mode, y);
       case Signal::motor_voltage:
-        return equations.motor_voltage(mode, y);
+        return equations.motor_voltage(mode, y, input);
       case Signal::drive_force:
         return equations.drive_force(mode, y, input);
     }
     return T(0.0);
   };
-  return gain * truth() + bias;
+  return instrument.gain * truth() + instrument.bias;
 }
 
 }  // namespace axisfit

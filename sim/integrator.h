@@ -52,32 +52,32 @@ class Integrator {
         model_(model),
         plain_model_(convert<double>(model)),
         equations_(model_, coupling),
-        plain_(plain_model_, coupling, equations_.has_static_friction()) {}
+        plain_(plain_model_, coupling, equations_.parts()) {}
 
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
 
   /// Begins at `time` with the model's initial state and the given command (V).
   void start(double time, const T& command, const Target& target) {
-    time_ = T(time);
     y_ = initial_state(model_);
-    input_ = {command, {T(target.velocity), T(target.position)}};
-    plain_input_ = {value_of(command), target};
+    input_ = {command, {T(target.velocity), T(target.position)}, T(time), {}};
     slope_ = {};
+    equations_.begin(y_, input_);
+    copy_plain_input();
     switch_mode(equations_.mode_at(y_, input_));
   }
 
   /// Switches the command, now.
   void set_command(const T& command) {
     input_.command = command;
-    plain_input_.command = value_of(command);
+    copy_plain_input();
     switch_mode(equations_.settle(mode_, y_, input_));
   }
 
   /// From now on the coupling's target is `target` and moves with the rate `slope` per second.
   void set_target(const Target& target, const Target& slope) {
     input_.target = {T(target.velocity), T(target.position)};
-    plain_input_.target = target;
+    copy_plain_input();
     slope_ = slope;
     here_.reset();
     if (equations_.coupling().active()) {
@@ -90,7 +90,11 @@ class Integrator {
   /// Returns false when the motion chatters or is not finite any more; the state is then useless.
   bool advance_to(const T& end);
 
-  const T& time() const { return time_; }
+  /// s. How much later than written a command acts: the dead time, and the derivative of a force
+  /// source's lag at zero, which delays like it.
+  T command_delay() const { return model_.axis.T_d + equations_.lag_of_switching(); }
+
+  const T& time() const { return input_.time; }
   const State<T>& state() const { return y_; }
   const Mode& mode() const { return mode_; }
   const Input<T>& input() const { return input_; }
@@ -133,6 +137,20 @@ class Integrator {
   }
   bool coupled() const { return equations_.coupling().active(); }
 
+  void copy_plain_input() {
+    plain_input_ = {value_of(input_.command),
+                    {value_of(input_.target.velocity), value_of(input_.target.position)},
+                    value_of(input_.time),
+                    {value_of(input_.memory.position), value_of(input_.memory.hysteresis)}};
+  }
+  /// The input after `length` seconds.
+  template <class S, class U>
+  Input<S> moved(Input<S> input, const U& length) const {
+    input.time += length;
+    input.target.move(slope_, length);
+    return input;
+  }
+
   void switch_mode(const Mode& mode);
   const Flow& flow_of(const Mode& mode);
 
@@ -169,7 +187,7 @@ class Integrator {
   void move_time(double length);
   void pass_event(const Hit& hit);
 
-  /// Rate of a guard's value: it is affine, so a unit step along the rates gives it exactly.
+  /// Rate of a guard's value: where it is affine, a unit step along the rates gives it exactly.
   template <class S, class Visitor>
   void visit_guards_and_rates(const View<S>& view, const State<S>& y, Visitor&& visit) const {
     const State<S> f = view.equations.rate(mode_, y, view.input);
@@ -177,17 +195,16 @@ class Integrator {
     std::size_t n = 0;
     view.equations.visit_guards(mode_, y, view.input,
                                 [&](Guard, const S& g, double) { values[n++].first = g; });
-    State<S> ahead = y;
-    for (std::size_t i = 0; i < kStates; ++i) ahead[i] += f[i];
-    Input<S> input_ahead = view.input;
-    input_ahead.target.velocity += slope_.velocity;
-    input_ahead.target.position += slope_.position;
+    // Else a short one does, to a few digits: enough for a search, and for the slope of an event.
+    const double ahead = mode_.sliding == 0 && equations_.has_smooth_forces() ? 1e-7 : 1.0;  // s
+    State<S> y_ahead = y;
+    for (std::size_t i = 0; i < kStates; ++i) y_ahead[i] += ahead * f[i];
     n = 0;
-    view.equations.visit_guards(mode_, ahead, input_ahead,
-                                [&](Guard guard, const S& g, double scale) {
-                                  visit(guard, values[n].first, g - values[n].first, scale);
-                                  ++n;
-                                });
+    view.equations.visit_guards(
+        mode_, y_ahead, moved(view.input, ahead), [&](Guard guard, const S& g, double scale) {
+          visit(guard, values[n].first, (g - values[n].first) / ahead, scale);
+          ++n;
+        });
   }
 
   const IntegratorOptions options_;
@@ -197,7 +214,6 @@ class Integrator {
   const Equations<double> plain_;
   std::map<int, std::unique_ptr<Flow>> flows_;
 
-  T time_{0.0};
   State<T> y_{};
   Mode mode_;
   Input<T> input_;
@@ -225,9 +241,11 @@ void Integrator<T>::switch_mode(const Mode& mode) {
 
 template <class T>
 const typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
-  // The sign of a contact or limit changes constants, not the matrix.
-  const int key =
-      (mode.contact != 0) | (mode.v_c != 0) << 1 | (mode.v_m != 0) << 2 | (mode.sliding != 0) << 3;
+  // The sign of a limit changes constants, not the matrix; those of contact and motion change it
+  // where friction depends on them.
+  const int contact = mode.contact == 0 ? 0 : equations_.signs_matter() ? mode.contact : 1;
+  const int sliding = mode.sliding == 0 ? 0 : equations_.signs_matter() ? mode.sliding : 1;
+  const int key = (mode.v_c != 0) | (mode.v_m != 0) << 1 | (contact + 1) << 2 | (sliding + 1) << 4;
   std::unique_ptr<Flow>& flow = flows_[key];
   if (flow == nullptr) {
     Matrix<T> a;
@@ -249,9 +267,10 @@ const typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
     const double radians = oscillation * options_.step;
     const int longest = std::clamp(
         static_cast<int>(std::ceil(std::log2(std::max(1e-9, radians / 2.0)))), 0, ladder.last);
-    flow = std::make_unique<Flow>(Flow{Propagator<T>(a, ladder, coupled()),
-                                       Propagator<double>(axisfit::value_of(a), ladder, coupled()),
-                                       oscillation, longest});
+    const std::size_t n = equations_.states();
+    flow = std::make_unique<Flow>(
+        Flow{Propagator<T>(a, ladder, coupled(), n),
+             Propagator<double>(axisfit::value_of(a), ladder, coupled(), n), oscillation, longest});
   }
   return *flow;
 }
@@ -262,17 +281,14 @@ State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, int level) 
   const Propagator<S>& p = view.propagator;
   const State<S> f = view.equations.rate(mode_, y, view.input);
   const State<S> end = p.advance(y, f, view.target_rate, level);
-  if (!view.equations.has_smooth_forces() || mode_.sliding == 0 || level == p.ladder().last)
-    return end;
-  // Classical Runge-Kutta for n(y) = N(y) - N(y at the start), an acceleration of the arm, in the
-  // frame that moves with the affine flow.
+  if (!view.equations.has_smooth_forces() || level == p.ladder().last) return end;
+  // Classical Runge-Kutta for n(y) = N(y) - N(y at the start) in the frame that moves with the
+  // affine flow.
   const double h = p.ladder().length(level);
-  const S start = view.equations.smooth_acceleration(mode_, y);
-  const auto n = [&](const State<S>& at) {
-    State<S> rest{};
-    rest[1] = view.equations.smooth_acceleration(mode_, at) - start;
-    if (model_.structure.transmission == Transmission::rigid)
-      rest[3] = rest[1] / view.equations.model().axis.r_g;
+  const State<S> start = view.equations.smooth_rate(mode_, y, view.input);
+  const auto n = [&](const State<S>& at, double delay) {
+    State<S> rest = view.equations.smooth_rate(mode_, at, moved(view.input, delay));
+    for (std::size_t i = 0; i < kStates; ++i) rest[i] -= start[i];
     return rest;
   };
   const auto plus = [](State<S> a, double factor, const State<S>& b) {
@@ -280,9 +296,9 @@ State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, int level) 
     return a;
   };
   const State<S> middle = p.advance(y, f, view.target_rate, level + 1);
-  const State<S> k2 = n(middle);  // k1 = 0
-  const State<S> k3 = n(plus(middle, 0.5 * h, k2));
-  const State<S> k4 = n(plus(end, h, p.exponential(k3, level + 1)));
+  const State<S> k2 = n(middle, 0.5 * h);  // k1 = 0
+  const State<S> k3 = n(plus(middle, 0.5 * h, k2), 0.5 * h);
+  const State<S> k4 = n(plus(end, h, p.exponential(k3, level + 1)), h);
   const State<S> inner = p.exponential(plus(k2, 1.0, k3), level + 1);
   return plus(plus(end, h / 3.0, inner), h / 6.0, k4);
 }
@@ -334,10 +350,7 @@ bool Integrator<T>::meets_guard(const State<double>& from, int level, double len
   const double piece = length / pieces;
   Input<double> input = now.input;
   const View<double> view{now.equations, now.propagator, input, now.target_rate};
-  const auto move = [&](double t) {
-    input.target.velocity += slope_.velocity * t;
-    input.target.position += slope_.position * t;
-  };
+  const auto move = [&](double t) { input = moved(input, t); };
   // A cubic does without the middle where the fastest oscillation turns by less than this.
   constexpr double kSmooth = 0.5;  // rad
   const bool halved = !by_series && fine < ladder.last && flow_->oscillation * piece > kSmooth;
@@ -368,18 +381,12 @@ std::optional<typename Integrator<T>::Hit> Integrator<T>::locate(const State<dou
                                                                  double length) const {
   std::optional<Hit> first;
   const View<double> view = plain();
-  const auto input_at = [&](double t) {
-    Input<double> input = view.input;
-    input.target.velocity += slope_.velocity * t;
-    input.target.position += slope_.position * t;
-    return input;
-  };
   view.equations.visit_guards(
-      mode_, to, input_at(length), [&](Guard guard, double g, double scale) {
+      mode_, to, moved(view.input, length), [&](Guard guard, double g, double scale) {
         if (g >= -1e-12 * scale) return;
         double low = 0.0, high = length, t = 0.0;
         for (int i = 0; i < 60 && high - low > 1e-15 * length; ++i) {
-          const Input<double> input = input_at(t);
+          const Input<double> input = moved(view.input, t);
           const State<double> y = t > 0.0 ? step_by(view, from, t) : from;
           double value = 0.0, rate = 0.0;
           visit_guards_and_rates({view.equations, view.propagator, input, view.target_rate}, y,
@@ -406,10 +413,8 @@ std::optional<typename Integrator<T>::Hit> Integrator<T>::locate(const State<dou
 
 template <class T>
 void Integrator<T>::move_time(double length) {
-  time_ += length;
-  input_.target.velocity += slope_.velocity * length;
-  input_.target.position += slope_.position * length;
-  plain_input_.target = {value_of(input_.target.velocity), value_of(input_.target.position)};
+  input_ = moved(input_, length);
+  copy_plain_input();
 }
 
 template <class T>
@@ -426,11 +431,11 @@ void Integrator<T>::pass_event(const Hit& hit) {
   if (!options_.event_derivatives) correction = T(0.0);
   const State<T> f = equations_.rate(mode_, y_, input_);
   for (std::size_t i = 0; i < kStates; ++i) y_[i] += f[i] * correction;
-  input_.target.velocity += slope_.velocity * correction;
-  input_.target.position += slope_.position * correction;
-  time_ += correction;
+  input_ = moved(input_, correction);
   ++events_;
-  switch_mode(equations_.cross(mode_, hit.guard, y_, input_));
+  const Mode next = equations_.cross(mode_, hit.guard, y_, input_);
+  copy_plain_input();
+  switch_mode(next);
   level_ = flow_->exact.ladder().last;  // another event may follow closely
 }
 
@@ -440,10 +445,10 @@ bool Integrator<T>::advance_to(const T& end) {
   const double negligible = 1e-9 * options_.step;
   const int event_limit =
       events_ +
-      options_.event_limit * (1 + static_cast<int>((last - value_of(time_)) / options_.step));
+      options_.event_limit * (1 + static_cast<int>((last - value_of(input_.time)) / options_.step));
   int search = 0;  // level of the search for an event; 0: no search under way
   while (true) {
-    const double remaining = last - value_of(time_);
+    const double remaining = last - value_of(input_.time);
     if (!(remaining > negligible)) break;
     const Ladder& ladder = flow_->exact.ladder();
     int level = std::max(level_, search);
@@ -484,12 +489,11 @@ bool Integrator<T>::advance_to(const T& end) {
     if (search > 0 && ++search > ladder.last + 1) search = 0;
   }
   // What is left is rounding, and the derivatives of the two instants.
-  const T rest = end - time_;
+  const T rest = end - input_.time;
   const State<T> f = equations_.rate(mode_, y_, input_);
   for (std::size_t i = 0; i < kStates; ++i) y_[i] += f[i] * rest;
-  input_.target.velocity += slope_.velocity * rest;
-  input_.target.position += slope_.position * rest;
-  time_ = end;
+  input_ = moved(input_, rest);
+  input_.time = end;
   return true;
 }
 

@@ -2,6 +2,7 @@
 // state, in one list of named quantities.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -26,14 +27,16 @@ struct Model {
   Axis<T> axis{};
   Effects<T> effects{};
   Instruments<T> instruments{};
-  State<T> initial{};  ///< with x = r_g y2 - y0 and its rate in place of y2 and y3
+  std::array<T, kPaperStates>
+      initial{};  ///< with x = r_g y2 - y0 and its rate in place of y2 and y3
 };
 
 /// The state at the start. The motor's place is given relative to the arm, so that an initial
 /// position that is estimated moves both and does not tear the gear apart.
 template <class T>
 State<T> initial_state(const Model<T>& model) {
-  State<T> y = model.initial;
+  State<T> y{};
+  std::ranges::copy(model.initial, y.begin());
   y[2] = (model.initial[0] + model.initial[2]) / model.axis.r_g;
   y[3] = (model.initial[1] + model.initial[3]) / model.axis.r_g;
   return y;
@@ -57,8 +60,12 @@ void visit_quantities(ModelOfT& model, Visitor&& visit) {
           instrument.gain);
     visit(entry.name, Quantity{"bias", entry.unit, "bias of the instrument", -1e9, 1e9, 0.0},
           instrument.bias);
+    visit(entry.name, Quantity{"lag", "s", "lag of the instrument, a bandwidth", 0, 1, 0.0},
+          instrument.lag);
+    visit(entry.name, Quantity{"delay", "s", "offset of the instrument's clock", -1, 1, 0.0},
+          instrument.delay);
   }
-  constexpr Quantity kInitial[kStates] = {
+  constexpr Quantity kInitial[kPaperStates] = {
       {"y0", "m", "initial arm position", -1e3, 1e3, 0.0},
       {"y1", "m/s", "initial arm velocity", -1e3, 1e3, 0.0},
       {"x", "m", "initial r_g y2 - y0, zero: pinion centred", -1, 1, 0.0},
@@ -67,7 +74,7 @@ void visit_quantities(ModelOfT& model, Visitor&& visit) {
       {"y5", "V/s", "initial preamplifier rate", -1e9, 1e9, 0.0},
       {"y6", "A", "initial motor current", -1e4, 1e4, 0.0},
   };
-  for (std::size_t i = 0; i < kStates; ++i) visit("initial", kInitial[i], model.initial[i]);
+  for (std::size_t i = 0; i < kPaperStates; ++i) visit("initial", kInitial[i], model.initial[i]);
 }
 
 /// What can be said of a quantity without its value; `index` is its place in the list.

@@ -25,13 +25,14 @@ namespace axisfit {
 template <class T>
 using Matrix = std::array<State<T>, kStates>;  // rows
 
+/// Product of the leading n by n blocks; the rest is zero.
 template <class T>
-Matrix<T> product(const Matrix<T>& a, const Matrix<T>& b) {
+Matrix<T> product(const Matrix<T>& a, const Matrix<T>& b, std::size_t n = kStates) {
   Matrix<T> c{};
-  for (std::size_t i = 0; i < kStates; ++i)
-    for (std::size_t k = 0; k < kStates; ++k) {
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < n; ++k) {
       if (!is_in_play(a[i][k])) continue;
-      for (std::size_t j = 0; j < kStates; ++j) c[i][j] += a[i][k] * b[k][j];
+      for (std::size_t j = 0; j < n; ++j) c[i][j] += a[i][k] * b[k][j];
     }
   return c;
 }
@@ -119,19 +120,20 @@ inline constexpr int kSeriesTerms = 12;
 template <class T>
 class Propagator {
  public:
-  /// `a` = df/dy. With `with_slope`, Xi is prepared too.
-  Propagator(const Matrix<T>& a, const Ladder& ladder, bool with_slope) : a_(a), ladder_(ladder) {
+  /// `a` = df/dy, of which the first n states are in use. With `with_slope`, Xi is prepared too.
+  Propagator(const Matrix<T>& a, const Ladder& ladder, bool with_slope, std::size_t n = kStates)
+      : states_(n), a_(a), ladder_(ladder) {
     const double h = ladder.length(ladder.last);
     // Psi = h (I + hA/2 + (hA)^2/6 + ...), Xi = h^2 (I/2 + hA/6 + ...)
     Matrix<T> psi = scaled_identity(h), xi = scaled_identity(0.5 * h * h), term = psi;
-    for (int n = 2; n <= kSeriesTerms; ++n) {
-      term = product(a, term);
+    for (int k = 2; k <= kSeriesTerms; ++k) {
+      term = product(a, term, n);
       for (State<T>& row : term)
-        for (T& x : row) x *= h / n;
+        for (T& x : row) x *= h / k;
       add(psi, 1.0, term);
-      add(xi, h / (n + 1), term);
+      add(xi, h / (k + 1), term);
     }
-    Matrix<T> e = product(a, psi);
+    Matrix<T> e = product(a, psi, n);
     for (int level = ladder.last;; --level) {
       psi_.emplace_back(psi);
       if (with_slope) xi_.emplace_back(xi);
@@ -184,22 +186,23 @@ class Propagator {
 
  private:
   /// m += factor * other
-  static void add(Matrix<T>& m, double factor, const Matrix<T>& other) {
-    for (std::size_t i = 0; i < kStates; ++i)
-      for (std::size_t j = 0; j < kStates; ++j) m[i][j] += factor * other[i][j];
+  void add(Matrix<T>& m, double factor, const Matrix<T>& other) const {
+    for (std::size_t i = 0; i < states_; ++i)
+      for (std::size_t j = 0; j < states_; ++j) m[i][j] += factor * other[i][j];
   }
   /// m := 2 m + e m
-  static void grow(Matrix<T>& m, const Matrix<T>& e) {
-    const Matrix<T> image = product(e, m);
+  void grow(Matrix<T>& m, const Matrix<T>& e) const {
+    const Matrix<T> image = product(e, m, states_);
     add(m, 1.0, m);
     add(m, 1.0, image);
   }
-  static Matrix<T> scaled_identity(double scale) {
+  Matrix<T> scaled_identity(double scale) const {
     Matrix<T> m{};
-    for (std::size_t i = 0; i < kStates; ++i) m[i][i] = T(scale);
+    for (std::size_t i = 0; i < states_; ++i) m[i][i] = T(scale);
     return m;
   }
 
+  std::size_t states_;
   SparseMatrix<T> a_;
   Ladder ladder_;
   std::vector<SparseMatrix<T>> psi_, xi_;  // by level

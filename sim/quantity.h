@@ -29,6 +29,9 @@ struct Quantity {
   double upper;                 ///< largest
   double standard = kRequired;  ///< value when not given
   UsedBy used_by = UsedBy::every_axis;
+  /// Of an effect: gives it its shape (a period, a speed scale), not its strength. An effect whose
+  /// strengths are all zero is as good as absent, whatever its shape.
+  bool shape = false;
 };
 
 /// "effect.symbol", or the symbol alone for the axis itself.

@@ -6,6 +6,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "sim/recorder.h"
 #include "sim/simulate.h"
 
 namespace axisfit {
@@ -53,11 +54,11 @@ std::string column_name(Signal signal) {
 
 Table record(const Rig& rig, const Motion& motion, const RecordingOptions& options) {
   const std::vector<double> times = sampling_times(options);
-  std::vector<std::vector<double>> readings(options.signals.size());
-  const auto read = [&](std::size_t, const Integrator<double>& axis) {
-    for (std::size_t s = 0; s < options.signals.size(); ++s)
-      readings[s].push_back(
-          reading(axis.equations(), options.signals[s], axis.mode(), axis.state(), axis.input()));
+  Recorder<double> recorder(rig.model.instruments, options.signals, times);
+  std::size_t reached = 0;
+  const auto read = [&](std::size_t i, const Integrator<double>& axis) {
+    recorder.read(axis);
+    reached = i;
   };
   IntegratorOptions integrator;
   integrator.step = options.step;
@@ -66,14 +67,14 @@ Table record(const Rig& rig, const Motion& motion, const RecordingOptions& optio
     ControllerSettings settings = rig.controller;
     if (!options.noise) settings.counts_per_revolution = 0.0;
     SlaveControlUnit unit(settings, reference_of(*move));
-    command = simulate_controlled(rig.model, unit, times, read, integrator);
+    command = simulate_controlled(rig.model, unit, recorder.instants(), read, integrator);
   } else {
     command = schedule_of(motion, options.duration, rig.controller.period);
-    simulate<double>(rig.model, command, times, read, {}, {}, integrator);
+    simulate<double>(rig.model, command, recorder.instants(), read, {}, {}, integrator);
   }
-  if (!readings.empty() && readings.front().size() != times.size())
+  if (reached + 1 != recorder.instants().size())
     throw std::runtime_error(
-        "the motion cannot be simulated beyond " + std::to_string(times[readings.front().size()]) +
+        "the motion cannot be simulated beyond " + std::to_string(recorder.instants()[reached]) +
         " s: the state is not finite, or events follow each other without end");
 
   Table table;
@@ -88,7 +89,7 @@ Table record(const Rig& rig, const Motion& motion, const RecordingOptions& optio
   }
   for (std::size_t s = 0; s < options.signals.size(); ++s) {
     const Signal signal = options.signals[s];
-    Column column{column_name(signal), std::move(readings[s])};
+    Column column{column_name(signal), recorder.readings(s)};
     NormalStream stream(options.seed, info(signal).name);
     for (double& x : column.values) {
       if (!options.noise) break;

@@ -41,9 +41,9 @@ SimulationOutcome simulate(const Model<T>& model, const Schedule& command,
   Integrator<T> axis(model, coupling, options);
   std::size_t next = 0;
   T in_force(0.0);
+  const T delay = axis.command_delay();
   // Commands that acted before the first instant.
-  for (; next < command.times.size() &&
-         command.times[next] + value_of(model.axis.T_d) < times.front();
+  for (; next < command.times.size() && command.times[next] + value_of(delay) < times.front();
        ++next)
     in_force = T(command.values[next]);
   axis.start(times.front(), in_force, measured.at(0));
@@ -55,7 +55,7 @@ SimulationOutcome simulate(const Model<T>& model, const Schedule& command,
                              (to.position - from.position) / duration});
     }
     for (; next < command.times.size(); ++next) {
-      const T instant = command.times[next] + model.axis.T_d;
+      const T instant = command.times[next] + delay;
       if (!(value_of(instant) < times[i])) break;
       if (!axis.advance_to(instant)) return outcome;
       axis.set_command(T(command.values[next]));

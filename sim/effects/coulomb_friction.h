@@ -1,14 +1,13 @@
 #pragma once
 
-#include "sim/quantity.h"
+#include "sim/effects/slots.h"
 
 namespace axisfit {
 
 /// Dry friction of the arm with true sticking: it opposes the velocity with the force F_c, and at
 /// rest holds against any force up to F_c.
 ///
-/// Slot: friction_level, a force in newtons on the arm side that adds to the F_s of (6).
-/// Source: C. A. de Coulomb (1785); at rest a Filippov problem like (6). Zero is a regular point.
+/// Source: C. A. de Coulomb (1785); at rest a Filippov problem like (6).
 template <class T>
 struct CoulombFriction {
   static constexpr std::string_view name = "coulomb_friction";
@@ -21,7 +20,7 @@ struct CoulombFriction {
     visit(Quantity{"F_c", "N", "Coulomb friction of the arm", 0, 1e5}, self.F_c);
   }
 
-  T friction_level() const { return F_c; }
+  void add_to(Slots<T>& slots) const { slots.friction_level += F_c; }
 };
 
 }  // namespace axisfit

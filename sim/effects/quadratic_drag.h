@@ -1,15 +1,11 @@
 #pragma once
 
-#include "sim/axis.h"
-#include "sim/quantity.h"
+#include "sim/effects/slots.h"
 
 namespace axisfit {
 
 /// Drag that grows with the square of the velocity, -c y1 |y1|: air, or a lubricant that is
 /// churned.
-///
-/// Slot: arm_force, newtons on the arm side, a smooth function of the state that is not linear and
-/// so goes through the Runge-Kutta part of the integrator.
 template <class T>
 struct QuadraticDrag {
   static constexpr std::string_view name = "quadratic_drag";
@@ -22,9 +18,9 @@ struct QuadraticDrag {
     visit(Quantity{"c", "N s^2/m^2", "quadratic drag of the arm", 0, 1e6}, self.c);
   }
 
-  T arm_force(const State<T>& y) const {
-    const T& y1 = y[1];
-    return y1 < 0.0 ? c * y1 * y1 : -(c * y1 * y1);
+  T arm_force(const Instant<T>& at) const {
+    const T force = c * at.velocity * at.velocity;
+    return at.velocity < 0.0 ? force : -force;
   }
 };
 

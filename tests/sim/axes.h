@@ -123,7 +123,8 @@ Run<T> run(const Model<T>& model, const Schedule& command, std::span<const doubl
         result.states.push_back(axis.state());
         result.modes.push_back(axis.mode());
         result.events.push_back(axis.events());
-        result.current.push_back(value_of(axis.equations().current(axis.mode(), axis.state())));
+        result.current.push_back(
+            value_of(axis.equations().current(axis.mode(), axis.state(), axis.input())));
         result.acceleration.push_back(
             value_of(axis.equations().acceleration(axis.mode(), axis.state(), axis.input())));
       },

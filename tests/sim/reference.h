@@ -72,10 +72,10 @@ inline Vector runge_kutta(const Axis<double>& p, Vector y, double U, double h) {
 
 /// States at times[i], from rest at times[0]. Instants and switches of the command must be
 /// multiples of the step.
-inline std::vector<Vector> simulate(const Axis<double>& p, const Schedule& command,
-                                    std::span<const double> times, double step, int parts) {
+inline std::vector<State<double>> simulate(const Axis<double>& p, const Schedule& command,
+                                           std::span<const double> times, double step, int parts) {
   const auto ticks = [&](double t) { return std::llround((t - times[0]) / step); };
-  std::vector<Vector> states;
+  std::vector<State<double>> states;
   Vector y{};
   double U = 0.0;
   std::size_t next = 0;
@@ -95,7 +95,9 @@ inline std::vector<Vector> simulate(const Axis<double>& p, const Schedule& comma
       branch = reached;
       y = z;
     }
-    states.push_back(y);
+    State<double> state{};  // those beyond the paper's stay at zero
+    std::ranges::copy(y, state.begin());
+    states.push_back(state);
   }
   return states;
 }

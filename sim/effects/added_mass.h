@@ -1,0 +1,23 @@
+#pragma once
+
+#include "sim/effects/slots.h"
+
+namespace axisfit {
+
+/// Mass on the arm beyond M: a payload, or, negative, a part that is missing.
+template <class T>
+struct AddedMass {
+  static constexpr std::string_view name = "added_mass";
+  static constexpr std::string_view meaning = "mass on the arm beyond M";
+
+  T dM;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visit) {
+    visit(Quantity{"dM", "kg", "mass on the arm beyond M", -1e5, 1e5}, self.dM);
+  }
+
+  void add_to(Slots<T>& slots) const { slots.added_mass += dM; }
+};
+
+}  // namespace axisfit

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cmath>
+
+#include "sim/effects/slots.h"
+
+namespace axisfit {
+
+/// Torque on the motor that repeats with its angle, whatever the current: cogging of the magnets,
+/// a pinion out of centre. `order` periods per turn.
+///
+///   T = T_s sin(order y2) + T_c cos(order y2)
+template <class T>
+struct CoggingTorque {
+  static constexpr std::string_view name = "cogging_torque";
+  static constexpr std::string_view meaning = "torque that repeats with the motor angle";
+
+  T T_s, T_c, order;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visit) {
+    using enum UsedBy;
+    visit(Quantity{"T_s", "N m", "sine part", -1e3, 1e3, kRequired, motor}, self.T_s);
+    visit(Quantity{"T_c", "N m", "cosine part", -1e3, 1e3, kRequired, motor}, self.T_c);
+    visit(
+        Quantity{"order", "1", "periods per turn of the motor", 0.01, 1e3, kRequired, motor, true},
+        self.order);
+  }
+
+  T motor_torque(const Instant<T>& at) const {
+    using std::cos, std::sin;
+    const T q = order * at.motor_angle;
+    return T_s * sin(q) + T_c * cos(q);
+  }
+};
+
+}  // namespace axisfit

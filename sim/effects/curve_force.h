@@ -1,0 +1,125 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "sim/effects/slots.h"
+#include "sim/scalar.h"
+
+namespace axisfit {
+
+/// The variable over which a curve is drawn.
+enum class CurveOver { velocity, position, motor_angle, time };
+
+/// A force on the arm that is a smooth curve of one variable: an effect without a name, for what no
+/// other effect explains.
+///
+/// A cubic spline with the 16 coefficients c1 ... c16 on equally spaced knots: with u running from
+/// 0 to 1 between `from` and `to`, F is the sum of c_k b(13 u - k + 3), b the uniform cubic
+/// B-spline on 0 ... 4. Beyond the ends it stays constant. Over the motor angle the curve closes
+/// after one turn, F = sum of c_k b(16 u - k + 3), and has no ends.
+/// Source: C. de Boor, A Practical Guide to Splines (1978), chapter IX.
+template <class T, CurveOver kVariable>
+struct CurveForce {
+  static constexpr bool kCloses = kVariable == CurveOver::motor_angle;
+  static constexpr int kCoefficients = 16;
+  static constexpr int kIntervals = kCloses ? kCoefficients : kCoefficients - 3;
+  static constexpr std::string_view name = [] {
+    switch (kVariable) {
+      case CurveOver::velocity:
+        return "force_over_velocity";
+      case CurveOver::position:
+        return "force_over_position";
+      case CurveOver::motor_angle:
+        return "force_over_motor_angle";
+      case CurveOver::time:
+        return "force_over_time";
+    }
+  }();
+  static constexpr std::string_view meaning = [] {
+    switch (kVariable) {
+      case CurveOver::velocity:
+        return "unnamed force, a curve over the velocity";
+      case CurveOver::position:
+        return "unnamed force, a curve over the position";
+      case CurveOver::motor_angle:
+        return "unnamed force, a curve over one turn of the motor";
+      case CurveOver::time:
+        return "unnamed force, a curve over the time";
+    }
+  }();
+  static constexpr std::string_view unit = [] {
+    switch (kVariable) {
+      case CurveOver::velocity:
+        return "m/s";
+      case CurveOver::position:
+        return "m";
+      case CurveOver::motor_angle:
+        return "rad";
+      case CurveOver::time:
+        return "s";
+    }
+  }();
+
+  std::array<T, kCoefficients> c;
+  T from, to;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visit) {
+    constexpr UsedBy kUsedBy = kCloses ? UsedBy::motor : UsedBy::every_axis;
+    constexpr std::array<std::string_view, kCoefficients> kNames{
+        "c1", "c2",  "c3",  "c4",  "c5",  "c6",  "c7",  "c8",
+        "c9", "c10", "c11", "c12", "c13", "c14", "c15", "c16"};
+    for (std::size_t k = 0; k < kNames.size(); ++k)
+      visit(Quantity{kNames[k], "N", "coefficient of the curve", -1e5, 1e5, 0.0, kUsedBy},
+            self.c[k]);
+    if constexpr (!kCloses) {
+      visit(Quantity{"from", unit, "start of the curve", -1e6, 1e6, kRequired, kUsedBy, true},
+            self.from);
+      visit(Quantity{"to", unit, "end of the curve", -1e6, 1e6, kRequired, kUsedBy, true}, self.to);
+    }
+  }
+
+  T arm_force(const Instant<T>& at) const { return value(variable(at)); }
+
+  static const T& variable(const Instant<T>& at) {
+    if constexpr (kVariable == CurveOver::velocity) return at.velocity;
+    if constexpr (kVariable == CurveOver::position) return at.position;
+    if constexpr (kVariable == CurveOver::motor_angle) return at.motor_angle;
+    if constexpr (kVariable == CurveOver::time) return at.time;
+  }
+
+  T value(const T& x) const {
+    T s;  // in intervals
+    if constexpr (kCloses) {
+      s = x * (kIntervals / (2.0 * std::numbers::pi));
+      s -= kIntervals * std::floor(value_of(s) / kIntervals);
+    } else {
+      s = (x - from) / (to - from) * double(kIntervals);
+      if (value_of(s) <= 0.0) s = T(0.0);
+      if (value_of(s) >= kIntervals) s = T(double(kIntervals));
+    }
+    const int first = std::clamp(static_cast<int>(value_of(s)), 0, kIntervals - 1);
+    const T t = s - double(first);
+    const T t2 = t * t, t3 = t2 * t;
+    const auto k = [&](int i) -> const T& {
+      return c[static_cast<std::size_t>((first + i) % kCoefficients)];
+    };
+    return (k(0) * (1.0 - 3.0 * t + 3.0 * t2 - t3) + k(1) * (4.0 - 6.0 * t2 + 3.0 * t3) +
+            k(2) * (1.0 + 3.0 * t + 3.0 * t2 - 3.0 * t3) + k(3) * t3) /
+           6.0;
+  }
+};
+
+template <class T>
+using ForceOverVelocity = CurveForce<T, CurveOver::velocity>;
+template <class T>
+using ForceOverPosition = CurveForce<T, CurveOver::position>;
+template <class T>
+using ForceOverMotorAngle = CurveForce<T, CurveOver::motor_angle>;
+template <class T>
+using ForceOverTime = CurveForce<T, CurveOver::time>;
+
+}  // namespace axisfit

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "sim/effects/slots.h"
+
+namespace axisfit {
+
+/// A power stage that follows its input (V_c, or the command of a force source) with the time
+/// constant T_l. At zero it follows at once.
+template <class T>
+struct DriveLag {
+  static constexpr std::string_view name = "drive_lag";
+  static constexpr std::string_view meaning = "lag of the drive";
+
+  T T_l;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visit) {
+    visit(Quantity{"T_l", "s", "time constant of the drive", 0, 10}, self.T_l);
+  }
+
+  void add_to(Slots<T>& slots) const { slots.drive_lag += T_l; }
+};
+
+}  // namespace axisfit

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <numbers>
+
+#include "sim/effects/slots.h"
+
+namespace axisfit {
+
+/// An elastic mode of the arm: the part m_e of its mass is carried by a spring, and vibrates with
+/// the frequency f_e and the damping ratio zeta_e while the rest of the arm is held.
+///
+///   m_e (y1' + q'') = -m_e (w^2 q + 2 zeta_e w q'),  w = 2 pi f_e,  q its displacement
+///
+/// The arm with its accelerometer is what the gear drives. M remains the whole mass.
+template <class T>
+struct ElasticMode {
+  static constexpr std::string_view name = "elastic_mode";
+  static constexpr std::string_view meaning = "elastic mode of the arm";
+
+  T m_e, f_e, zeta_e;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visit) {
+    visit(Quantity{"m_e", "kg", "mass that vibrates", 0, 1e5}, self.m_e);
+    visit(Quantity{"f_e", "Hz", "frequency with the arm held", 0.1, 1e4, kRequired,
+                   UsedBy::every_axis, true},
+          self.f_e);
+    visit(Quantity{"zeta_e", "1", "damping ratio", 1e-4, 10, 0.02, UsedBy::every_axis, true},
+          self.zeta_e);
+  }
+
+  void add_to(Slots<T>& slots) const {
+    slots.elastic_mass += m_e;
+    slots.elastic_frequency += 2.0 * std::numbers::pi * f_e;
+    slots.elastic_damping += zeta_e;
+  }
+};
+
+}  // namespace axisfit

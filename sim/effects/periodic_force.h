@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "sim/effects/slots.h"
+
+namespace axisfit {
+
+/// A force on the arm that repeats along the stroke: rack pitch, rollers of a guide, magnets of a
+/// linear motor.
+///
+///   F = F_s1 sin(q) + F_c1 cos(q) + F_s2 sin(2 q) + F_c2 cos(2 q),  q = 2 pi y0 / period
+template <class T>
+struct PeriodicForce {
+  static constexpr std::string_view name = "periodic_force";
+  static constexpr std::string_view meaning = "force that repeats along the stroke";
+
+  T F_s1, F_c1, F_s2, F_c2, period;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visit) {
+    visit(Quantity{"F_s1", "N", "sine part, first harmonic", -1e5, 1e5}, self.F_s1);
+    visit(Quantity{"F_c1", "N", "cosine part, first harmonic", -1e5, 1e5}, self.F_c1);
+    visit(Quantity{"F_s2", "N", "sine part, second harmonic", -1e5, 1e5, 0.0}, self.F_s2);
+    visit(Quantity{"F_c2", "N", "cosine part, second harmonic", -1e5, 1e5, 0.0}, self.F_c2);
+    visit(Quantity{"period", "m", "length after which it repeats", 1e-5, 1e3, kRequired,
+                   UsedBy::every_axis, true},
+          self.period);
+  }
+
+  T arm_force(const Instant<T>& at) const {
+    using std::cos, std::sin;
+    const T q = 2.0 * std::numbers::pi * at.position / period;
+    const T s = sin(q), c = cos(q);
+    return F_s1 * s + F_c1 * c + 2.0 * F_s2 * s * c + F_c2 * (c * c - s * s);
+  }
+};
+
+}  // namespace axisfit

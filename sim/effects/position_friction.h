@@ -1,0 +1,28 @@
+#pragma once
+
+#include "sim/effects/slots.h"
+
+namespace axisfit {
+
+/// Friction that changes along the stroke, as on a guide that is bent or tightened unevenly: dry
+/// friction grows by G_c and the viscous coefficient by G_b per metre of the arm's position.
+template <class T>
+struct PositionFriction {
+  static constexpr std::string_view name = "position_friction";
+  static constexpr std::string_view meaning = "friction that depends on the position";
+
+  T G_c, G_b;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visit) {
+    visit(Quantity{"G_c", "N/m", "growth of dry friction along the stroke", -1e6, 1e6, 0.0},
+          self.G_c);
+    visit(Quantity{"G_b", "N s/m^2", "growth of viscous friction along the stroke", -1e6, 1e6, 0.0},
+          self.G_b);
+  }
+
+  void add_to(Slots<T>& slots) const { slots.friction_slope += G_c; }
+  T arm_force(const Instant<T>& at) const { return -(G_b * at.position * at.velocity); }
+};
+
+}  // namespace axisfit

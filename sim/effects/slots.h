@@ -1,0 +1,58 @@
+// Where an effect can act on the axis, and what it sees of it.
+//
+// Slots that keep the equations affine within a mode are plain numbers: an effect adds to them in
+//
+//   void add_to(Slots<T>& slots) const;
+//
+// and they cost next to nothing. Any other force is a smooth function of one instant,
+//
+//   T arm_force(const Instant<T>&) const;       N on the arm, positive in its positive direction
+//   T friction_curve(const Instant<T>&) const;  N against the arm's motion, with sticking
+//   T motor_torque(const Instant<T>&) const;    N m on the motor
+//
+// and goes through the Runge-Kutta part of the integrator. A force that jumps needs a guard
+// (equations.h), as dry friction has.
+#pragma once
+
+#include "sim/quantity.h"
+
+namespace axisfit {
+
+template <class T>
+struct Slots {
+  T constant_force{0.0};      ///< N, on the arm
+  T stiffness{0.0};           ///< N/m, of a spring that pulls the arm to position zero
+  T friction_level{0.0};      ///< N, dry friction with sticking
+  T friction_asymmetry{0.0};  ///< N, added to it in the positive direction, taken off in the other
+  T friction_slope{0.0};      ///< N/m, added to it per metre of the arm's position
+  T load_friction{0.0};       ///< 1, added to it per newton of transmitted force
+  T viscous_asymmetry{0.0};   ///< N s/m, added to B_a in the positive direction, taken off else
+  T added_mass{0.0};          ///< kg, on the arm
+  T command_offset{0.0};      ///< V, added to U
+  T drive_lag{0.0};           ///< s, time constant with which the power stage follows its input
+  T elastic_mass{0.0};        ///< kg, the part of the arm that a spring carries, and of that mode
+  T elastic_frequency{0.0};   ///< rad/s, with the arm held, and
+  T elastic_damping{0.0};     ///< 1, damping ratio
+};
+
+/// Where the arm last came to rest, and the state of its hysteresis there; see DahlFriction.
+template <class T>
+struct Memory {
+  T position{0.0};    ///< m
+  T hysteresis{0.0};  ///< 1, from -1 to 1
+};
+
+/// What an effect sees of the axis. Forces and speeds on the arm side.
+template <class T>
+struct Instant {
+  T time;          ///< s, of the recording
+  T position;      ///< m, y0
+  T velocity;      ///< m/s, y1
+  int direction;   ///< sign of the velocity; 0 while the arm sticks
+  T motor_angle;   ///< rad, y2
+  T current;       ///< A; zero for a force source
+  T drive_torque;  ///< N m, of the motor by its current
+  Memory<T> memory;
+};
+
+}  // namespace axisfit

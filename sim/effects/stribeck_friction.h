@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cmath>
+
+#include "sim/effects/slots.h"
+
+namespace axisfit {
+
+/// Dry friction that changes at low speed: F_st exp(-|y1| / v_st) on top of all other dry friction,
+/// at rest too. Positive for the Stribeck effect, where a lubricating film builds up with speed;
+/// negative where friction is less at low speed.
+///
+/// Source: R. Stribeck (1902); the exponential form is that of A. Tustin (1947), see B.
+/// Armstrong-Helouvry et al., Automatica 30 (1994).
+template <class T>
+struct StribeckFriction {
+  static constexpr std::string_view name = "stribeck_friction";
+  static constexpr std::string_view meaning = "friction that is higher (or lower) at low speed";
+
+  T F_st, v_st;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visit) {
+    visit(Quantity{"F_st", "N", "dry friction at low speed less that at speed", -1e5, 1e5},
+          self.F_st);
+    visit(Quantity{"v_st", "m/s", "speed at which a 1/e of it is left", 1e-4, 10, kRequired,
+                   UsedBy::every_axis, true},
+          self.v_st);
+  }
+
+  T friction_curve(const Instant<T>& at) const {
+    using std::exp;
+    return F_st * exp(-double(at.direction) * at.velocity / v_st);
+  }
+};
+
+}  // namespace axisfit

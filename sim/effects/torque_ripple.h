@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cmath>
+
+#include "sim/effects/slots.h"
+
+namespace axisfit {
+
+/// Ripple of the torque constant in the motor angle: commutation, winding. `order` periods per
+/// turn.
+///
+///   K_m (1 + r_s sin(order y2) + r_c cos(order y2))
+template <class T>
+struct TorqueRipple {
+  static constexpr std::string_view name = "torque_ripple";
+  static constexpr std::string_view meaning = "torque constant that varies with the motor angle";
+
+  T r_s, r_c, order;
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visit) {
+    using enum UsedBy;
+    visit(Quantity{"r_s", "1", "sine part, of K_m", -1, 1, kRequired, electric_drive}, self.r_s);
+    visit(Quantity{"r_c", "1", "cosine part, of K_m", -1, 1, kRequired, electric_drive}, self.r_c);
+    visit(Quantity{"order", "1", "periods per turn of the motor", 0.01, 1e3, kRequired,
+                   electric_drive, true},
+          self.order);
+  }
+
+  T motor_torque(const Instant<T>& at) const {
+    using std::cos, std::sin;
+    const T q = order * at.motor_angle;
+    return (r_s * sin(q) + r_c * cos(q)) * at.drive_torque;
+  }
+};
+
+}  // namespace axisfit

@@ -1,0 +1,105 @@
+// The instruments of a recording: what they read at its samples, with their lags and delays.
+//
+// Neither acts on the axis, so both are applied to the readings afterwards. That needs them at more
+// instants than the samples where an instrument has one: there every interval is cut in pieces, and
+// between them the reading is taken as linear. The lag's response to that is exact, and regular at
+// a lag of zero.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "sim/integrator.h"
+
+namespace axisfit {
+
+template <class T>
+class Recorder {
+ public:
+  /// For these signals at these sample times (s, increasing). The instruments and signals must
+  /// outlive it.
+  Recorder(const Instruments<T>& instruments, std::span<const Signal> signals,
+           std::span<const double> times)
+      : instruments_(instruments), signals_(signals), raw_(signals.size()) {
+    for (const Signal signal : signals)
+      if (is_late(signal)) pieces_ = 4;
+    instants_ = refined(times);
+    for (auto& values : raw_) values.reserve(instants_.size());
+  }
+
+  /// When the simulation has to be read.
+  const std::vector<double>& instants() const { return instants_; }
+  /// A series of values at the samples, at the instants: linear between samples.
+  std::vector<double> refined(std::span<const double> series) const {
+    std::vector<double> fine;
+    if (series.empty()) return fine;
+    fine.reserve((series.size() - 1) * pieces_ + 1);
+    for (std::size_t i = 0; i + 1 < series.size(); ++i)
+      for (std::size_t k = 0; k < pieces_; ++k)
+        fine.push_back(series[i] + double(k) / double(pieces_) * (series[i + 1] - series[i]));
+    fine.push_back(series.back());
+    return fine;
+  }
+  /// Whether an instant is a sample.
+  bool is_sample(std::size_t instant) const { return instant % pieces_ == 0; }
+
+  /// To be called at every instant.
+  void read(const Integrator<T>& axis) {
+    for (std::size_t s = 0; s < signals_.size(); ++s)
+      raw_[s].push_back(
+          reading(axis.equations(), signals_[s], axis.mode(), axis.state(), axis.input()));
+  }
+
+  /// What the instrument for signals[s] shows at the samples that were reached.
+  /// In the signal's unit, one value per sample.
+  std::vector<T> readings(std::size_t s) const {
+    const Instrument<T>& instrument = instruments_[index_of(signals_[s])];
+    std::vector<T> fine = raw_[s];
+    if (is_in_play(instrument.lag)) fine = lagging(fine, instrument.lag);
+    std::vector<T> shown;
+    shown.reserve(fine.size() / pieces_ + 1);
+    for (std::size_t k = 0; k < fine.size(); k += pieces_)
+      shown.push_back(is_in_play(instrument.delay) ? at(fine, k, instrument.delay) : fine[k]);
+    return shown;
+  }
+
+ private:
+  bool is_late(Signal signal) const {
+    const Instrument<T>& instrument = instruments_[index_of(signal)];
+    return is_in_play(instrument.lag) || is_in_play(instrument.delay);
+  }
+
+  /// lag s' = u - s with u linear between the instants and s = u at the first.
+  std::vector<T> lagging(const std::vector<T>& u, const T& lag) const {
+    using std::exp;
+    std::vector<T> s = u;
+    for (std::size_t k = 1; k < u.size(); ++k) {
+      const double h = instants_[k] - instants_[k - 1];
+      const T behind = lag * (u[k] - u[k - 1]) / h;
+      s[k] = u[k] - behind;
+      if (value_of(lag) > h / 700.0) s[k] += (s[k - 1] - u[k - 1] + behind) * exp(-h / lag);
+    }
+    return s;
+  }
+
+  /// Value `delay` before instant i, linear between instants; the first and the last hold on.
+  T at(const std::vector<T>& u, std::size_t i, const T& delay) const {
+    const T t = instants_[i] - delay;
+    if (t < instants_.front()) return u.front();
+    const auto after = std::ranges::lower_bound(instants_, value_of(t));
+    const auto k = static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, after - instants_.begin()));
+    if (k >= u.size()) return u.back();
+    const T share = (t - instants_[k - 1]) / (instants_[k] - instants_[k - 1]);
+    return u[k - 1] + share * (u[k] - u[k - 1]);
+  }
+
+  const Instruments<T>& instruments_;
+  std::span<const Signal> signals_;
+  std::size_t pieces_ = 1;
+  std::vector<double> instants_;
+  std::vector<std::vector<T>> raw_;
+};
+
+}  // namespace axisfit
