@@ -47,7 +47,7 @@ class Continuation {
   SolveResult solve_stage(const Eigen::VectorXd& start, double rate, bool final) {
     SolveOptions options;
     options.max_iterations = job_.options.max_iterations;
-    options.function_tolerance = 1e-10;
+    options.function_tolerance = job_.options.tolerance;
     if (!final) {
       options.max_iterations = std::min(options.max_iterations, 12);
       options.function_tolerance = 1e-4;
@@ -131,17 +131,20 @@ ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
     // of the measurement into the simulation, which can bias what the data hardly show beyond
     // return. And from elsewhere: even held firmly, a controller that saturates has local minima.
     // A start that cannot even be simulated costs little: there the moves go on for longer.
-    constexpr int kAttempts = 4, kAttemptsToBegin = 16;
+    constexpr int kAttemptsToBegin = 16;
     constexpr double kExplained = 1.1;
-    for (int attempt = 0; attempt < (result.last.usable ? kAttempts : kAttemptsToBegin);
+    for (int attempt = 0; attempt < (result.last.usable ? job.options.attempts : kAttemptsToBegin);
          ++attempt) {
       const double rate = first_coupling_rate(job) / (attempt == 1 ? 5.0 : 1.0);
       const Eigen::VectorXd from = attempt < 2 ? start : moved(space, start, attempt);
       SolveResult solved = continuation.run(from, rate);
+      // The same end from another way is likely the best there is.
+      const bool confirmed = attempt > 0 && solved.usable && result.last.usable &&
+                             std::abs(solved.cost - result.last.cost) < 1e-4 * solved.cost;
       const bool better = attempt == 0 || (solved.usable &&
                                            (!result.last.usable || solved.cost < result.last.cost));
       if (better) result.last = std::move(solved);
-      if (result.last.usable && result.last.reduced_cost < kExplained) break;
+      if (confirmed || (result.last.usable && result.last.reduced_cost < kExplained)) break;
     }
   }
   result.last.iterations = continuation.iterations();

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <numeric>
 #include <random>
-#include <thread>
+
+#include "fit/parallel.h"
 
 namespace axisfit {
 namespace {
@@ -23,28 +23,20 @@ std::vector<Trial> run_starts(const Job& job, const ParameterSpace& space,
                               const std::function<void(const Progress&)>& progress) {
   const int starts = std::max(1, job.options.starts);
   std::vector<Trial> trials(static_cast<std::size_t>(starts));
-  std::atomic<int> next = 0;
   std::mutex mutex;
   int done = 0;
-  const auto work = [&] {
-    for (int start = next++; start < starts; start = next++) {
-      Trial& trial = trials[static_cast<std::size_t>(start)];
-      trial.from = draw_start(job, start);
-      const auto tell = [&](const Stage& stage) {
-        const std::lock_guard lock(mutex);
-        if (progress) progress({done, starts, start, stage});
-      };
-      trial.result = continue_to_free(job, space, space.internal(trial.from), tell);
-      const std::lock_guard lock(mutex);
-      ++done;
-    }
-  };
-  const int wanted = job.options.threads > 0
-                         ? job.options.threads
-                         : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  std::vector<std::jthread> threads;
-  for (int i = 1; i < std::min(wanted, starts); ++i) threads.emplace_back(work);
-  work();
+  parallel_for(trials.size(), thread_count(job.options.threads), [&](std::size_t i) {
+    const int start = static_cast<int>(i);
+    Trial& trial = trials[i];
+    trial.from = draw_start(job, start);
+    trial.result = continue_to_free(job, space, space.internal(trial.from),
+                                    [&](const Stage& stage) {
+                                      const std::lock_guard lock(mutex);
+                                      if (progress) progress({done, starts, start, stage});
+                                    });
+    const std::lock_guard lock(mutex);
+    ++done;
+  });
   return trials;
 }
 
@@ -74,8 +66,7 @@ RecordingResult judge(const Job& job, const ParameterSpace& space, std::size_t i
   RecordingResult result;
   result.prediction = predict(job, space, index, u.data(), {});
   const Coupling coupling = coupling_for(recording, coupling_rate);
-  std::optional<Prediction> coupled;
-  if (coupling.active()) coupled = predict(job, space, index, u.data(), coupling);
+  if (coupling.active()) result.held = predict(job, space, index, u.data(), coupling);
   const std::size_t first = recording.score_initial_samples ? 0 : recording.initial_samples;
   for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
     const Measurement& measurement = recording.measurements[m];
@@ -92,8 +83,8 @@ RecordingResult judge(const Job& job, const ParameterSpace& space, std::size_t i
       error.nrmse_percent = high > low ? 100.0 * error.rmse / (high - low) : 0.0;
       error.reduced_chi_square = mean_square / (measurement.sigma * measurement.sigma);
     }
-    if (coupled && coupled->finished) {
-      const double mean_square = mean_square_error(measurement, coupled->simulated[m], first);
+    if (result.held && result.held->finished) {
+      const double mean_square = mean_square_error(measurement, result.held->simulated[m], first);
       error.prediction_rmse = std::sqrt(mean_square);
       error.prediction_reduced_chi_square = mean_square / (measurement.sigma * measurement.sigma);
     }
@@ -240,6 +231,12 @@ FitResult estimate(const Job& job, const std::function<void(const Progress&)>& p
     result.parameters.push_back({space.name(i), values[i], uncertainties[i]});
   conclude(job, solved, result);
   return result;
+}
+
+std::vector<double> values_of(const FitResult& result) {
+  std::vector<double> values;
+  for (const ParameterResult& p : result.parameters) values.push_back(p.value);
+  return values;
 }
 
 Model<double> fitted_model(const Job& job, const FitResult& result) {

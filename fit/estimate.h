@@ -34,7 +34,12 @@ struct SignalError {
 
 struct RecordingResult {
   Prediction prediction;  ///< free running
+  /// With the coupling at which the fit ended; only where that is not zero.
+  std::optional<Prediction> held;
   std::vector<SignalError> signals;
+
+  /// The prediction in the way the recording was fitted.
+  const Prediction& judged() const { return held ? *held : prediction; }
 };
 
 struct ParameterResult {
@@ -77,6 +82,9 @@ struct Progress {
 /// Where start number `start` begins: the initial values for the first, values drawn around them
 /// for the others, by the job's seed and spread and the start's number alone.
 std::vector<double> draw_start(const Job& job, int start);
+
+/// The values of the free parameters.
+std::vector<double> values_of(const FitResult& result);
 
 /// Fits a job. The result depends on the job alone, not on the number of threads.
 FitResult estimate(const Job& job, const std::function<void(const Progress&)>& progress = {});

@@ -50,8 +50,16 @@ struct Recording {
   std::size_t initial_samples = 20;
   bool score_initial_samples = true;  ///< false: errors are reported without them
   bool acceleration_at_rest = false;  ///< whether it counts while the arm rests, see rest.h
+  /// Samples of a recording to be fitted that are only judged, as if they were another recording;
+  /// empty: none.
+  std::vector<bool> held_out;
   /// Quantities that differ from the model's in this recording: index in quantity_list(), value.
   std::vector<std::pair<std::size_t, double>> overrides;
+
+  bool fits(const Measurement& measurement, std::size_t sample) const {
+    return role == Role::fit && measurement.fitted && measurement.counts(sample) &&
+           (held_out.empty() || !held_out[sample]);
+  }
 
   const Measurement* find(Signal signal) const {
     for (const Measurement& m : measurements)
@@ -94,6 +102,8 @@ struct FitOptions {
   Loss loss = Loss::squares;
   double huber_width = 3.0;  ///< residuals above this many sigma count linearly
   int max_iterations = 50;   ///< of each stage of the continuation
+  double tolerance = 1e-10;  ///< relative change of the cost at which the last stage stops
+  int attempts = 4;          ///< continuations of a start, while they end unexplained
   int starts = 1;            ///< the first from the initial values, the others drawn around them
   double spread = 5.0;       ///< starts are drawn within this factor, either way
   std::uint64_t seed = 1;

@@ -1,6 +1,5 @@
 #include "fit/residual.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -84,18 +83,17 @@ RecordingCost::RecordingCost(const Job& job, const ParameterSpace& space, std::s
                              const Coupling& coupling)
     : job_(job), space_(space), recording_(recording), coupling_(coupling) {
   const Recording& r = job.recordings[recording];
-  std::ptrdiff_t residuals = 0;
+  int residuals = 0;
   for (std::size_t m = 0; m < r.measurements.size(); ++m) {
     const Measurement& measurement = r.measurements[m];
     if (!measurement.fitted) continue;
     fitted_.push_back(m);
     signals_.push_back(measurement.signal);
-    residuals += static_cast<std::ptrdiff_t>(r.times.size()) -
-                 std::ranges::count(measurement.left_out, true);
+    for (std::size_t i = 0; i < r.times.size(); ++i) residuals += r.fits(measurement, i);
   }
   for (std::size_t i = 0; i < space.size(); ++i)
     if (space.applies(i, recording)) applicable_.push_back(i);
-  set_num_residuals(static_cast<int>(residuals));
+  set_num_residuals(residuals);
   mutable_parameter_block_sizes()->push_back(static_cast<int>(space.size()));
 }
 
@@ -119,7 +117,7 @@ bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobia
     const Measurement& m = recording.measurements[fitted_[f]];
     const std::vector<T> simulated = recorder.readings(f);
     for (std::size_t i = 0; i < simulated.size(); ++i) {
-      if (!m.counts(i)) continue;
+      if (!recording.fits(m, i)) continue;
       double r = (m.values[i] - value_of(simulated[i])) / m.sigma, weight = 1.0;
       if (job_.options.loss == Loss::huber)
         std::tie(r, weight) = robust(r, job_.options.huber_width);

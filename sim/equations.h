@@ -32,7 +32,7 @@ enum class Terms {
 struct PartsInPlay {
   EffectSet effects;
   slots::Needs needs;
-  bool backlash, static_friction, directions, spring, asymmetric, slope, load, curved_load, elastic,
+  bool backlash, static_friction, directions, spring, asymmetric, slope, load, driven_load, elastic,
       lagging, lag_in_play;
 };
 
@@ -54,10 +54,9 @@ class Equations {
   const Coupling& coupling() const { return coupling_; }
   const PartsInPlay& parts() const { return is_; }
   bool has_smooth_forces() const {
-    return is_.needs.arm_force || is_.needs.friction_curve || is_.needs.motor_torque ||
-           is_.curved_load;
+    return is_.needs.arm_force || is_.needs.friction_curve || is_.needs.motor_torque;
   }
-  /// Whether the signs of contact and motion change more than constants.
+  /// Whether the signs of contact, motion and load change more than constants.
   bool signs_matter() const { return is_.asymmetric || is_.slope || is_.load; }
   /// What a drive lag of zero adds to the dead time of a force source: nothing, but its derivative.
   T lag_of_switching() const {
@@ -225,8 +224,6 @@ class Equations {
       arm = slots::arm_force(m_.effects, is_.effects, at);
       if (is_.needs.friction_curve)
         arm -= double(mode.sliding) * slots::friction_curve(m_.effects, is_.effects, at);
-      if (is_.curved_load)
-        arm -= double(mode.sliding) * slots_.load_friction * load(mode, y, input);
       if (!is_.backlash) arm += motor;
       d[1] = arm / moving_mass();
       if (is_.elastic) d[9] = -d[1];
@@ -274,6 +271,10 @@ class Equations {
     if (m_.structure.drive == Drive::velocity_loop)
       between(v_m_positive, v_m_negative, mode.v_m, motor_demand(mode, y, input), p.V_s,
               value_of(p.V_s) + value_of(p.K_v) * value_of(p.V_L) * 1e-3);
+    if (is_.driven_load) {
+      const T force = current_force(mode, y, input);
+      visit(Guard::load, double(mode.load) * force, 1.0 + std::abs(value_of(force)));
+    }
     if (is_.directions) {
       if (mode.sliding == 0) {
         const T force = stick_force(mode, y, input);
@@ -317,6 +318,9 @@ class Equations {
       case Guard::doublet:
         mode.doublet = !mode.doublet;
         break;
+      case Guard::load:
+        mode.load = static_cast<std::int8_t>(-mode.load);
+        break;
       case Guard::break_away_positive:
         mode = slide(mode, 1);
         break;
@@ -345,6 +349,13 @@ class Equations {
     return mode;
   }
 
+  /// The mode after the command was switched. What a force source drives with jumps then.
+  Mode switched(Mode mode, const State<T>& y, const Input<T>& input) const {
+    if (is_.driven_load && m_.structure.drive == Drive::force_source && !is_.lagging)
+      mode.load = sign_of_load(mode, y, input);
+    return settle(mode, y, input);
+  }
+
   /// The mode that belongs to a state at the start.
   Mode mode_at(const State<T>& y, const Input<T>& input) const {
     const Axis<T>& p = m_.axis;
@@ -357,6 +368,7 @@ class Equations {
       mode.v_c = side(value_of(preamplifier(y)), value_of(p.V_L));
     if (m_.structure.drive == Drive::velocity_loop)
       mode.v_m = side(value_of(motor_demand(mode, y, input)), value_of(p.V_s));
+    if (is_.driven_load) mode.load = sign_of_load(mode, y, input);
     const double speed = value_of(y[1]);
     if (!is_.directions) {
       mode.sliding = 1;
@@ -391,7 +403,7 @@ class Equations {
     is.asymmetric = is_in_play(slots.viscous_asymmetry);
     is.slope = is_in_play(slots.friction_slope);
     is.load = is_in_play(slots.load_friction);
-    is.curved_load = is.load && !is.backlash && model.structure.drive != Drive::force_source;
+    is.driven_load = is.load && !is.backlash;
     is.directions = is.static_friction || is.asymmetric || is.slope || is.load ||
                     is_in_play(slots.friction_level) || is_in_play(slots.friction_asymmetry) ||
                     is.needs.friction_curve || is.needs.hysteresis;
@@ -432,9 +444,12 @@ class Equations {
   /// Force that the transmission carries, N: of the teeth on the side of their contact, or of the
   /// motor where there are none.
   T load(const Mode& mode, const State<T>& y, const Input<T>& input) const {
-    if (is_.backlash) return double(mode.contact) * gear_force(mode, y);
-    const T force = current_force(mode, y, input);
-    return force < 0.0 ? -force : force;
+    return is_.backlash ? double(mode.contact) * gear_force(mode, y)
+                        : double(mode.load) * current_force(mode, y, input);
+  }
+
+  std::int8_t sign_of_load(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    return value_of(current_force(mode, y, input)) < 0.0 ? -1 : 1;
   }
 
   /// Dry friction against a motion in `direction`, N, (6) and effects. Below zero it drives.
@@ -444,8 +459,7 @@ class Equations {
     if (in_doublet) level += m_.axis.F_s;
     if (is_.directions) level += double(direction) * slots_.friction_asymmetry;
     if (is_.slope) level += slots_.friction_slope * y[0];
-    if (is_.load && (terms == Terms::all || !is_.curved_load))
-      level += slots_.load_friction * load(mode, y, input);
+    if (is_.load) level += slots_.load_friction * load(mode, y, input);
     if (is_.needs.friction_curve && terms == Terms::all)
       level += slots::friction_curve(m_.effects, is_.effects, instant(mode, y, input));
     return level;

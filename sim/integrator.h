@@ -71,7 +71,7 @@ class Integrator {
   void set_command(const T& command) {
     input_.command = command;
     copy_plain_input();
-    switch_mode(equations_.settle(mode_, y_, input_));
+    switch_mode(equations_.switched(mode_, y_, input_));
   }
 
   /// From now on the coupling's target is `target` and moves with the rate `slope` per second.
@@ -241,11 +241,12 @@ void Integrator<T>::switch_mode(const Mode& mode) {
 
 template <class T>
 const typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
-  // The sign of a limit changes constants, not the matrix; those of contact and motion change it
-  // where friction depends on them.
+  // The sign of a limit changes constants, not the matrix; those of contact, motion and load change
+  // it where friction depends on them.
   const int contact = mode.contact == 0 ? 0 : equations_.signs_matter() ? mode.contact : 1;
   const int sliding = mode.sliding == 0 ? 0 : equations_.signs_matter() ? mode.sliding : 1;
-  const int key = (mode.v_c != 0) | (mode.v_m != 0) << 1 | (contact + 1) << 2 | (sliding + 1) << 4;
+  const int key = (mode.v_c != 0) | (mode.v_m != 0) << 1 | (contact + 1) << 2 | (sliding + 1) << 4 |
+                  (mode.load + 1) << 6;
   std::unique_ptr<Flow>& flow = flows_[key];
   if (flow == nullptr) {
     Matrix<T> a;

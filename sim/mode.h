@@ -11,6 +11,8 @@ struct Mode {
   std::int8_t v_m = 0;      ///< -1, 0, +1: motor voltage free, or at the limit of that sign, (3)
   std::int8_t sliding = 0;  ///< 0: the arm sticks; -1, +1: the sign of its velocity. Meaningless
                             ///< (and 1) for an arm without dry friction.
+  std::int8_t load = 1;     ///< -1, +1: the sign of the drive's force, where friction of a rigid
+                            ///< transmission is in proportion to it
   bool doublet = false;     ///< whether |y1| < w, where F_s acts, (6)
 
   bool operator==(const Mode&) const = default;
@@ -26,6 +28,7 @@ enum class Guard : std::uint8_t {
   v_m_negative,         ///< V_m = -V_s
   stop,                 ///< y1 = 0 while sliding
   doublet,              ///< |y1| = w
+  load,                 ///< the drive's force passes zero
   break_away_positive,  ///< the arm's dry friction is overcome in the positive direction
   break_away_negative,  ///< and in the negative
 };

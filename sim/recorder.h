@@ -87,7 +87,7 @@ class Recorder {
   /// Value `delay` before instant i, linear between instants; the first and the last hold on.
   T at(const std::vector<T>& u, std::size_t i, const T& delay) const {
     const T t = instants_[i] - delay;
-    if (t < instants_.front()) return u.front();
+    if (t <= instants_.front()) return u.front();
     const auto after = std::ranges::lower_bound(instants_, value_of(t));
     const auto k = static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, after - instants_.begin()));
     if (k >= u.size()) return u.back();

@@ -17,9 +17,9 @@ enum class CurveOver { velocity, position, motor_angle, time };
 /// other effect explains.
 ///
 /// A cubic spline with the 16 coefficients c1 ... c16 on equally spaced knots: with u running from
-/// 0 to 1 between `from` and `to`, F is the sum of c_k b(13 u - k + 3), b the uniform cubic
+/// 0 to 1 between `from` and `to`, F is the sum of c_k b(13 u - k + 4), b the uniform cubic
 /// B-spline on 0 ... 4. Beyond the ends it stays constant. Over the motor angle the curve closes
-/// after one turn, F = sum of c_k b(16 u - k + 3), and has no ends.
+/// after one turn, F = sum of c_k b(16 u - k + 4), and has no ends.
 /// Source: C. de Boor, A Practical Guide to Splines (1978), chapter IX.
 template <class T, CurveOver kVariable>
 struct CurveForce {

@@ -12,6 +12,19 @@
 namespace axisfit {
 namespace {
 
+/// Names of all quantities of the effects of an axis.
+std::set<std::string> names_of_effects(const EffectSet& present = EffectSet().set()) {
+  std::set<std::string> names;
+  const Effects<double> effects{};
+  visit_effects(effects, [&](std::size_t index, const auto& effect) {
+    if (!present[index]) return;
+    effect.visit(effect, [&](const Quantity& quantity, double) {
+      names.insert(full_name(effect.name, quantity));
+    });
+  });
+  return names;
+}
+
 TEST(QuantityList, HasUniqueNamesInTheOrderOfTheMembers) {
   std::set<std::string> names;
   std::size_t index = 0;
@@ -47,10 +60,26 @@ TEST(QuantityList, DescribesEveryQuantity) {
 TEST(QuantityList, RangesHoldThePapersAxis) {
   Model<double> model = paper_axis();
   for (const QuantityEntry& entry : quantity_list()) {
+    // An axis without an effect has its strength, zero, but no shape.
+    if (entry.quantity.shape) continue;
     const double value = *members(model)[entry.index];
     EXPECT_GE(value, entry.quantity.lower) << entry.name;
     EXPECT_LE(value, entry.quantity.upper) << entry.name;
   }
+}
+
+TEST(QuantityList, HasStrengthsAndShapesOfEffects) {
+  const Model<double> model;
+  visit_effects(model.effects, [&](std::size_t, const auto& effect) {
+    int strengths = 0;
+    effect.visit(effect,
+                 [&](const Quantity& quantity, double) { strengths += quantity.shape ? 0 : 1; });
+    EXPECT_GT(strengths, 0) << effect.name;
+  });
+  for (const QuantityEntry& entry : quantity_list())
+    if (entry.quantity.shape) {
+      EXPECT_TRUE(names_of_effects().contains(entry.name)) << entry.name;
+    }
 }
 
 TEST(QuantityList, DoesNotKnowOtherNames) {
@@ -91,34 +120,60 @@ TEST(InitialState, PutsTheMotorWhereTheArmIs) {
   EXPECT_EQ(y[6], 3.0);
 }
 
-std::set<std::string> unused_of(const Structure& structure, const std::string& group_not = "?") {
+std::set<std::string> unused_of(const Structure& structure) {
   std::set<std::string> names;
   for (const QuantityEntry& entry : quantity_list())
-    if (!is_used(entry, structure) && entry.group != group_not) names.insert(entry.name);
+    if (!is_used(entry, structure)) names.insert(entry.name);
   return names;
 }
 
+using Names = std::set<std::string>;
+
+Names operator+(Names a, const Names& b) {
+  a.insert(b.begin(), b.end());
+  return a;
+}
+
+Names operator-(Names a, const Names& b) {
+  for (const std::string& name : b) a.erase(name);
+  return a;
+}
+
 TEST(IsUsed, FollowsTheStructure) {
-  const std::set<std::string> effects{"coulomb_friction.F_c", "constant_force.F_0",
-                                      "quadratic_drag.c"};
-  const auto with_effects = [&](std::set<std::string> names) {
-    names.insert(effects.begin(), effects.end());
-    return names;
+  const Names loop{"R", "L", "K_e", "V_s", "K_v", "initial.y6"};
+  const Names gear{"H", "b_g", "k_g", "initial.x", "initial.dx"};
+  const Names electric{"K_m", "K_t", "T_z", "T_p",        "T_r",       "K_1",
+                       "K_2", "K_i", "V_L", "initial.y4", "initial.y5"};
+  const Names motor{"J_m", "B_m", "r_g"};
+  Names of_electric{"torque_ripple.r_s", "torque_ripple.r_c", "torque_ripple.order",
+                    "torque_droop.c_i"};
+  Names of_motor{"cogging_torque.T_s", "cogging_torque.T_c", "cogging_torque.order"};
+  for (int k = 1; k <= 16; ++k) of_motor.insert("force_over_motor_angle.c" + std::to_string(k));
+  const EffectSet none, all = EffectSet().set();
+  const struct {
+    Drive drive;
+    Transmission transmission;
+    Names of_axis, of_effects;  // left out by this structure
+  } variants[] = {
+      {Drive::velocity_loop, Transmission::backlash, {"K_f"}, {}},
+      {Drive::current_source, Transmission::backlash, loop + Names{"K_f"}, {}},
+      {Drive::force_source, Transmission::backlash, loop + electric, of_electric},
+      {Drive::velocity_loop, Transmission::rigid, gear + Names{"K_f"}, {}},
+      {Drive::current_source, Transmission::rigid, gear + loop + Names{"K_f"}, {}},
+      {Drive::force_source, Transmission::rigid, gear + loop + electric + motor,
+       of_electric + of_motor},
   };
-  EXPECT_EQ(unused_of({Drive::velocity_loop, Transmission::backlash, {}}), with_effects({"K_f"}));
-  const std::set<std::string> loop{"R", "L", "K_e", "V_s", "K_v", "initial.y6", "K_f"};
-  EXPECT_EQ(unused_of({Drive::current_source, Transmission::backlash, {}}), with_effects(loop));
-  EXPECT_EQ(unused_of({Drive::velocity_loop, Transmission::rigid, {}}),
-            with_effects({"K_f", "H", "b_g", "k_g", "initial.x", "initial.dx"}));
-  EXPECT_EQ(unused_of({Drive::force_source, Transmission::rigid, {}}),
-            with_effects({"R",         "L",          "K_e",        "K_m",        "J_m",
-                          "B_m",       "K_t",        "r_g",        "H",          "T_z",
-                          "T_p",       "T_r",        "K_1",        "K_2",        "K_i",
-                          "V_s",       "V_L",        "b_g",        "k_g",        "K_v",
-                          "initial.x", "initial.dx", "initial.y4", "initial.y5", "initial.y6"}));
-  Structure structure;
-  structure.effects.set();
-  EXPECT_EQ(unused_of(structure), std::set<std::string>{"K_f"});
+  for (const auto& [drive, transmission, of_axis, of_effects] : variants) {
+    SCOPED_TRACE(testing::Message() << "drive " << static_cast<int>(drive) << ", transmission "
+                                    << static_cast<int>(transmission));
+    EXPECT_EQ(unused_of({drive, transmission, none}), of_axis + names_of_effects());
+    EXPECT_EQ(unused_of({drive, transmission, all}), of_axis + of_effects);
+    for (std::size_t e = 0; e < kEffects; ++e) {
+      const EffectSet one = EffectSet().set(e);
+      EXPECT_EQ(unused_of({drive, transmission, one}),
+                of_axis + of_effects + (names_of_effects() - names_of_effects(one)));
+    }
+  }
 }
 
 TEST(IsUsed, WhatIsNotUsedHasNoInfluence) {

@@ -1,0 +1,51 @@
+// What a model can lack: the effects among which the residual's cause is sought.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fit/job.h"
+
+namespace axisfit {
+
+/// One effect that is absent from a job's model, as something that could be added to it.
+struct Candidate {
+  std::string name;     ///< "coulomb_friction", "acceleration.bias"
+  std::string slot;     ///< where it acts: "arm force", "friction", "inertia", "drive", "sensor" ...
+  std::string meaning;  ///< a few words
+  /// Quantities (indices in quantity_list()) that are estimated, and neutral while it is absent.
+  std::vector<std::size_t> strengths;
+  /// Quantities that give it its shape, and the settings of them to be tried, one value for each.
+  /// A candidate without shapes has one empty setting.
+  std::vector<std::size_t> shapes;
+  std::vector<std::vector<double>> settings;
+  bool shapes_are_free = true;  ///< whether the shapes are estimated too; a curve's ends are not
+  bool unnamed = false;         ///< a curve: it fits whatever no other effect explains
+
+  std::size_t parameters() const {
+    return strengths.size() + (shapes_are_free ? shapes.size() : 0);
+  }
+};
+
+/// What the recordings span: the scales on which shapes are sought.
+struct Scales {
+  double position_low = 0.0, position_high = 0.0;  ///< m, of the arm
+  double speed = 0.0;                              ///< m/s, largest magnitude
+  double velocity_low = 0.0, velocity_high = 0.0;  ///< m/s
+  double start = 0.0, end = 0.0;                   ///< s
+  double interval = 0.0;                           ///< s, between samples, mean
+  std::vector<double> periods;                     ///< m, of forces along the stroke, best first
+};
+
+/// All candidates that the job's axis can have, its recordings could show, and its model lacks.
+std::vector<Candidate> catalogue(const Job& job, const Scales& scales);
+
+/// The job with the candidate added to its free parameters, started from these strengths and
+/// shapes, the other free parameters from `values`.
+Job with_candidate(const Job& job, const Candidate& candidate, std::span<const double> values,
+                   std::span<const double> strengths, std::span<const double> shapes);
+
+}  // namespace axisfit

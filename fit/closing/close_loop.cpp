@@ -1,0 +1,523 @@
+#include "fit/closing/close_loop.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+#include <set>
+
+#include "fit/closing/score.h"
+#include "fit/parallel.h"
+
+namespace axisfit {
+namespace {
+
+/// Advantages below this, in units of the sum of squares, are no ground for a preference: two
+/// natural logarithms of a hundred.
+constexpr double kUndecided = 9.2;
+
+/// A refitted model.
+struct Extension {
+  Candidate candidate;
+  double score = 0.0;
+  std::size_t settings = 1;
+  Job job;
+  FitResult fit;
+  std::vector<ResidualSeries> residuals;
+  Improvement gain;
+  std::string refusal;
+};
+
+/// The fit of a job from close by: one start, one continuation.
+FitResult refit(Job& job) {
+  const FitOptions declared = job.options;
+  job.options.starts = 1;
+  job.options.attempts = 1;
+  job.options.tolerance = 1e-7;
+  job.options.threads = 1;
+  if (job.options.coupling == CouplingMode::continuation)
+    job.options.coupling_rate = score_rates(job).front();
+  FitResult result = estimate(job);
+  job.options = declared;
+  return result;
+}
+
+class Loop {
+ public:
+  Loop(const Job& job, const FitResult& first, const CloseLoopOptions& options,
+       const LoopProgress& progress)
+      : options_(options), progress_(progress), threads_(thread_count(job.options.threads)) {
+    result_.models.push_back({"", job, first});
+    if (std::ranges::none_of(job.recordings,
+                             [](const Recording& r) { return r.role == Role::validate; })) {
+      result_.held_out_blocks = true;
+      hold_out_blocks(result_.models.back());
+    }
+  }
+
+  ClosedLoop run() {
+    if (current().fit.usable) {
+      while (accepted_.size() < static_cast<std::size_t>(options_.max_effects) && !explained()) {
+        if (round(false)) continue;
+        if (!exchange()) break;
+      }
+      if (!explained()) round(true);
+      take_away();
+      if (explained()) check_rivals();
+    }
+    conclude();
+    return std::move(result_);
+  }
+
+ private:
+  struct Accepted {
+    Candidate candidate;
+    std::vector<Candidate> rivals;  // that explained as much when it was chosen
+    std::vector<std::vector<double>> rival_strengths, rival_shapes;
+  };
+
+  LoopModel& current() { return result_.models.back(); }
+
+  void tell(const std::string& phase, int done = 0, int of = 0) const {
+    if (progress_) progress_(phase, done, of);
+  }
+
+  /// Every second of ten stretches of each recording is left to be judged only.
+  static void hold_out_blocks(LoopModel& model) {
+    constexpr std::size_t kBlocks = 10;
+    for (Recording& r : model.job.recordings) {
+      r.held_out.assign(r.times.size(), false);
+      for (std::size_t i = 0; i < r.times.size(); ++i)
+        r.held_out[i] = i * kBlocks / r.times.size() % 2 == 1;
+    }
+    model.fit = refit_from(model.job, values_of(model.fit));
+  }
+
+  static FitResult refit_from(Job& job, const std::vector<double>& values) {
+    std::vector<double> declared;
+    for (std::size_t i = 0; i < job.free.size(); ++i) {
+      declared.push_back(job.free[i].initial);
+      job.free[i].initial = std::clamp(values[i], job.free[i].lower, job.free[i].upper);
+    }
+    FitResult result = refit(job);
+    for (std::size_t i = 0; i < job.free.size(); ++i) job.free[i].initial = declared[i];
+    return result;
+  }
+
+  bool explained() {
+    const auto series = residual_series(current().job, current().fit);
+    return !series.empty() && std::ranges::all_of(series, is_explained);
+  }
+
+  /// The most promising candidates and settings, those of the catalogue or the curves.
+  struct Promise {
+    Candidate candidate;
+    Score score;
+    std::size_t settings = 1;
+  };
+  std::vector<Promise> shortlist(bool curves) {
+    std::vector<Promise> list;
+    tried_ = 1;
+    const auto rates = score_rates(current().job);
+    for (const double rate : rates) {
+      tell("looking for suspects");
+      const ScoreTest test = score_test(current().job, values_of(current().fit), rate, threads_);
+      tried_ = std::max(tried_, test.scores.size());
+      int taken = 0;
+      for (const Score& score : test.scores) {
+        const Candidate& candidate = test.candidates[score.candidate];
+        constexpr double kLeastGain = 6.0;  // of a sum of squares: below is chance
+        if (candidate.unnamed != curves || score.gain < kLeastGain) continue;
+        if (taken++ == options_.shortlist) break;
+        const auto known = std::ranges::find_if(list, [&](const Promise& p) {
+          return p.candidate.strengths == candidate.strengths && p.score.shapes == score.shapes;
+        });
+        if (known == list.end()) list.push_back({candidate, score, candidate.settings.size()});
+      }
+    }
+    // One candidate with many settings must not crowd out the others.
+    std::vector<Promise> kept;
+    for (Promise& p : list) {
+      const auto same = std::ranges::count_if(kept, [&](const Promise& k) {
+        return k.candidate.strengths == p.candidate.strengths;
+      });
+      if (same < 2) kept.push_back(std::move(p));
+    }
+    return heat(std::move(kept), rates.front());
+  }
+
+  /// Fits each with the simulation still held to the data, which is quick, and keeps those that may
+  /// yet turn out the best.
+  std::vector<Promise> heat(std::vector<Promise> list, double rate) {
+    constexpr std::size_t kKept = 3;
+    if (list.size() <= kKept) return list;
+    struct Run {
+      double cost = INFINITY;
+      std::vector<double> values;
+    };
+    std::vector<Run> runs(list.size());
+    parallel_for(list.size(), threads_, [&](std::size_t i) {
+      Promise& p = list[i];
+      const Job job = with_candidate(current().job, p.candidate, p.score.values,
+                                     p.score.strengths, p.score.shapes);
+      const ParameterSpace space(job);
+      std::vector<double> start;
+      for (const FreeParameter& free : job.free) start.push_back(free.initial);
+      SolveOptions options;
+      options.max_iterations = 8;
+      options.function_tolerance = 1e-4;
+      options.keep_to_start = true;
+      const SolveResult solved = solve(job, space, space.internal(start), rate, options);
+      if (solved.usable) runs[i] = {solved.cost, space.values(solved.u)};
+    });
+    std::vector<std::size_t> order(list.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return runs[i].cost; });
+    std::vector<Promise> kept;
+    for (const std::size_t i : order) {
+      // Behind by a lot: the free run will not make up for it.
+      if (!std::isfinite(runs[i].cost)) break;
+      if (kept.size() >= kKept && runs[i].cost > 1.05 * runs[order.front()].cost) break;
+      Promise& p = kept.emplace_back(std::move(list[i]));
+      const std::vector<double>& v = runs[i].values;
+      const auto base = static_cast<std::ptrdiff_t>(current().job.free.size());
+      const auto own = static_cast<std::ptrdiff_t>(p.candidate.strengths.size());
+      p.score.values.assign(v.begin(), v.begin() + base);
+      p.score.strengths.assign(v.begin() + base, v.begin() + base + own);
+      if (p.candidate.shapes_are_free) p.score.shapes.assign(v.begin() + base + own, v.end());
+    }
+    return kept;
+  }
+
+  static Extension extend(const Job& job, const Candidate& candidate,
+                          const std::vector<double>& values, const std::vector<double>& strengths,
+                          const std::vector<double>& shapes) {
+    Extension e;
+    e.candidate = candidate;
+    e.job = with_candidate(job, candidate, values, strengths, shapes);
+    e.fit = refit(e.job);
+    e.residuals = residual_series(e.job, e.fit);
+    return e;
+  }
+
+  void judge(Extension& e, const std::vector<ResidualSeries>& before) const {
+    e.gain = improvement(before, e.residuals);
+    e.refusal = !e.fit.usable ? "with it no usable fit is found"
+                              : refusal(e.candidate, e.gain,
+                                        determination(e.job, e.fit, e.candidate, e.residuals),
+                                        tried_);
+  }
+
+  /// Refits a shortlist and takes the best that passes the gate. Returns whether one did.
+  bool round(bool curves) {
+    ++round_;
+    const std::vector<Promise> promises = shortlist(curves);
+    const auto before = residual_series(current().job, current().fit);
+    std::vector<Extension> extensions(promises.size());
+    int done = 0;
+    std::mutex mutex;
+    parallel_for(promises.size(), threads_, [&](std::size_t i) {
+      const Promise& p = promises[i];
+      {
+        const std::lock_guard lock(mutex);
+        tell("refitting with " + p.candidate.name, done, static_cast<int>(promises.size()));
+      }
+      Extension& e = extensions[i];
+      e = extend(current().job, p.candidate, p.score.values, p.score.strengths, p.score.shapes);
+      e.score = p.score.gain;
+      judge(e, before);
+      const std::lock_guard lock(mutex);
+      ++done;
+    });
+    // Of several settings of one candidate the best counts.
+    std::vector<Extension*> contenders;
+    for (Extension& e : extensions) {
+      const auto other = std::ranges::find_if(contenders, [&](const Extension* c) {
+        return c->candidate.strengths == e.candidate.strengths;
+      });
+      if (other == contenders.end())
+        contenders.push_back(&e);
+      else if (better(e, **other))
+        *other = &e;
+    }
+    Extension* best = nullptr;
+    for (Extension* e : contenders)
+      if (e->refusal.empty() && (best == nullptr || advantage(*e, *best) > 0.0)) best = e;
+    // No simpler effect does as well.
+    for (Extension* e : contenders)
+      if (best != nullptr && e->refusal.empty() &&
+          e->candidate.parameters() < best->candidate.parameters() &&
+          advantage(*best, *e) < kUndecided)
+        best = e;
+    for (Extension* e : contenders) note(*e, best);
+    if (best == nullptr) return false;
+
+    Accepted accepted{best->candidate, {}, {}, {}};
+    for (const Extension* e : contenders) {
+      if (e == best || !e->fit.usable || !e->gain.comparable) continue;
+      // Rivals are seen again when all else is explained.
+      if (advantage(*best, *e) > kUndecided) continue;
+      accepted.rivals.push_back(e->candidate);
+      std::vector<double> strengths, shapes;
+      own_values(*e, strengths, shapes);
+      accepted.rival_strengths.push_back(strengths);
+      accepted.rival_shapes.push_back(shapes);
+    }
+    accepted_.push_back(std::move(accepted));
+    result_.models.push_back({best->candidate.name, std::move(best->job), std::move(best->fit)});
+    return true;
+  }
+
+  static void own_values(const Extension& e, std::vector<double>& strengths,
+                         std::vector<double>& shapes) {
+    const std::size_t first = e.job.free.size() - e.candidate.parameters();
+    for (std::size_t k = 0; k < e.candidate.strengths.size(); ++k)
+      strengths.push_back(e.fit.parameters[first + k].value);
+    Model<double> model = e.job.model;
+    for (std::size_t k = 0; k < e.candidate.shapes.size(); ++k)
+      shapes.push_back(e.candidate.shapes_are_free
+                           ? e.fit.parameters[first + strengths.size() + k].value
+                           : *members(model)[e.candidate.shapes[k]]);
+  }
+
+  static bool better(const Extension& a, const Extension& b) {
+    if (a.refusal.empty() != b.refusal.empty()) return a.refusal.empty();
+    return advantage(a, b) > 0.0;
+  }
+
+  /// By how much a explains all recordings better than b, parameters counted.
+  static double advantage(const Extension& a, const Extension& b) {
+    const double of_a =
+        disadvantage(a.residuals, a.job.free.size(), b.residuals, b.job.free.size());
+    const double of_b =
+        disadvantage(b.residuals, b.job.free.size(), a.residuals, a.job.free.size());
+    return of_a > 0.0 ? of_a : -of_b;
+  }
+
+  void note(const Extension& e, const Extension* best) {
+    EffectTrial trial;
+    trial.candidate = e.candidate;
+    trial.round = round_;
+    trial.score = e.score;
+    trial.improvement = e.gain;
+    const std::size_t first = e.job.free.size() - e.candidate.parameters();
+    trial.parameters.assign(
+        e.fit.parameters.begin() + static_cast<std::ptrdiff_t>(first), e.fit.parameters.end());
+    if (&e == best) {
+      trial.decision = Decision::accepted;
+      trial.reason = fmt::format("explains the residual best: {:.3g} % less error on what was not "
+                                 "fitted (p = {:.2g})",
+                                 e.gain.validate_percent, e.gain.p_value);
+    } else {
+      trial.reason = !e.refusal.empty() ? e.refusal
+                                        : fmt::format("explains less than {}", best->candidate.name);
+    }
+    const auto known = std::ranges::find_if(result_.effects, [&](const EffectTrial& t) {
+      return t.candidate.strengths == e.candidate.strengths;
+    });
+    if (known == result_.effects.end())
+      result_.effects.push_back(std::move(trial));
+    else
+      *known = std::move(trial);
+  }
+
+  EffectTrial* trial_of(const Candidate& candidate) {
+    for (EffectTrial& t : result_.effects)
+      if (t.candidate.strengths == candidate.strengths) return &t;
+    return nullptr;
+  }
+
+  /// The model without one accepted effect, refitted.
+  LoopModel without(std::size_t index) {
+    LoopModel model{"", declared_job(), {}};
+    std::vector<double> values;
+    const FitResult& fit = current().fit;
+    for (std::size_t i = 0; i < model.job.free.size(); ++i) values.push_back(fit.parameters[i].value);
+    for (std::size_t a = 0; a < accepted_.size(); ++a) {
+      if (a == index) continue;
+      std::vector<double> strengths, shapes;
+      values_in(current(), accepted_[a].candidate, strengths, shapes);
+      model.job = with_candidate(model.job, accepted_[a].candidate, values, strengths, shapes);
+      values.clear();
+      for (const FreeParameter& p : model.job.free) values.push_back(p.initial);
+    }
+    model.fit = refit_from(model.job, values);
+    return model;
+  }
+
+  const Job& declared_job() const { return result_.models.front().job; }
+
+  /// A candidate's strengths and shapes in a fitted model that has it.
+  static void values_in(const LoopModel& model, const Candidate& candidate,
+                        std::vector<double>& strengths, std::vector<double>& shapes) {
+    Model<double> fitted = fitted_model(model.job, model.fit);
+    const auto member = members(fitted);
+    for (const std::size_t q : candidate.strengths) strengths.push_back(*member[q]);
+    for (const std::size_t q : candidate.shapes) shapes.push_back(*member[q]);
+  }
+
+  /// Takes away what is not needed any more.
+  void take_away() {
+    if (accepted_.size() < 2) return;
+    for (std::size_t a = 0; a + 1 < accepted_.size() + 1 && accepted_.size() > 1;) {
+      tell("is " + accepted_[a].candidate.name + " needed?");
+      LoopModel rest = without(a);
+      Extension with;
+      with.candidate = accepted_[a].candidate;
+      with.residuals = residual_series(current().job, current().fit);
+      const auto before = residual_series(rest.job, rest.fit);
+      const Improvement gain = improvement(before, with.residuals);
+      const double price =
+          static_cast<double>(with.candidate.parameters()) * std::log(std::max(2.0, gain.samples));
+      const bool needed = !rest.fit.usable || (gain.comparable && gain.fit_gain > price &&
+                                               gain.p_value < 1e-3);
+      if (needed) {
+        ++a;
+        continue;
+      }
+      if (EffectTrial* trial = trial_of(with.candidate)) {
+        trial->decision = Decision::refused;
+        trial->reason = "not needed any more beside the effects that were accepted after it";
+      }
+      accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(a));
+      rebuild(std::move(rest));
+      a = 0;
+    }
+  }
+
+  /// The models on the way anew, after one was taken away or exchanged: the last is given.
+  void rebuild(LoopModel last) {
+    std::vector<LoopModel> models;
+    models.push_back(std::move(result_.models.front()));
+    for (std::size_t a = 0; a + 1 < accepted_.size(); ++a) {
+      const Candidate& candidate = accepted_[a].candidate;
+      std::vector<double> strengths, shapes;
+      values_in(last, candidate, strengths, shapes);
+      Extension e = extend(models.back().job, candidate, values_of(models.back().fit), strengths, shapes);
+      models.push_back({candidate.name, std::move(e.job), std::move(e.fit)});
+    }
+    last.added = accepted_.back().candidate.name;
+    models.push_back(std::move(last));
+    result_.models = std::move(models);
+  }
+
+  /// Every accepted effect in turn gives way to a rival: whether that explains more.
+  bool exchange() {
+    if (accepted_.empty() || exchanged_) return false;
+    exchanged_ = true;
+    return try_rivals(false);
+  }
+
+  /// Whether a rival explains the data as well as an accepted effect, now that all else is known.
+  void check_rivals() { try_rivals(true); }
+
+  bool try_rivals(bool only_note) {
+    for (std::size_t a = 0; a < accepted_.size(); ++a) {
+      Accepted& accepted = accepted_[a];
+      if (accepted.rivals.empty()) continue;
+      const LoopModel rest = accepted_.size() == 1 ? result_.models.front() : without(a);
+      const auto best = residual_series(current().job, current().fit);
+      std::vector<Extension> list(std::min<std::size_t>(accepted.rivals.size(), 4));
+      tell("are there rivals of " + accepted.candidate.name + "?");
+      parallel_for(list.size(), threads_, [&](std::size_t i) {
+        list[i] = extend(rest.job, accepted.rivals[i], values_of(rest.fit),
+                         accepted.rival_strengths[i], accepted.rival_shapes[i]);
+      });
+      for (std::size_t i = 0; i < list.size(); ++i) {
+        Extension& e = list[i];
+        if (!e.fit.usable) continue;
+        const double loss =
+            disadvantage(best, current().job.free.size(), e.residuals, e.job.free.size());
+        const bool present = std::ranges::any_of(accepted_, [&](const Accepted& other) {
+          return other.candidate.strengths == e.candidate.strengths;
+        });
+        if (present) continue;
+        if (only_note) {
+          const bool simpler = e.candidate.parameters() <= accepted.candidate.parameters();
+          if (loss < kUndecided && simpler) accepted_rivals_.push_back({a, e.candidate});
+          continue;
+        }
+        if (loss > -kUndecided) continue;
+        const auto before = residual_series(rest.job, rest.fit);
+        judge(e, before);
+        if (!e.refusal.empty()) continue;
+        if (EffectTrial* old = trial_of(accepted.candidate)) {
+          old->decision = Decision::refused;
+          old->reason = "explains less than " + e.candidate.name + ", which came in its place";
+        }
+        note(e, &e);
+        accepted.candidate = e.candidate;
+        accepted.rivals.clear();
+        // Order: the exchanged effect goes last, where its parameters are.
+        std::rotate(accepted_.begin() + static_cast<std::ptrdiff_t>(a),
+                    accepted_.begin() + static_cast<std::ptrdiff_t>(a) + 1, accepted_.end());
+        rebuild({e.candidate.name, std::move(e.job), std::move(e.fit)});
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void conclude();
+
+  const CloseLoopOptions options_;
+  const LoopProgress& progress_;
+  const int threads_;
+  ClosedLoop result_;
+  std::vector<Accepted> accepted_;
+  std::vector<std::pair<std::size_t, Candidate>> accepted_rivals_;
+  std::size_t tried_ = 1;
+  int round_ = 0;
+  bool exchanged_ = false;
+};
+
+void Loop::conclude() {
+  // An effect that has an equal is not accepted: neither silently.
+  for (const auto& [index, rival] : accepted_rivals_) {
+    const Candidate& chosen = accepted_[index].candidate;
+    const std::string& name = chosen.name;
+    const auto undecide = [&](const Candidate& candidate, const Candidate& other) {
+      if (EffectTrial* trial = trial_of(candidate)) {
+        trial->decision = Decision::undecided;
+        trial->reason = "explains these recordings as well as " + other.name;
+      }
+    };
+    undecide(chosen, rival);
+    undecide(rival, chosen);
+    result_.hints.push_back(
+        fmt::format("{} and {} explain these recordings equally well.", name, rival.name));
+  }
+  result_.explained = explained();
+  std::vector<std::string> accepted, undecided;
+  for (const EffectTrial& t : result_.effects) {
+    if (t.decision == Decision::accepted) accepted.push_back(t.candidate.name);
+    if (t.decision == Decision::undecided) undecided.push_back(t.candidate.name);
+  }
+  result_.verdict = fmt::format("accepted {} undecided {} explained {}", fmt::join(accepted, ","),
+                                fmt::join(undecided, ","), result_.explained);
+}
+
+}  // namespace
+
+bool is_explained(const ResidualSeries& series) {
+  const double n = static_cast<double>(series.values.size());
+  const double scatter =
+      4.0 * std::sqrt(2.0 * autocorrelation_time(series.values) / n);
+  return mean_square(series.values) < 1.0 + std::max(0.05, scatter);
+}
+
+std::vector<double> score_rates(const Job& job) {
+  const double first = first_coupling_rate(job);
+  if (job.options.coupling == CouplingMode::fixed || !std::isfinite(first)) return {first};
+  return {first / 30.0, first / 100.0};
+}
+
+ClosedLoop close_loop(const Job& job, const FitResult& first, const CloseLoopOptions& options,
+                      const LoopProgress& progress) {
+  return Loop(job, first, options, progress).run();
+}
+
+}  // namespace axisfit

@@ -1,0 +1,71 @@
+// Closing the loop: from the residual of a fit to the effect that the model lacks.
+//
+// Round by round: score every absent effect (score.h), refit with each of the few most likely ones,
+// put them through the gate (gate.h), keep the best. Then accepted effects are exchanged for their
+// rivals, and taken away again one by one, to see whether they are needed. What no effect of the
+// catalogue explains is drawn as a curve without a name.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fit/closing/catalogue.h"
+#include "fit/closing/gate.h"
+#include "fit/estimate.h"
+
+namespace axisfit {
+
+struct CloseLoopOptions {
+  int shortlist = 6;  ///< effects that are refitted in each round
+  int max_effects = 6;
+  double coupling_rate = 0.0;  ///< of the score test, 1/s; zero: from the sampling interval
+};
+
+enum class Decision {
+  accepted,
+  undecided,  ///< explains the data as well as another effect
+  refused,
+};
+
+/// One effect that was refitted, and what became of it.
+struct EffectTrial {
+  Candidate candidate;
+  int round = 0;
+  Decision decision = Decision::refused;
+  std::string reason;
+  double score = 0.0;                       ///< gain that the score test promised
+  std::vector<ParameterResult> parameters;  ///< its own
+  Improvement improvement;                  ///< against the model before it
+};
+
+/// One model on the way: the declared one, and one after each accepted effect.
+struct LoopModel {
+  std::string added;  ///< the effect; empty for the declared model
+  Job job;
+  FitResult fit;
+};
+
+struct ClosedLoop {
+  std::vector<LoopModel> models;     ///< the declared one first; the last is the result
+  std::vector<EffectTrial> effects;  ///< every effect that was refitted, its last trial
+  bool held_out_blocks = false;      ///< no recording to validate: blocks of the fitted were kept
+  bool explained = false;            ///< nothing but noise is left
+  std::string verdict;               ///< a few sentences for the user
+  std::vector<std::string> hints;    ///< what would tell undecided effects apart
+};
+
+/// Tells what is being done: a phase in words, and how much of it is done.
+using LoopProgress = std::function<void(const std::string& phase, int done, int of)>;
+
+/// `first` is the fit of the job as declared.
+ClosedLoop close_loop(const Job& job, const FitResult& first, const CloseLoopOptions& options = {},
+                      const LoopProgress& progress = {});
+
+/// The coupling rates (1/s) at which a job's residual is scored.
+std::vector<double> score_rates(const Job& job);
+
+/// Whether a series shows more than its noise.
+bool is_explained(const ResidualSeries& series);
+
+}  // namespace axisfit

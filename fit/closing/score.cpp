@@ -1,0 +1,135 @@
+#include "fit/closing/score.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "fit/closing/periods.h"
+#include "fit/parallel.h"
+#include "fit/residual.h"
+
+namespace axisfit {
+namespace {
+
+/// The job with its free parameters fixed at these values.
+Job fixed_at(const Job& job, std::span<const double> values) {
+  Job fixed = job;
+  fixed.free.clear();
+  const auto member = members(fixed.model);
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    if (job.free[i].recording)
+      fixed.recordings[*job.free[i].recording].overrides.emplace_back(job.free[i].quantity,
+                                                                      values[i]);
+    else
+      *member[job.free[i].quantity] = values[i];
+  }
+  return fixed;
+}
+
+/// Orthonormal columns that span those of a matrix.
+Eigen::MatrixXd basis_of(const Eigen::MatrixXd& a) {
+  if (a.cols() == 0) return Eigen::MatrixXd(a.rows(), 0);
+  Eigen::MatrixXd scaled = a;
+  for (Eigen::Index k = 0; k < a.cols(); ++k)
+    if (const double length = a.col(k).norm(); length > 0.0) scaled.col(k) /= length;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
+  qr.setThreshold(1e-9);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(a.rows(), qr.rank());
+}
+
+Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
+                 double rate, const Linearization& base, const Eigen::MatrixXd& basis) {
+  Scales s{INFINITY, -INFINITY, 0.0, INFINITY, -INFINITY, INFINITY, -INFINITY, 0.0, {}};
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    const Recording& recording = job.recordings[r];
+    if (recording.role != Role::fit) continue;
+    const Coupling coupling = coupling_for(recording, rate);
+    const Prediction prediction = predict(job, space, r, u.data(), coupling);
+    for (const Sample& sample : prediction.samples) {
+      s.position_low = std::min(s.position_low, sample.position);
+      s.position_high = std::max(s.position_high, sample.position);
+      s.velocity_low = std::min(s.velocity_low, sample.velocity);
+      s.velocity_high = std::max(s.velocity_high, sample.velocity);
+    }
+    s.start = std::min(s.start, recording.times.front());
+    s.end = std::max(s.end, recording.times.back());
+    s.interval = std::max(s.interval, (recording.times.back() - recording.times.front()) /
+                                          static_cast<double>(recording.times.size() - 1));
+    const Eigen::Index rows =
+        RecordingCost(job, space, r, coupling).num_residuals();
+    constexpr std::size_t kPeriods = 3;
+    for (const double period :
+         periods_in(job, recording, prediction, coupling, base.residuals.segment(row, rows),
+                    basis.middleRows(row, rows), kPeriods))
+      s.periods.push_back(period);
+    row += rows;
+  }
+  s.speed = std::max(std::abs(s.velocity_low), std::abs(s.velocity_high));
+  return s;
+}
+
+}  // namespace
+
+ScoreTest score_test(const Job& job, const std::vector<double>& values, double rate, int threads) {
+  ScoreTest test;
+  const ParameterSpace space(job);
+  SolveOptions options;
+  options.max_iterations = 15;
+  options.function_tolerance = 1e-6;
+  const SolveResult held = solve(job, space, space.internal(values), rate, options);
+  if (!held.usable) return test;
+  const std::vector<double> held_values = space.values(held.u);
+  const Linearization base = linearize(job, space, held.u, rate);
+  if (!base.finite) return test;
+  test.usable = true;
+  const Eigen::MatrixXd basis = basis_of(base.jacobian);
+  const Eigen::VectorXd rest = base.residuals - basis * (basis.transpose() * base.residuals);
+  test.sum_of_squares = rest.squaredNorm();
+  test.candidates = catalogue(job, scales_of(job, space, held.u, rate, base, basis));
+  for (std::size_t c = 0; c < test.candidates.size(); ++c)
+    for (const auto& setting : test.candidates[c].settings)
+      test.scores.push_back({c, setting, {}, held_values, 0.0});
+
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> base_solver(base.jacobian);
+  const Job fixed = fixed_at(job, held_values);
+  parallel_for(test.scores.size(), thread_count(threads), [&](std::size_t i) {
+    Score& score = test.scores[i];
+    const Candidate& candidate = test.candidates[score.candidate];
+    score.strengths.assign(candidate.strengths.size(), 0.0);
+    std::vector<double> neutral;
+    for (const std::size_t q : candidate.strengths) {
+      const double standard = quantity_list()[q].quantity.standard;
+      neutral.push_back(std::isnan(standard) ? 0.0 : standard);
+    }
+    Candidate shaped = candidate;
+    shaped.shapes_are_free = false;
+    const Job extended = with_candidate(fixed, shaped, {}, neutral, score.shapes);
+    const ParameterSpace strengths(extended);
+    const Eigen::VectorXd u = strengths.internal(neutral);
+    const Linearization d = linearize(extended, strengths, u, rate);
+    if (!d.finite || d.jacobian.rows() != basis.rows()) return;
+    const Eigen::MatrixXd columns = d.jacobian - basis * (basis.transpose() * d.jacobian);
+    // What is left of a column is rounding where the free parameters do the same.
+    for (Eigen::Index k = 0; k < columns.cols(); ++k)
+      if (columns.col(k).norm() < 1e-4 * d.jacobian.col(k).norm()) return;
+    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(columns);
+    const Eigen::VectorXd step = solver.solve(-rest);
+    if (!step.allFinite()) return;
+    const std::vector<double> reached = strengths.values(u + step);
+    for (std::size_t k = 0; k < reached.size(); ++k) {
+      const Quantity& q = quantity_list()[candidate.strengths[k]].quantity;
+      if (candidate.strengths.size() == 1 && (reached[k] < q.lower || reached[k] > q.upper)) return;
+    }
+    score.strengths = reached;
+    // The free parameters give way to the effect; no further than a linear step can be believed.
+    const Eigen::VectorXd way = base_solver.solve(-(base.residuals + d.jacobian * step));
+    Eigen::VectorXd u_base = held.u + way.cwiseMax(-0.7).cwiseMin(0.7);
+    score.values = space.values(u_base);
+    score.gain = test.sum_of_squares - (rest + columns * step).squaredNorm();
+  });
+  std::ranges::stable_sort(test.scores, std::greater{}, &Score::gain);
+  return test;
+}
+
+}  // namespace axisfit

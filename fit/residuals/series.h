@@ -1,0 +1,32 @@
+// Residuals of one signal of one recording, and what is asked of every such series.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "fit/estimate.h"
+
+namespace axisfit {
+
+struct ResidualSeries {
+  std::size_t recording = 0;
+  std::size_t measurement = 0;        ///< of the recording
+  bool fitted = false;                ///< whether the fit minimised it
+  std::vector<std::size_t> samples;   ///< that count, in order
+  std::vector<double> values;         ///< (measured - simulated) / sigma at those
+};
+
+/// The residuals that a fit is judged by: of the simulation in the way it was fitted, free running
+/// or held at a fixed coupling. A signal that is only compared is left out, and so is everything of
+/// a recording whose simulation did not finish.
+std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& result);
+
+/// Mean square.
+double mean_square(std::span<const double> values);
+
+/// How many samples carry as much information as one independent sample: 1 + 2 sum of the
+/// autocorrelation, up to where pairs of it cease to be positive; at least 1.
+/// Source: C. J. Geyer, Statistical Science 7 (1992), initial positive sequence.
+double autocorrelation_time(std::span<const double> values);
+
+}  // namespace axisfit

@@ -1,0 +1,247 @@
+// Every effect of the list, by the same tests: at strength zero, and with derivatives.
+#include "sim/effects/effects.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <string>
+
+#include "tests/sim/experiment.h"
+
+namespace axisfit {
+namespace {
+
+std::string name_of(std::size_t effect) {
+  std::string name;
+  const Effects<double> effects{};
+  visit_effects(effects, [&](std::size_t index, const auto& e) {
+    if (index == effect) name = e.name;
+  });
+  return name;
+}
+
+/// A value that is felt in the motion below, for every quantity of every effect.
+double typical(const std::string& name) {
+  static const std::map<std::string, double> kTypical{
+      {"coulomb_friction.F_c", 15.0},
+      {"constant_force.F_0", -8.0},
+      {"quadratic_drag.c", 60.0},
+      {"directional_friction.dB_a", 30.0},
+      {"directional_friction.dF_c", 5.0},
+      {"stribeck_friction.F_st", 12.0},
+      {"stribeck_friction.v_st", 0.05},
+      {"position_friction.G_c", 60.0},
+      {"position_friction.G_b", 300.0},
+      {"load_friction.mu", 0.05},
+      {"dahl_friction.F_d", 10.0},
+      {"dahl_friction.l_d", 2e-4},
+      {"stroke_spring.k_s", 300.0},
+      {"periodic_force.F_s1", 12.0},
+      {"periodic_force.F_c1", -7.0},
+      {"periodic_force.F_s2", 4.0},
+      {"periodic_force.F_c2", 3.0},
+      {"periodic_force.period", 0.036},
+      {"added_mass.dM", 8.0},
+      {"elastic_mode.m_e", 12.0},
+      {"elastic_mode.f_e", 25.0},
+      {"elastic_mode.zeta_e", 0.03},
+      {"cogging_torque.T_s", 0.05},
+      {"cogging_torque.T_c", -0.03},
+      {"cogging_torque.order", 3.0},
+      {"torque_ripple.r_s", 0.03},
+      {"torque_ripple.r_c", -0.02},
+      {"torque_ripple.order", 2.0},
+      {"torque_droop.c_i", 0.01},
+      {"torque_fade.c_t", 0.1},
+      {"drive_lag.T_l", 5e-4},
+      {"command_offset.U_0", 0.05},
+      // The force of a curve has a kink at its ends: they lie outside of the motion.
+      {"force_over_velocity.from", -0.7},
+      {"force_over_velocity.to", 0.5},
+      {"force_over_position.from", -0.11},
+      {"force_over_position.to", 0.17},
+      {"force_over_time.from", -0.05},
+      {"force_over_time.to", 1.05},
+  };
+  const auto found = kTypical.find(name);
+  if (found != kTypical.end()) return found->second;
+  // c1 ... c16 of the curves
+  const std::size_t c = name.find(".c");
+  if (name.starts_with("force_over_") && c != std::string::npos)
+    return 10.0 * std::sin(2.0 * std::stod(name.substr(c + 2)));
+  ADD_FAILURE() << "no typical value for " << name;
+  return 0.0;
+}
+
+struct Variant {
+  const char* name;
+  Drive drive;
+  Transmission transmission;
+};
+constexpr Variant kVariants[] = {
+    {"velocity loop with backlash", Drive::velocity_loop, Transmission::backlash},
+    {"rigid current source", Drive::current_source, Transmission::rigid},
+    {"rigid force source", Drive::force_source, Transmission::rigid},
+};
+
+/// There, back and to rest, with some dry friction: an arm that slides both ways and sticks.
+Experiment to_and_fro(const Variant& variant, bool with_friction) {
+  Experiment experiment;
+  Model<double>& m = experiment.model;
+  m = paper_axis();
+  m.structure.drive = variant.drive;
+  m.structure.transmission = variant.transmission;
+  if (variant.drive == Drive::force_source) {
+    m.axis.K_f = 40.0;
+    m.axis.r_g = 1.0;
+    m.axis.J_m = m.axis.B_m = 0.0;
+    experiment.command = {{0.0, 0.2, 0.75}, {8.0, -7.0, 0.0}};
+  } else {
+    experiment.command = {{0.0, 0.25, 0.6}, {4.0, -3.0, 0.0}};
+  }
+  if (with_friction) add_effect<CoulombFriction>(m).F_c = 15.0;
+  experiment.times = instants(500, 2e-3);
+  return experiment;
+}
+
+class EveryEffect : public testing::TestWithParam<std::size_t> {
+ protected:
+  std::size_t effect() const { return GetParam(); }
+  bool is_friction() const { return name_of(effect()) == "coulomb_friction"; }
+  bool is_lag() const { return name_of(effect()) == "drive_lag"; }
+
+  /// The effect's quantities that an axis of this variant uses.
+  std::vector<QuantityEntry> quantities(const Variant& variant) const {
+    const Structure structure{variant.drive, variant.transmission, EffectSet().set(effect())};
+    std::vector<QuantityEntry> entries;
+    for (const QuantityEntry& entry : quantity_list())
+      if (entry.group == name_of(effect()) && is_used(entry, structure)) entries.push_back(entry);
+    return entries;
+  }
+  /// For the slow variant: a few of the coefficients of a curve stand for all.
+  static std::vector<QuantityEntry> sample(std::vector<QuantityEntry> entries) {
+    if (entries.size() > 10)
+      std::erase_if(entries, [](const QuantityEntry& entry) {
+        return entry.quantity.symbol.starts_with("c") && entry.index % 5 != 0;
+      });
+    return entries;
+  }
+  /// Gives the effect to a model, at its typical shape and strength, or at strength zero.
+  void add_to(Model<double>& model, double strength) const {
+    model.structure.effects.set(effect());
+    for (const QuantityEntry& entry : quantity_list())
+      if (entry.group == name_of(effect()))
+        *members(model)[entry.index] =
+            entry.quantity.shape ? typical(entry.name) : strength * typical(entry.name);
+  }
+};
+
+TEST_P(EveryEffect, OfStrengthZeroIsNoneBitForBit) {
+  for (const Variant& variant : kVariants) {
+    SCOPED_TRACE(variant.name);
+    if (quantities(variant).empty()) continue;
+    for (const bool with_friction : {false, true}) {
+      if (with_friction && is_friction()) continue;
+      const Experiment experiment = to_and_fro(variant, with_friction);
+      const auto without = run(experiment.model, experiment.command, experiment.times);
+      Model<double> model = experiment.model;
+      add_to(model, 0.0);
+      const auto with = run(model, experiment.command, experiment.times);
+      ASSERT_TRUE(with.finished);
+      EXPECT_EQ(with.states, without.states);
+      EXPECT_EQ(with.events, without.events);
+      EXPECT_EQ(with.acceleration, without.acceleration);
+      // And it is none only then.
+      add_to(model, 1.0);
+      EXPECT_NE(run(model, experiment.command, experiment.times).states, without.states);
+    }
+  }
+}
+
+TEST_P(EveryEffect, HasDerivativesByStrengthAndShape) {
+  for (const Variant& variant : kVariants) {
+    SCOPED_TRACE(variant.name);
+    auto entries = quantities(variant);
+    if (variant.drive != Drive::force_source) entries = sample(entries);
+    if (entries.empty()) continue;
+    Experiment experiment = to_and_fro(variant, true);
+    add_to(experiment.model, 1.0);
+    std::cout << variant.name << ": ";
+    expect_derivatives(experiment, entries);
+  }
+}
+
+TEST_P(EveryEffect, HasADerivativeAtStrengthZero) {
+  for (const Variant& variant : kVariants) {
+    SCOPED_TRACE(variant.name);
+    auto entries = quantities(variant);
+    std::erase_if(entries, [](const QuantityEntry& entry) { return entry.quantity.shape; });
+    if (variant.drive != Drive::force_source) entries = sample(entries);
+    if (entries.empty()) continue;
+    Experiment experiment = to_and_fro(variant, !is_friction() && !is_lag());
+    // In motion to the end: an arm that comes to rest ever more slowly sticks, as friction goes to
+    // zero, ever later.
+    experiment.command.values.back() = 2.0;
+    if (is_lag()) {
+      // A lag is like a delay where it is short against all else. Here nothing is as fast as the
+      // differences, as limits, a fast preamplifier or friction at a jump of the force would be.
+      Axis<double>& a = experiment.model.axis;
+      a.V_L = 1e6;
+      a.V_s = 1e5;
+      a.K_v = 10.0;
+      a.T_r = 0.02;
+    }
+    add_to(experiment.model, 0.0);
+    Worst worst;
+    for (const QuantityEntry& entry : entries) {
+      // One at a time: another one in play may bring events of its own.
+      compare(
+          experiment, {entry}, {by_jets<1>(experiment, {entry})},
+          [&](std::size_t, const Comparison& c) {
+            EXPECT_LT(c.convergence, 1e-4) << c.name;
+            EXPECT_LT(c.error, 1e-4 + c.convergence) << c.name;
+            worst.add(c);
+          },
+          [](const QuantityEntry& q, double) { return std::abs(typical(q.name)); },
+          entry.quantity.lower < 0.0 ? Sides::both : Sides::above);
+    }
+    std::cout << variant.name << ": " << worst << "\n";
+  }
+}
+
+TEST_P(EveryEffect, DoesNotDependOnTheStep) {
+  for (const Variant& variant : kVariants) {
+    SCOPED_TRACE(variant.name);
+    if (quantities(variant).empty()) continue;
+    Experiment experiment = to_and_fro(variant, true);
+    add_to(experiment.model, 1.0);
+    const auto standard = run(experiment.model, experiment.command, experiment.times);
+    const auto small = run(experiment.model, experiment.command, experiment.times, {.step = 1e-4});
+    ASSERT_TRUE(standard.finished && small.finished);
+    EXPECT_EQ(standard.events.back(), small.events.back());
+    // What is affine is exact. Else the current, which follows the preamplifier in microseconds,
+    // has an error of its own at the end of a Runge-Kutta step; it does not add up.
+    const bool smooth = Equations<double>(experiment.model).has_smooth_forces();
+    auto a = standard.states, b = small.states;
+    double current = 0.0;
+    const double range = ranges(b)[6];
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      current = std::max(current, std::abs(a[k][6] - b[k][6]));
+      a[k][6] = b[k][6] = 0.0;
+    }
+    const double others = largest_difference(a, b);
+    std::cout << variant.name << ": step 0.5e-3 against 1e-4: " << others << ", current "
+              << (range > 0.0 ? current / range : 0.0) << "\n";
+    EXPECT_LT(others, smooth ? 5e-6 : 1e-9);
+    EXPECT_LE(current, (smooth ? 1e-3 : 1e-8) * range);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Effects, EveryEffect, testing::Range(std::size_t{0}, kEffects),
+                         [](const auto& test) { return name_of(test.param); });
+
+}  // namespace
+}  // namespace axisfit
