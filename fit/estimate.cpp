@@ -29,11 +29,11 @@ std::vector<Trial> run_starts(const Job& job, const ParameterSpace& space,
     const int start = static_cast<int>(i);
     Trial& trial = trials[i];
     trial.from = draw_start(job, start);
-    trial.result = continue_to_free(job, space, space.internal(trial.from),
-                                    [&](const Stage& stage) {
-                                      const std::lock_guard lock(mutex);
-                                      if (progress) progress({done, starts, start, stage});
-                                    });
+    trial.result =
+        continue_to_free(job, space, space.internal(trial.from), [&](const Stage& stage) {
+          const std::lock_guard lock(mutex);
+          if (progress) progress({done, starts, start, stage});
+        });
     const std::lock_guard lock(mutex);
     ++done;
   });

@@ -12,8 +12,7 @@ namespace axisfit {
 
 /// Number of threads for a wish of `wanted`; zero means as many as the machine has.
 inline int thread_count(int wanted) {
-  return wanted > 0 ? wanted
-                    : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return wanted > 0 ? wanted : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
 /// Calls work(i) for every i below `count`, on up to `threads` threads, in no particular order.

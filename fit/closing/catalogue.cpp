@@ -41,7 +41,10 @@ std::vector<Entry> entries(const Scales& s, double pinion_radius) {
   return {
       {"coulomb_friction", "friction", {"F_c"}},
       {"directional_friction", "friction", {"dB_a"}},
-      {"stribeck_friction", "friction", {"F_st"}, {"v_st"},
+      {"stribeck_friction",
+       "friction",
+       {"F_st"},
+       {"v_st"},
        geometric(0.003 * speed, 0.3 * speed, 5)},
       {"position_friction", "friction", {"G_c"}},
       {"position_friction", "friction", {"G_b"}},
@@ -179,8 +182,8 @@ std::vector<Candidate> catalogue(const Job& job, const Scales& scales) {
       offer({name, "sensor", std::string(entry->quantity.meaning), {entry->index}, {}, {{}}});
     }
   }
-  for (const std::string_view name : {"force_over_velocity", "force_over_position",
-                                      "force_over_motor_angle", "force_over_time"})
+  for (const std::string_view name :
+       {"force_over_velocity", "force_over_position", "force_over_motor_angle", "force_over_time"})
     offer(curve(name, scales));
   return list;
 }

@@ -13,8 +13,8 @@ namespace axisfit {
 
 /// One effect that is absent from a job's model, as something that could be added to it.
 struct Candidate {
-  std::string name;     ///< "coulomb_friction", "acceleration.bias"
-  std::string slot;     ///< where it acts: "arm force", "friction", "inertia", "drive", "sensor" ...
+  std::string name;  ///< "coulomb_friction", "acceleration.bias"
+  std::string slot;  ///< where it acts: "arm force", "friction", "inertia", "drive", "sensor" ...
   std::string meaning;  ///< a few words
   /// Quantities (indices in quantity_list()) that are estimated, and neutral while it is absent.
   std::vector<std::size_t> strengths;

@@ -141,9 +141,8 @@ class Loop {
     // One candidate with many settings must not crowd out the others.
     std::vector<Promise> kept;
     for (Promise& p : list) {
-      const auto same = std::ranges::count_if(kept, [&](const Promise& k) {
-        return k.candidate.strengths == p.candidate.strengths;
-      });
+      const auto same = std::ranges::count_if(
+          kept, [&](const Promise& k) { return k.candidate.strengths == p.candidate.strengths; });
       if (same < 2) kept.push_back(std::move(p));
     }
     return heat(std::move(kept), rates.front());
@@ -161,8 +160,8 @@ class Loop {
     std::vector<Run> runs(list.size());
     parallel_for(list.size(), threads_, [&](std::size_t i) {
       Promise& p = list[i];
-      const Job job = with_candidate(current().job, p.candidate, p.score.values,
-                                     p.score.strengths, p.score.shapes);
+      const Job job = with_candidate(current().job, p.candidate, p.score.values, p.score.strengths,
+                                     p.score.shapes);
       const ParameterSpace space(job);
       std::vector<double> start;
       for (const FreeParameter& free : job.free) start.push_back(free.initial);
@@ -205,10 +204,10 @@ class Loop {
 
   void judge(Extension& e, const std::vector<ResidualSeries>& before) const {
     e.gain = improvement(before, e.residuals);
-    e.refusal = !e.fit.usable ? "with it no usable fit is found"
-                              : refusal(e.candidate, e.gain,
-                                        determination(e.job, e.fit, e.candidate, e.residuals),
-                                        tried_);
+    e.refusal = !e.fit.usable
+                    ? "with it no usable fit is found"
+                    : refusal(e.candidate, e.gain,
+                              determination(e.job, e.fit, e.candidate, e.residuals), tried_);
   }
 
   /// Refits a shortlist and takes the best that passes the gate. Returns whether one did.
@@ -304,16 +303,18 @@ class Loop {
     trial.score = e.score;
     trial.improvement = e.gain;
     const std::size_t first = e.job.free.size() - e.candidate.parameters();
-    trial.parameters.assign(
-        e.fit.parameters.begin() + static_cast<std::ptrdiff_t>(first), e.fit.parameters.end());
+    trial.parameters.assign(e.fit.parameters.begin() + static_cast<std::ptrdiff_t>(first),
+                            e.fit.parameters.end());
     if (&e == best) {
       trial.decision = Decision::accepted;
-      trial.reason = fmt::format("explains the residual best: {:.3g} % less error on what was not "
-                                 "fitted (p = {:.2g})",
-                                 e.gain.validate_percent, e.gain.p_value);
+      trial.reason = fmt::format(
+          "explains the residual best: {:.3g} % less error on what was not "
+          "fitted (p = {:.2g})",
+          e.gain.validate_percent, e.gain.p_value);
     } else {
-      trial.reason = !e.refusal.empty() ? e.refusal
-                                        : fmt::format("explains less than {}", best->candidate.name);
+      trial.reason = !e.refusal.empty()
+                         ? e.refusal
+                         : fmt::format("explains less than {}", best->candidate.name);
     }
     const auto known = std::ranges::find_if(result_.effects, [&](const EffectTrial& t) {
       return t.candidate.strengths == e.candidate.strengths;
@@ -335,7 +336,8 @@ class Loop {
     LoopModel model{"", declared_job(), {}};
     std::vector<double> values;
     const FitResult& fit = current().fit;
-    for (std::size_t i = 0; i < model.job.free.size(); ++i) values.push_back(fit.parameters[i].value);
+    for (std::size_t i = 0; i < model.job.free.size(); ++i)
+      values.push_back(fit.parameters[i].value);
     for (std::size_t a = 0; a < accepted_.size(); ++a) {
       if (a == index) continue;
       std::vector<double> strengths, shapes;
@@ -372,8 +374,8 @@ class Loop {
       const Improvement gain = improvement(before, with.residuals);
       const double price =
           static_cast<double>(with.candidate.parameters()) * std::log(std::max(2.0, gain.samples));
-      const bool needed = !rest.fit.usable || (gain.comparable && gain.fit_gain > price &&
-                                               gain.p_value < 1e-3);
+      const bool needed =
+          !rest.fit.usable || (gain.comparable && gain.fit_gain > price && gain.p_value < 1e-3);
       if (needed) {
         ++a;
         continue;
@@ -396,7 +398,8 @@ class Loop {
       const Candidate& candidate = accepted_[a].candidate;
       std::vector<double> strengths, shapes;
       values_in(last, candidate, strengths, shapes);
-      Extension e = extend(models.back().job, candidate, values_of(models.back().fit), strengths, shapes);
+      Extension e =
+          extend(models.back().job, candidate, values_of(models.back().fit), strengths, shapes);
       models.push_back({candidate.name, std::move(e.job), std::move(e.fit)});
     }
     last.added = accepted_.back().candidate.name;
@@ -501,13 +504,6 @@ void Loop::conclude() {
 }
 
 }  // namespace
-
-bool is_explained(const ResidualSeries& series) {
-  const double n = static_cast<double>(series.values.size());
-  const double scatter =
-      4.0 * std::sqrt(2.0 * autocorrelation_time(series.values) / n);
-  return mean_square(series.values) < 1.0 + std::max(0.05, scatter);
-}
 
 std::vector<double> score_rates(const Job& job) {
   const double first = first_coupling_rate(job);

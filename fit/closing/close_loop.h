@@ -65,7 +65,4 @@ ClosedLoop close_loop(const Job& job, const FitResult& first, const CloseLoopOpt
 /// The coupling rates (1/s) at which a job's residual is scored.
 std::vector<double> score_rates(const Job& job);
 
-/// Whether a series shows more than its noise.
-bool is_explained(const ResidualSeries& series);
-
 }  // namespace axisfit

@@ -100,7 +100,8 @@ Determination determination(const Job& job, const FitResult& result, const Candi
   const Eigen::VectorXd u = space.internal(values_of(result));
   const Linearization at = linearize(job, space, u, result.coupling_rate);
   if (!at.finite) return d;
-  Eigen::MatrixXd others(at.jacobian.rows(), static_cast<Eigen::Index>(job.free.size() - strengths));
+  Eigen::MatrixXd others(at.jacobian.rows(),
+                         static_cast<Eigen::Index>(job.free.size() - strengths));
   Eigen::Index k = 0;
   for (std::size_t i = 0; i < job.free.size(); ++i) {
     if (i >= first && i < first + strengths) continue;
@@ -108,10 +109,10 @@ Determination determination(const Job& job, const FitResult& result, const Candi
     if (const double length = others.col(k).norm(); length > 0.0) others.col(k) /= length;
     ++k;
   }
-  const Eigen::VectorXd mark = at.jacobian.middleCols(static_cast<Eigen::Index>(first),
-                                                      static_cast<Eigen::Index>(strengths)) *
-                               u.segment(static_cast<Eigen::Index>(first),
-                                         static_cast<Eigen::Index>(strengths));
+  const Eigen::VectorXd mark =
+      at.jacobian.middleCols(static_cast<Eigen::Index>(first),
+                             static_cast<Eigen::Index>(strengths)) *
+      u.segment(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(strengths));
   // A neutral value that is not zero, as a gain of one, is not part of the strength.
   Eigen::VectorXd zero(static_cast<Eigen::Index>(strengths));
   for (std::size_t i = 0; i < strengths; ++i) {
@@ -119,9 +120,10 @@ Determination determination(const Job& job, const FitResult& result, const Candi
     zero[static_cast<Eigen::Index>(i)] =
         std::isnan(standard) ? 0.0 : space.internal(first + i, standard);
   }
-  const Eigen::VectorXd shown = mark - at.jacobian.middleCols(static_cast<Eigen::Index>(first),
-                                                              static_cast<Eigen::Index>(strengths)) *
-                                           zero;
+  const Eigen::VectorXd shown =
+      mark - at.jacobian.middleCols(static_cast<Eigen::Index>(first),
+                                    static_cast<Eigen::Index>(strengths)) *
+                 zero;
   Eigen::VectorXd rest = shown;
   if (others.cols() > 0) {
     const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(others);
@@ -151,7 +153,8 @@ std::string refusal(const Candidate& candidate, const Improvement& gain,
                        2.0 * std::log(static_cast<double>(std::max<std::size_t>(1, tried)));
   if (gain.fit_gain < price)
     return fmt::format(
-        "explains no more than chance: the fit gains {:.3g} where {} of {} effects must gain {:.3g}",
+        "explains no more than chance: the fit gains {:.3g} where {} of {} effects must gain "
+        "{:.3g}",
         std::max(0.0, gain.fit_gain), "the best", tried, price);
   constexpr double kChance = 1e-3, kLeastPercent = 0.5;
   if (gain.p_value > kChance)

@@ -37,8 +37,8 @@ Eigen::MatrixXd basis_of(const Eigen::MatrixXd& a) {
   return qr.householderQ() * Eigen::MatrixXd::Identity(a.rows(), qr.rank());
 }
 
-Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
-                 double rate, const Linearization& base, const Eigen::MatrixXd& basis) {
+Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u, double rate,
+                 const Linearization& base, const Eigen::MatrixXd& basis) {
   Scales s{INFINITY, -INFINITY, 0.0, INFINITY, -INFINITY, INFINITY, -INFINITY, 0.0, {}};
   Eigen::Index row = 0;
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
@@ -56,8 +56,7 @@ Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::Vecto
     s.end = std::max(s.end, recording.times.back());
     s.interval = std::max(s.interval, (recording.times.back() - recording.times.front()) /
                                           static_cast<double>(recording.times.size() - 1));
-    const Eigen::Index rows =
-        RecordingCost(job, space, r, coupling).num_residuals();
+    const Eigen::Index rows = RecordingCost(job, space, r, coupling).num_residuals();
     constexpr std::size_t kPeriods = 3;
     for (const double period :
          periods_in(job, recording, prediction, coupling, base.residuals.segment(row, rows),

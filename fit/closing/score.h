@@ -20,11 +20,11 @@
 namespace axisfit {
 
 struct Score {
-  std::size_t candidate = 0;      ///< in the list of candidates
-  std::vector<double> shapes;     ///< the setting tried
+  std::size_t candidate = 0;   ///< in the list of candidates
+  std::vector<double> shapes;  ///< the setting tried
   /// Where one step of least squares would put them, and the job's free parameters with them.
   std::vector<double> strengths, values;
-  double gain = 0.0;              ///< fall of the sum of squares that this step promises
+  double gain = 0.0;  ///< fall of the sum of squares that this step promises
 };
 
 struct ScoreTest {

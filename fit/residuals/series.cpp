@@ -1,6 +1,7 @@
 #include "fit/residuals/series.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace axisfit {
@@ -37,8 +38,8 @@ double mean_square(std::span<const double> values) {
 
 double autocorrelation_time(std::span<const double> values) {
   const std::size_t n = values.size();
-  const double mean =
-      std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(std::max<std::size_t>(1, n));
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) /
+                      static_cast<double>(std::max<std::size_t>(1, n));
   const auto covariance = [&](std::size_t lag) {
     double sum = 0.0;
     for (std::size_t i = lag; i < n; ++i) sum += (values[i] - mean) * (values[i - lag] - mean);
@@ -55,6 +56,12 @@ double autocorrelation_time(std::span<const double> values) {
     previous = covariance(lag + 2);
   }
   return std::max(1.0, time);
+}
+
+bool is_explained(const ResidualSeries& series) {
+  const double n = static_cast<double>(series.values.size());
+  const double scatter = 4.0 * std::sqrt(2.0 * autocorrelation_time(series.values) / n);
+  return mean_square(series.values) < 1.0 + std::max(0.05, scatter);
 }
 
 }  // namespace axisfit

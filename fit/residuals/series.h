@@ -10,10 +10,10 @@ namespace axisfit {
 
 struct ResidualSeries {
   std::size_t recording = 0;
-  std::size_t measurement = 0;        ///< of the recording
-  bool fitted = false;                ///< whether the fit minimised it
-  std::vector<std::size_t> samples;   ///< that count, in order
-  std::vector<double> values;         ///< (measured - simulated) / sigma at those
+  std::size_t measurement = 0;       ///< of the recording
+  bool fitted = false;               ///< whether the fit minimised it
+  std::vector<std::size_t> samples;  ///< that count, in order
+  std::vector<double> values;        ///< (measured - simulated) / sigma at those
 };
 
 /// The residuals that a fit is judged by: of the simulation in the way it was fitted, free running
@@ -28,5 +28,9 @@ double mean_square(std::span<const double> values);
 /// autocorrelation, up to where pairs of it cease to be positive; at least 1.
 /// Source: C. J. Geyer, Statistical Science 7 (1992), initial positive sequence.
 double autocorrelation_time(std::span<const double> values);
+
+/// Whether a series shows no more than its noise: a mean square within 5 % of one, or within four
+/// standard errors for as many independent samples as it has.
+bool is_explained(const ResidualSeries& series);
 
 }  // namespace axisfit

@@ -1,0 +1,105 @@
+#include "fit/residuals/dependence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+
+namespace axisfit {
+namespace {
+
+struct Regressor {
+  const char* name;
+  std::function<double(const Sample&, double time)> value;
+};
+
+const std::vector<Regressor>& regressors() {
+  static const std::vector<Regressor> list{
+      {"command", [](const Sample& s, double) { return s.command; }},
+      {"velocity", [](const Sample& s, double) { return s.velocity; }},
+      {"direction",
+       [](const Sample& s, double) { return double((s.velocity > 0.0) - (s.velocity < 0.0)); }},
+      {"position", [](const Sample& s, double) { return s.position; }},
+      {"motor angle",
+       [](const Sample& s, double) {
+         const double turn = 2.0 * std::numbers::pi;
+         return s.motor_angle - turn * std::floor(s.motor_angle / turn);
+       }},
+      {"current", [](const Sample& s, double) { return s.current; }},
+      {"load", [](const Sample& s, double) { return s.gear_force; }},
+      {"time", [](const Sample&, double time) { return time; }},
+  };
+  return list;
+}
+
+/// Range of each value among `ranges` with equally many values, equal values in one of them.
+std::vector<std::size_t> quantile_ranges(const std::vector<double>& x, std::size_t ranges) {
+  std::vector<double> sorted = x;
+  std::ranges::sort(sorted);
+  std::vector<std::size_t> range;
+  for (const double value : x) {
+    const auto below = std::ranges::lower_bound(sorted, value) - sorted.begin();
+    range.push_back(static_cast<std::size_t>(below) * ranges / x.size());
+  }
+  return range;
+}
+
+/// Probability of a chi-square variable with k degrees of freedom above x; E. B. Wilson and M. M.
+/// Hilferty (1931).
+double chi_square_tail(double x, double k) {
+  const double a = 2.0 / (9.0 * k);
+  const double z = (std::cbrt(x / k) - (1.0 - a)) / std::sqrt(a);
+  return 0.5 * std::erfc(z / std::numbers::sqrt2);
+}
+
+}  // namespace
+
+std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) {
+  constexpr std::size_t kRanges = 12;
+  constexpr double kSignificant = 1e-3;
+  std::vector<SeriesTest> tests;
+  for (ResidualSeries& series : residual_series(job, result)) {
+    SeriesTest test;
+    const double n = static_cast<double>(series.values.size());
+    test.reduced_chi_square = mean_square(series.values);
+    test.autocorrelation_time = autocorrelation_time(series.values);
+    test.explained = is_explained(series);
+    test.unexplained_percent =
+        100.0 * std::sqrt(std::max(0.0, 1.0 - 1.0 / std::max(1.0, test.reduced_chi_square)));
+    const auto& samples = result.recordings[series.recording].judged().samples;
+    const auto& times = job.recordings[series.recording].times;
+    for (const Regressor& regressor : regressors()) {
+      std::vector<double> x;
+      for (const std::size_t i : series.samples)
+        x.push_back(regressor.value(samples[i], times[i] - times.front()));
+      struct Sum {
+        double count = 0.0, total = 0.0;
+      };
+      std::map<std::size_t, Sum> sums;
+      double total = 0.0;
+      const auto range = quantile_ranges(x, kRanges);
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        Sum& sum = sums[range[i]];
+        sum.count += 1.0;
+        sum.total += series.values[i];
+        total += series.values[i];
+      }
+      if (sums.size() < 2) continue;  // it does not vary
+      double between = -total * total / n;
+      for (const auto& [_, sum] : sums) between += sum.total * sum.total / sum.count;
+      const double variance = test.reduced_chi_square - total * total / (n * n);
+      if (!(variance > 0.0)) continue;
+      const double p = chi_square_tail(between / (variance * test.autocorrelation_time),
+                                       static_cast<double>(sums.size() - 1));
+      if (p < kSignificant)
+        test.dependences.push_back({regressor.name, between / (n * test.reduced_chi_square), p});
+    }
+    std::ranges::stable_sort(test.dependences, std::greater{}, &Dependence::share);
+    test.series = std::move(series);
+    tests.push_back(std::move(test));
+  }
+  return tests;
+}
+
+}  // namespace axisfit

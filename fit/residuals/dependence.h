@@ -1,0 +1,37 @@
+// What the residual of a signal depends on, though it should not.
+//
+// A simulation that has everything leaves noise, which knows nothing of the axis. In a fit of the
+// simulation error colour alone does not accuse: a wrong friction leaves a slow residual, but so
+// does the noise of a process that the model rightly does not follow. Dependence on what drives the
+// axis, or on where it is, does.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fit/residuals/series.h"
+
+namespace axisfit {
+
+struct Dependence {
+  std::string on;        ///< "command", "velocity", "direction", "position", "motor angle" ...
+  double share = 0.0;    ///< of the residual's mean square, explained by its mean over each of 12
+                         ///< equally frequented ranges of the variable
+  double p_value = 1.0;  ///< of that share or more, were there no dependence
+};
+
+/// The verdict on one series.
+struct SeriesTest {
+  ResidualSeries series;
+  double reduced_chi_square = 0.0;
+  double autocorrelation_time = 1.0;    ///< samples
+  double unexplained_percent = 0.0;     ///< of the root mean square residual, beyond the noise
+  bool explained = false;               ///< shows no more than its noise
+  std::vector<Dependence> dependences;  ///< significant ones (p < 0.001), strongest first
+};
+
+/// Tests every series of a fit. The p-values count one independent sample for each autocorrelation
+/// time (analysis of variance; chi-square distributed for that many samples).
+std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result);
+
+}  // namespace axisfit

@@ -1,0 +1,110 @@
+#include "fit/residuals/missing_force.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace axisfit {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// One Butterworth section by the bilinear transform, in place; begins as if the first value had
+/// been there for ever.
+void section(std::vector<double>& values, double q, double interval, double cutoff) {
+  const double w = std::tan(kPi * cutoff * interval);
+  const double norm = 1.0 / (1.0 + w / q + w * w);
+  const double b0 = w * w * norm, b1 = 2.0 * b0;
+  const double a1 = 2.0 * (w * w - 1.0) * norm, a2 = (1.0 - w / q + w * w) * norm;
+  double s1 = values.front() * (1.0 - b0), s2 = values.front() * (b0 - a2);
+  for (double& x : values) {
+    const double y = b0 * x + s1;
+    s1 = b1 * x - a1 * y + s2;
+    s2 = b0 * x - a2 * y;
+    x = y;
+  }
+}
+
+double rms(const std::vector<double>& values, std::size_t first) {
+  double sum = 0.0;
+  for (std::size_t i = first; i < values.size(); ++i) sum += values[i] * values[i];
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, values.size() - first)));
+}
+
+/// N rms of the low-passed coupling force that white noise of the measurement makes: the hold
+/// follows a velocity like k / (s + k), a position like (2 w s + w^2) / (s + w)^2.
+double noise_floor(const Recording& recording, const Coupling& coupling, double mass,
+                   double interval, double cutoff) {
+  const Measurement* m =
+      recording.find(coupling.velocity > 0.0 ? Signal::velocity : Signal::position);
+  double power = 0.0;
+  constexpr int kPoints = 400;
+  const double nyquist = 0.5 / interval, df = nyquist / kPoints;
+  for (int i = 0; i < kPoints; ++i) {
+    const double f = (i + 0.5) * df;
+    const std::complex<double> s(0.0, 2.0 * kPi * f);
+    std::complex<double> h;
+    if (coupling.velocity > 0.0) {
+      h = coupling.velocity * s / (s + coupling.velocity);
+    } else {
+      const double w = std::sqrt(coupling.acceleration);
+      h = coupling.acceleration * s * s / ((s + w) * (s + w));
+    }
+    const double low = 1.0 / (1.0 + std::pow(f / cutoff, 8));  // amplitude of both runs
+    power += std::norm(h) * low * low * df / nyquist;
+  }
+  return mass * m->sigma * std::sqrt(power);
+}
+
+}  // namespace
+
+std::vector<double> low_pass(std::vector<double> values, double interval, double cutoff) {
+  if (values.size() < 2 || cutoff >= 0.49 / interval) return values;
+  for (int run = 0; run < 2; ++run) {
+    section(values, 0.5411961, interval, cutoff);
+    section(values, 1.3065630, interval, cutoff);
+    std::ranges::reverse(values);
+  }
+  return values;
+}
+
+MissingForce missing_force(const Job& job, const FitResult& result, std::size_t index) {
+  MissingForce missing;
+  const Recording& recording = job.recordings[index];
+  if (!coupling_for(recording, 1.0).active() || result.recordings[index].prediction.samples.empty())
+    return missing;
+  const ParameterSpace space(job);
+  const Eigen::VectorXd u = space.internal(values_of(result));
+  const Model<double> model = space.model_at(u.data(), index);
+  const double mass = Equations<double>(model).moving_mass();
+  const double interval = (recording.times.back() - recording.times.front()) /
+                          static_cast<double>(recording.times.size() - 1);
+  double largest = 0.0;
+  for (const Sample& s : result.recordings[index].prediction.samples)
+    largest = std::max(largest, std::abs(s.drive_force));
+  missing.cutoff = std::min(40.0, 0.1 / interval);
+  const auto coupling = [&] { return coupling_for(recording, 2.0 * kPi * missing.cutoff); };
+  const auto floor = [&] {
+    return noise_floor(recording, coupling(), mass, interval, missing.cutoff);
+  };
+  while (missing.cutoff > 5.0 && floor() > 0.01 * largest) missing.cutoff *= 0.5;
+  missing.noise = floor();
+
+  const Prediction held = predict(job, space, index, u.data(), coupling());
+  if (!held.finished) return missing;
+  std::vector<double> force, drive;
+  for (const Sample& s : held.samples) {
+    force.push_back(s.coupling_force);
+    drive.push_back(s.drive_force);
+  }
+  missing.force = low_pass(std::move(force), interval, missing.cutoff);
+  missing.samples = held.samples;
+  const std::size_t first = recording.score_initial_samples ? 0 : recording.initial_samples;
+  missing.rms = rms(missing.force, first);
+  missing.drive_rms = rms(low_pass(std::move(drive), interval, missing.cutoff), first);
+  missing.found = true;
+  return missing;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,32 @@
+// The force that the model lacks, seen through the coupling.
+//
+// A simulation that is held to the recording needs a force for it wherever the model alone would go
+// elsewhere: M y1' of the coupling (coupling.h). Below the bandwidth of the hold that is the force
+// on the arm that the model lacks, together with what noise the measurement feeds in.
+#pragma once
+
+#include <vector>
+
+#include "fit/estimate.h"
+
+namespace axisfit {
+
+struct MissingForce {
+  bool found = false;           ///< false: neither velocity nor position was recorded, or it failed
+  double cutoff = 0.0;          ///< Hz, of the zero-phase low-pass; the hold is 2 pi times as firm
+  std::vector<double> force;    ///< N on the arm side, per sample, low-passed
+  std::vector<Sample> samples;  ///< the axis at those samples
+  double rms = 0.0;             ///< N, over the scored samples
+  double noise = 0.0;           ///< N rms, what white noise of the stated size contributes
+  double drive_rms = 0.0;  ///< N, of the drive force, low-passed alike: the size to compare with
+};
+
+/// Of one recording, with the parameters of a fit. The cutoff is 40 Hz, halved while noise makes
+/// more than 1 % of the largest drive force, down to 5 Hz.
+MissingForce missing_force(const Job& job, const FitResult& result, std::size_t recording);
+
+/// Butterworth low-pass of the fourth order, run forwards and backwards: no delay, and half power
+/// at 0.8 times the cutoff of each run. `interval` in s.
+std::vector<double> low_pass(std::vector<double> values, double interval, double cutoff);
+
+}  // namespace axisfit
