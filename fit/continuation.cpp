@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include "fit/residual.h"
@@ -127,24 +128,43 @@ ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
     result.last = continuation.solve_stage(start, rate, true);
     continuation.report();
   } else {
+    const double rate = first_coupling_rate(job);
+    const auto take = [&](SolveResult solved) {
+      const bool better = !result.last.usable || (solved.usable && solved.cost < result.last.cost);
+      if (better) result.last = std::move(solved);
+    };
+    const auto explained = [&] {
+      constexpr double kExplained = 1.1;
+      return result.last.usable && result.last.reduced_cost < kExplained;
+    };
+    take(continuation.run(start, rate));
     // Where the end does not explain the data, begin anew. Less firmly: a firm hold feeds the noise
     // of the measurement into the simulation, which can bias what the data hardly show beyond
-    // return. And from elsewhere: even held firmly, a controller that saturates has local minima.
-    // A start that cannot even be simulated costs little: there the moves go on for longer.
-    constexpr int kAttemptsToBegin = 16;
-    constexpr double kExplained = 1.1;
-    for (int attempt = 0; attempt < (result.last.usable ? job.options.attempts : kAttemptsToBegin);
-         ++attempt) {
-      const double rate = first_coupling_rate(job) / (attempt == 1 ? 5.0 : 1.0);
-      const Eigen::VectorXd from = attempt < 2 ? start : moved(space, start, attempt);
-      SolveResult solved = continuation.run(from, rate);
-      // The same end from another way is likely the best there is.
-      const bool confirmed = attempt > 0 && solved.usable && result.last.usable &&
-                             std::abs(solved.cost - result.last.cost) < 1e-4 * solved.cost;
-      const bool better = attempt == 0 || (solved.usable &&
-                                           (!result.last.usable || solved.cost < result.last.cost));
-      if (better) result.last = std::move(solved);
-      if (confirmed || (result.last.usable && result.last.reduced_cost < kExplained)) break;
+    // return.
+    if (!explained() && job.options.attempts > 1) take(continuation.run(start, rate / 5.0));
+    // And from elsewhere: even held firmly, a controller that saturates has local minima. That
+    // shows while it is held, so that only a start which is better there has to be followed.
+    // One that cannot even be simulated costs little: there the moves go on for longer.
+    // Several that end where the best did confirm it.
+    constexpr int kMoves = 8, kMovesToBegin = 16, kConfirmed = 3;
+    int confirmed = 0;
+    for (int attempt = 2; attempt < job.options.attempts && !explained(); ++attempt) {
+      double known = std::numeric_limits<double>::infinity();
+      if (result.last.usable) known = continuation.solve_stage(result.last.u, rate, false).cost;
+      double least = 0.9 * known;
+      std::optional<Eigen::VectorXd> from;
+      for (int move = 0; move < (from || result.last.usable ? kMoves : kMovesToBegin); ++move) {
+        const SolveResult held =
+            continuation.solve_stage(moved(space, start, attempt * kMovesToBegin + move), rate, false);
+        continuation.report();
+        if (held.usable && std::abs(held.cost - known) < 0.01 * known) ++confirmed;
+        if (!from && confirmed >= kConfirmed) break;
+        if (!held.usable || held.cost >= least) continue;
+        least = held.cost;
+        from = held.u;
+      }
+      if (confirmed >= kConfirmed && !from) break;
+      if (from) take(continuation.run(*from, rate));
     }
   }
   result.last.iterations = continuation.iterations();

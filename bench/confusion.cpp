@@ -1,0 +1,342 @@
+// confusion: how often closing the loop finds the effect that a recording holds.
+//
+// Simulates pairs of recordings (one to fit, one to validate) of axes with an effect that is not
+// declared, closes the loop on each, and counts what was accepted. Base parameters, motions, the
+// effect's shape and sign are drawn anew for every case, from the seed and the number of the case
+// alone. The strength is searched: such that the best fit without the effect has the wanted reduced
+// chi-square.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <mutex>
+#include <numbers>
+#include <random>
+#include <set>
+
+#include "apps/axis_file.h"
+#include "fit/closing/close_loop.h"
+#include "fit/parallel.h"
+#include "fit/rest.h"
+#include "sim/rig.h"
+
+namespace {
+
+using namespace axisfit;
+
+class Draw {
+ public:
+  Draw(std::uint64_t seed, std::uint64_t number) {
+    std::seed_seq seeds{seed, number};
+    generator_.seed(seeds);
+  }
+  double uniform(double a, double b) {
+    return a + (b - a) * std::ldexp(static_cast<double>(generator_() >> 11), -53);
+  }
+  double factor(double k) { return std::pow(k, uniform(-1.0, 1.0)); }
+  double sign() { return uniform(0.0, 1.0) < 0.5 ? -1.0 : 1.0; }
+
+ private:
+  std::mt19937_64 generator_;
+};
+
+/// An effect as it is put into a simulated axis: what is proportional to its strength, per unit of
+/// it, and its shape.
+struct Secret {
+  std::string name;  ///< as in the catalogue
+  std::vector<std::pair<std::string, double>> strengths, shapes;
+  double unit = 1.0;  ///< a first guess of a noticeable strength
+  double most = INFINITY;
+};
+
+const std::vector<std::string>& secret_names() {
+  static const std::vector<std::string> names{
+      "coulomb_friction",  "directional_friction", "stribeck_friction", "position_friction",
+      "load_friction",     "dahl_friction",        "constant_force",    "quadratic_drag",
+      "stroke_spring",     "periodic_force",       "added_mass",        "elastic_mode",
+      "cogging_torque",    "torque_ripple",        "torque_droop",      "torque_fade",
+      "drive_lag",         "command_offset",       "dead_time",         "acceleration.bias",
+      "acceleration.gain", "acceleration.lag",     "velocity.gain",     "velocity.lag",
+      "velocity.delay",    "tachometer.gain"};
+  return names;
+}
+
+Secret draw_secret(const std::string& name, Draw& draw) {
+  const double s = draw.sign(), phase = draw.uniform(0.0, 2.0 * std::numbers::pi);
+  const double a = std::sin(phase), b = std::cos(phase);
+  if (name == "coulomb_friction") return {name, {{"F_c", 1}}, {}, 5};
+  if (name == "directional_friction") return {name, {{"dB_a", s}}, {}, 10};
+  if (name == "stribeck_friction")
+    return {name, {{"F_st", s}}, {{"v_st", draw.uniform(0.01, 0.1)}}, 10};
+  if (name == "position_friction") return {name, {{"G_c", 1}}, {}, 10};
+  if (name == "load_friction") return {name, {{"mu", 1}}, {}, 0.02, 0.5};
+  if (name == "dahl_friction") return {name, {{"F_d", 1}}, {{"l_d", 1e-3 * draw.factor(3)}}, 5};
+  if (name == "constant_force") return {name, {{"F_0", s}}, {}, 5};
+  if (name == "quadratic_drag") return {name, {{"c", 1}}, {}, 20};
+  if (name == "stroke_spring") return {name, {{"k_s", 1}}, {}, 10};
+  if (name == "periodic_force")
+    return {name, {{"F_s1", a}, {"F_c1", b}}, {{"period", 0.06 * draw.factor(3)}}, 5};
+  if (name == "added_mass") return {name, {{"dM", s}}, {}, 5, 80};
+  if (name == "elastic_mode")
+    return {name, {{"m_e", 1}}, {{"f_e", draw.uniform(10, 60)}, {"zeta_e", 0.03}}, 3, 60};
+  if (name == "cogging_torque")
+    return {name, {{"T_s", a}, {"T_c", b}}, {{"order", std::floor(draw.uniform(1, 5))}}, 0.03};
+  if (name == "torque_ripple")
+    return {name, {{"r_s", a}, {"r_c", b}}, {{"order", std::floor(draw.uniform(1, 5))}}, 0.01, 0.5};
+  if (name == "torque_droop") return {name, {{"c_i", 1}}, {}, 0.005, 0.08};
+  if (name == "torque_fade") return {name, {{"c_t", 1}}, {}, 0.01, 0.5};
+  if (name == "drive_lag") return {name, {{"T_l", 1}}, {}, 0.002, 0.05};
+  if (name == "command_offset") return {name, {{"U_0", s}}, {}, 0.02};
+  if (name == "dead_time") return {name, {{"T_d", 1}}, {}, 0.001, 0.05};
+  // Instruments: "signal.part".
+  if (name.ends_with(".bias")) return {name, {{name, s}}, {}, 0.02};
+  if (name.ends_with(".gain")) return {name, {{name, s}}, {}, 0.01, 0.5};
+  if (name.ends_with(".lag")) return {name, {{name, 1}}, {}, 0.001, 0.05};
+  return {name, {{name, s}}, {}, 0.001, 0.05};
+}
+
+std::size_t quantity(const Secret& secret, const std::string& symbol) {
+  const QuantityEntry* entry = find_quantity(symbol);
+  return (entry != nullptr ? entry : find_quantity(secret.name + "." + symbol))->index;
+}
+
+void put(const Secret& secret, double strength, Model<double>& model) {
+  const auto member = members(model);
+  const Effects<double> effects{};
+  visit_effects(effects, [&](std::size_t index, const auto& effect) {
+    if (effect.name != secret.name) return;
+    model.structure.effects.set(index);
+    for (const QuantityEntry& entry : quantity_list())
+      if (entry.group == effect.name) *member[entry.index] = 0.0;
+  });
+  for (const auto& [symbol, value] : secret.shapes) *member[quantity(secret, symbol)] = value;
+  for (const auto& [symbol, value] : secret.strengths)
+    *member[quantity(secret, symbol)] += strength * value;
+}
+
+Motion draw_motion(int kind, Draw& draw) {
+  const double u = draw.uniform(5.0, 10.0);
+  // Commands switch when the controller samples, and so does the recorded column.
+  const auto held = [&](double a, double b) {
+    return 0.005 * std::round(draw.uniform(a, b) / 0.005);
+  };
+  switch (kind) {
+    case 0:  // out and back to rest
+      return LevelsMotion{{u, u, 0.0, -u, -u, 0.0}, 0.5};
+    case 1: {
+      LevelsMotion levels{{}, held(0.4, 0.6)};
+      for (int i = 0; i < 7; ++i) levels.levels.push_back(draw.sign() * draw.uniform(1.0, u));
+      return levels;
+    }
+    case 2:
+      return SineMotion{u, 0.3, draw.uniform(2.0, 5.0)};
+    default:
+      return PrbsMotion{u, held(0.1, 0.3), 0.0, 7};
+  }
+}
+
+struct Case {
+  std::string kind;             ///< "clean", an effect, or "pair"
+  std::vector<std::string> in;  ///< effects that are in it
+  double target = 1.0;          ///< reduced chi-square without the effects
+  int repeat = 0;
+
+  std::string label() const { return in.empty() ? kind : fmt::format("{}", fmt::join(in, "+")); }
+  /// By what the case is, so that a part of the grid has the same cases as the whole. FNV-1a.
+  std::uint64_t number() const {
+    std::uint64_t hash = 14695981039346656037u;
+    for (const char c : fmt::format("{} {} {}", label(), target, repeat))
+      hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+    return hash >> 32;
+  }
+};
+
+struct Outcome {
+  double reached = 0.0;
+  double last = 0.0;  ///< reduced chi-square of the result, all recordings
+  std::set<std::string> accepted, undecided;
+  bool explained = false;
+};
+
+Job job_of(const Rig& rig, const Model<double>& declared, const std::vector<Motion>& motions,
+           std::uint64_t seed, Draw& draw) {
+  Job job;
+  job.model = declared;
+  job.options.threads = 1;
+  for (std::size_t r = 0; r < motions.size(); ++r) {
+    RecordingOptions options;
+    options.duration = 3.0;
+    options.seed = seed * 2 + r;
+    options.signals = {Signal::velocity, Signal::acceleration, Signal::tachometer};
+    const Table table = record(rig, motions[r], options);
+    Recording recording;
+    recording.name = r == 0 ? "fit" : "validate";
+    recording.role = r == 0 ? Role::fit : Role::validate;
+    recording.times = table.columns[0].values;
+    recording.command = schedule_from_samples(recording.times, table.columns[1].values);
+    for (std::size_t s = 0; s < options.signals.size(); ++s)
+      recording.measurements.push_back({options.signals[s],
+                                        table.columns[2 + s].values,
+                                        rig.noise[index_of(options.signals[s])],
+                                        true,
+                                        true,
+                                        {}});
+    leave_out_acceleration_at_rest(recording);
+    job.recordings.push_back(std::move(recording));
+  }
+  for (const char* name : {"V_L", "B_a", "b_g", "k_g", "T_p"}) {
+    FreeParameter p;
+    p.quantity = find_quantity(name)->index;
+    p.initial = *members(job.model)[p.quantity] * draw.factor(2.0);
+    p.lower = p.initial / 100.0;
+    p.upper = p.initial * 100.0;
+    job.free.push_back(p);
+  }
+  return job;
+}
+
+Outcome run(const Case& one, const Rig& paper, std::uint64_t seed) {
+  const std::uint64_t number = one.number();
+  Draw draw(seed, number);
+  Rig rig = paper;
+  Axis<double>& axis = rig.model.axis;
+  for (double* p : {&axis.V_L, &axis.B_a, &axis.b_g, &axis.k_g, &axis.M, &axis.H})
+    *p *= draw.factor(1.4);
+  axis.T_p *= draw.factor(1.5);
+  axis.F_s = 0.0;
+  const int kind = static_cast<int>(draw.uniform(0, 4));
+  const std::vector<Motion> motions{draw_motion(kind, draw), draw_motion((kind + 1) % 4, draw)};
+  const Model<double> declared = rig.model;
+  std::vector<Secret> secrets;
+  for (const std::string& name : one.in) secrets.push_back(draw_secret(name, draw));
+
+  Outcome outcome;
+  std::vector<double> strengths(secrets.size());
+  const auto fitted = [&](const std::vector<double>& with, bool near) {
+    Rig secretly = rig;
+    for (std::size_t i = 0; i < secrets.size(); ++i) put(secrets[i], with[i], secretly.model);
+    Draw again(seed + 1, number);
+    Job job = job_of(secretly, declared, motions, number, again);
+    if (near) {
+      for (FreeParameter& p : job.free) p.initial = *members(job.model)[p.quantity];
+      job.options.attempts = 1;
+      job.options.coupling_rate = 30.0;
+      job.options.tolerance = 1e-4;
+    }
+    FitResult fit = estimate(job);
+    return std::pair{std::move(job), std::move(fit)};
+  };
+  // The excess of chi-square grows with the square of the strength.
+  for (std::size_t i = 0; i < secrets.size(); ++i) {
+    strengths[i] = secrets[i].unit;
+    for (int k = 0; k < 4; ++k) {
+      std::vector<double> alone(secrets.size(), 0.0);
+      alone[i] = strengths[i];
+      const double excess = fitted(alone, true).second.reduced_chi_square - 1.0;
+      const double factor =
+          std::sqrt((one.target - 1.0) / (std::isfinite(excess) ? std::max(excess, 0.02) : 100.0));
+      strengths[i] = std::min(secrets[i].most, strengths[i] * std::clamp(factor, 0.1, 5.0));
+      if (std::abs(factor - 1.0) < 0.1) break;
+    }
+  }
+  const auto [job, fit] = fitted(strengths, false);
+  outcome.reached = fit.reduced_chi_square;
+  const ClosedLoop loop = close_loop(job, fit);
+  for (const EffectTrial& trial : loop.effects) {
+    if (trial.decision == Decision::accepted) outcome.accepted.insert(trial.candidate.name);
+    if (trial.decision == Decision::undecided) outcome.undecided.insert(trial.candidate.name);
+  }
+  outcome.explained = loop.explained;
+  outcome.last = loop.models.back().fit.reduced_chi_square;
+  return outcome;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"How often closing the loop finds the effect that a simulated recording holds."};
+  std::string axis_path;
+  std::vector<double> targets{1.5, 3.0, 10.0};
+  std::vector<std::string> effects = secret_names();
+  int clean = 50, pairs = 20, threads = 0, repeats = 1;
+  std::uint64_t seed = 1;
+  app.add_option("AXIS.yaml", axis_path, "axis around which parameters are drawn")->required();
+  app.add_option("--effects", effects, "effects to try alone")->delimiter(',');
+  app.add_option("--targets", targets, "reduced chi-squares without the effect")->delimiter(',');
+  app.add_option("--repeats", repeats, "cases per effect and target");
+  app.add_option("--clean", clean, "cases without an effect");
+  app.add_option("--pairs", pairs, "cases with two effects");
+  app.add_option("--seed", seed, "of everything drawn");
+  app.add_option("--threads", threads, "default: all cores");
+  CLI11_PARSE(app, argc, argv);
+
+  Diagnostics diagnostics;
+  const std::optional<Rig> paper = read_axis_file(axis_path, diagnostics);
+  diagnostics.throw_if_any();
+  std::vector<Case> cases;
+  for (int i = 0; i < clean; ++i) cases.push_back({"clean", {}, 1.0, i});
+  for (const std::string& effect : effects)
+    for (const double target : targets)
+      for (int i = 0; i < repeats; ++i) cases.push_back({effect, {effect}, target, i});
+  Draw draw(seed, 999999);
+  for (int i = 0; i < pairs; ++i) {
+    const auto any = [&] {
+      return secret_names()[static_cast<std::size_t>(
+          draw.uniform(0, static_cast<double>(secret_names().size())))];
+    };
+    std::string a = any(), b = any();
+    while (b == a) b = any();
+    cases.push_back({"pair", {a, b}, 3.0, i});
+  }
+
+  std::vector<Outcome> outcomes(cases.size());
+  std::mutex mutex;
+  parallel_for(cases.size(), thread_count(threads), [&](std::size_t i) {
+    outcomes[i] = run(cases[i], *paper, seed);
+    const std::lock_guard lock(mutex);
+    fmt::print("{:24} target {:4} chi2 {:8.3f} -> {:7.3f} accepted [{}] undecided [{}]{}\n",
+               cases[i].label(), cases[i].target, outcomes[i].reached, outcomes[i].last,
+               fmt::join(outcomes[i].accepted, " "), fmt::join(outcomes[i].undecided, " "),
+               outcomes[i].explained ? "" : " unexplained");
+    std::fflush(stdout);
+  });
+
+  // The table: by kind and target, how often right, undecided with the right one, wrong, nothing.
+  struct Count {
+    int cases = 0, right = 0, undecided = 0, missed = 0, wrong = 0, below = 0;
+    std::map<std::string, int> wrongly;
+  };
+  std::map<std::pair<std::string, double>, Count> table;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    Count& count = table[{cases[i].kind, cases[i].target}];
+    const Outcome& o = outcomes[i];
+    const std::set<std::string> truth(cases[i].in.begin(), cases[i].in.end());
+    ++count.cases;
+    std::set<std::string> wrong;
+    std::ranges::set_difference(o.accepted, truth, std::inserter(wrong, wrong.end()));
+    for (const std::string& name : wrong) ++count.wrongly[name];
+    if (!wrong.empty())
+      ++count.wrong;
+    else if (o.accepted == truth)
+      ++count.right;
+    else if (!o.undecided.empty())
+      ++count.undecided;
+    else
+      ++count.missed;
+  }
+  fmt::print(
+      "\n| effect | chi-square | cases | right | undecided | missed | wrong | wrongly accepted |\n"
+      "|---|---|---|---|---|---|---|---|\n");
+  for (const auto& [key, c] : table) {
+    std::vector<std::string> names;
+    for (const auto& [name, n] : c.wrongly) names.push_back(fmt::format("{} {}", n, name));
+    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} |\n", key.first, key.second, c.cases,
+               c.right, c.undecided, c.missed, c.wrong, fmt::join(names, ", "));
+  }
+  return 0;
+}
