@@ -90,9 +90,9 @@ void read_controller(const ConfigNode& node, ControllerSettings& settings) {
   map.finish();
 }
 
-/// "0.56 ohm", with all digits; dimensionless numbers alone.
-std::string with_unit(double value, std::string_view unit) {
-  return is_dimensionless(unit) ? fmt::format("{}", value) : fmt::format("{} {}", value, unit);
+/// "0.56 ohm", with all digits.
+std::string exact(double value, std::string_view unit) {
+  return with_unit(fmt::format("{}", value), unit);
 }
 
 }  // namespace
@@ -123,7 +123,7 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
   key.error(fmt::format("there is no quantity '{}'; {}", name,
                         near.empty()
                             ? "the axis has its parameters, effect.parameter, signal.gain, "
-                              "signal.bias and initial.y0 ... initial.y6"
+                              "bias, lag and delay, and initial.y0 ... initial.y6"
                             : fmt::format("did you mean '{}'?", near)));
   return nullptr;
 }
@@ -135,11 +135,19 @@ void read_effects(const ConfigNode& node, Model<double>& model) {
     if (!given) return;
     model.structure.effects.set(index);
     ConfigMap parameters(*given);
+    bool used = false;
     effect.visit(effect, [&](const Quantity& quantity, double& value) {
-      if (const auto text = parameters.required(quantity.symbol))
-        value = read_value(*text, quantity).value_or(0.0);
+      used = used || is_used(*find_quantity(full_name(effect.name, quantity)), model.structure);
+      const bool compulsory = std::isnan(quantity.standard);
+      const auto text =
+          compulsory ? parameters.required(quantity.symbol) : parameters.optional(quantity.symbol);
+      value = compulsory ? 0.0 : quantity.standard;
+      if (text) value = read_value(*text, quantity).value_or(value);
     });
     parameters.finish();
+    if (!used)
+      given->error(fmt::format("{} has no part in an axis with {}: remove it", effect.name,
+                               describe(model.structure)));
   });
   map.finish();
 }
@@ -197,11 +205,11 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
     const double value = *member[entry.index];
     const bool custom = entry.group == "initial" || signal_by_name(entry.group).has_value();
     if (!is_used(entry, structure) || (custom && value == entry.quantity.standard)) continue;
-    groups[entry.group].emplace_back(entry.quantity.symbol, with_unit(value, entry.quantity.unit));
+    groups[entry.group].emplace_back(entry.quantity.symbol, exact(value, entry.quantity.unit));
   }
   for (const SignalInfo& signal : kSignalTable)
     if (const double noise = rig.noise[index_of(signal.signal)]; noise > 0.0)
-      groups[std::string(signal.name)].emplace_back("noise", with_unit(noise, signal.unit));
+      groups[std::string(signal.name)].emplace_back("noise", exact(noise, signal.unit));
 
   const auto emit = [&](const std::string& key, const std::string& group) {
     out << YAML::Key << key << YAML::Value << YAML::BeginMap;
@@ -230,7 +238,7 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
   const ControllerSettings& c = rig.controller;
   out << YAML::Key << "controller" << YAML::Value << YAML::BeginMap;
   const auto setting = [&](const char* key, double value, std::string_view unit) {
-    out << YAML::Key << key << YAML::Value << with_unit(value, unit);
+    out << YAML::Key << key << YAML::Value << exact(value, unit);
   };
   setting("period", c.period, "s");
   setting("track_period", c.track_period, "s");

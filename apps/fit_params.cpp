@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdio>
 #include <iostream>
 #include <optional>
@@ -16,11 +15,14 @@
 #include "apps/report_text.h"
 #include "apps/result_json.h"
 #include "apps/version.h"
-#include "sim/table.h"
 
 namespace {
 
 using namespace axisfit;
+
+constexpr const char* kResultFile = "result.json";
+constexpr const char* kAxisFile = "fitted.yaml";
+constexpr const char* kResidualsFile = "residuals.csv";
 
 enum ExitCode { kUsable = 0, kBadInput = 2, kNoUsableFit = 3 };
 
@@ -28,6 +30,7 @@ struct Arguments {
   std::string job;
   std::string data;
   std::string output;
+  bool close_loop = false;
   bool json = false;
   bool quiet = false;
   std::optional<int> threads, starts;
@@ -36,6 +39,7 @@ struct Arguments {
 
 constexpr const char* kExamples = R"(Examples:
   fit-params configs/jobs/paper.yaml
+  fit-params configs/jobs/close-loop.yaml --close-loop
   fit-params configs/jobs/paper.yaml --output results --starts 20 --seed 7
   fit-params configs/jobs/emps.yaml --data ~/Downloads/EMPS
   fit-params job.yaml --json | jq '.parameters[] | {name, value, standard_error}'
@@ -49,14 +53,8 @@ class ProgressLine {
   ~ProgressLine() {
     if (shown_) std::fputs("\r\033[K", stderr);
   }
-  void show(const Progress& p) {
+  void show(const std::string& line) {
     if (!visible_) return;
-    std::string line =
-        p.starts > 1 ? fmt::format("start {} of {}: ", p.starts_done + 1, p.starts) : "";
-    line += p.stage.coupling_rate > 0.0
-                ? fmt::format("held to the data at {:.3g} 1/s", p.stage.coupling_rate)
-                : "free running";
-    line += fmt::format(", reduced chi-square {:.4g}", p.stage.reduced_cost);
     fmt::print(stderr, "\r\033[K{}", line.substr(0, 78));
     std::fflush(stderr);
     shown_ = true;
@@ -67,39 +65,57 @@ class ProgressLine {
   bool shown_ = false;
 };
 
+std::string fitting_text(const Progress& p) {
+  return fmt::format(
+      "{}{}, reduced chi-square {:.4g}",
+      p.starts > 1 ? fmt::format("start {} of {}: ", p.starts_done + 1, p.starts) : "",
+      p.stage.coupling_rate > 0.0
+          ? fmt::format("held to the data at {:.3g} 1/s", p.stage.coupling_rate)
+          : "free running",
+      p.stage.reduced_cost);
+}
+
+std::string closing_text(const std::string& phase, int done, int of) {
+  return of > 0 ? fmt::format("{} ({} of {} done)", phase, done, of) : phase;
+}
+
 int run(const Arguments& arguments) {
   JobFile file = read_job_file(arguments.job, arguments.data);
+  if (!arguments.output.empty())
+    check_folder(arguments.output, {kResultFile, kAxisFile, kResidualsFile});
   FitOptions& options = file.job.options;
   if (arguments.threads) options.threads = *arguments.threads;
   if (arguments.starts) options.starts = *arguments.starts;
   if (arguments.seed) options.seed = *arguments.seed;
 
-  const auto begin = std::chrono::steady_clock::now();
-  FitResult result;
-  {
+  const Outcome outcome = [&] {
     ProgressLine line(!arguments.quiet && isatty(STDERR_FILENO) != 0);
-    result = estimate(file.job, [&](const Progress& p) { line.show(p); });
-  }
-  const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - begin;
+    return find_outcome(
+        std::move(file), arguments.close_loop,
+        [&](const Progress& p) { line.show(fitting_text(p)); },
+        [&](const std::string& phase, int done, int of) {
+          line.show(closing_text(phase, done, of));
+        });
+  }();
 
   // What was found is shown before anything can go wrong with writing it.
-  const std::string json = result_json(file, result, wall_time.count()).dump(2) + "\n";
+  const std::string json = result_json(outcome).dump(2) + "\n";
   if (arguments.json)
     std::cout << json;
   else if (!arguments.quiet)
-    std::cout << report_text(file, result);
+    std::cout << report_text(outcome);
   if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
   if (!arguments.output.empty()) {
-    Rig fitted = file.rig;
-    fitted.model = fitted_model(file.job, result);
+    Rig fitted = outcome.file.rig;
+    fitted.model = fitted_model(outcome.job(), outcome.fit());
     const std::string comment =
         fmt::format("Fitted by axisfit {} from {}, starting from {}.\n{}", kVersion, arguments.job,
-                    file.axis_file, result.verdict);
-    write_folder(arguments.output, {{"result.json", json},
-                                    {"fitted.yaml", format_axis_file(fitted, comment)},
-                                    {"residuals.csv", residuals_csv(file.job, result)}});
+                    outcome.file.axis_file, outcome.fit().verdict);
+    write_folder(arguments.output, {{kResultFile, json},
+                                    {kAxisFile, format_axis_file(fitted, comment)},
+                                    {kResidualsFile, residuals_csv(outcome.job(), outcome.fit())}});
   }
-  return result.usable ? kUsable : kNoUsableFit;
+  return outcome.fit().usable ? kUsable : kNoUsableFit;
 }
 
 }  // namespace
@@ -111,6 +127,8 @@ int main(int argc, char** argv) {
   app.footer(kExamples);
   app.set_version_flag("--version", std::string("axisfit ") + kVersion);
   app.add_option("JOB.yaml", arguments.job, "the job file (docs/job-file.md)")->required();
+  app.add_flag("--close-loop", arguments.close_loop,
+               "then add the effects that the model lacks, each checked by data not fitted");
   app.add_option("--data", arguments.data, "folder of the recordings, if not the job file's");
   app.add_option("--output", arguments.output,
                  "folder for result.json, fitted.yaml and residuals.csv");

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <ranges>
@@ -16,7 +15,6 @@
 #include "fit/initial_state.h"
 #include "fit/noise.h"
 #include "fit/rest.h"
-#include "sim/suggest.h"
 #include "sim/table.h"
 
 namespace axisfit {
@@ -25,8 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-std::string unit_text(double value, std::string_view unit) {
-  return is_dimensionless(unit) ? fmt::format("{:g}", value) : fmt::format("{:g} {}", value, unit);
+/// "0.56 ohm", for messages.
+std::string rounded(double value, std::string_view unit) {
+  return with_unit(fmt::format("{:g}", value), unit);
 }
 
 class JobReader {
@@ -209,36 +208,84 @@ class JobReader {
     if (const std::string reason = refusal(model); !reason.empty()) node.error(reason);
   }
 
+  using Values = std::vector<double>;
+
+  /// The part of a recording that is kept, in recorded time, s.
+  struct Trim {
+    double from = -kUnlimited, to = kUnlimited;
+    bool keeps(double time) const { return time >= from && time <= to; }
+  };
+
+  static Trim read_trim(const ConfigNode& node) {
+    Trim trim;
+    ConfigMap map(node);
+    if (const auto t = map.optional("from"))
+      trim.from = t->as_quantity("s", -kUnlimited, kUnlimited).value_or(trim.from);
+    if (const auto t = map.optional("to"))
+      trim.to = t->as_quantity("s", -kUnlimited, kUnlimited).value_or(trim.to);
+    map.finish();
+    return trim;
+  }
+
+  static Values trimmed(const Values& values, const Values& times, const Trim& trim) {
+    Values kept;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (trim.keeps(times[i])) kept.push_back(values[i]);
+    return kept;
+  }
+
   void read_samples(const RecordingFile& data, const ConfigNode& time_node,
                     const ConfigNode& signals_node, const std::optional<ConfigNode>& trim_node,
                     Recording& recording) {
     const auto times = read_times(data, time_node);
-    double from = -kUnlimited, to = kUnlimited;
-    if (trim_node) {
-      ConfigMap trim(*trim_node);
-      if (const auto t = trim.optional("from"))
-        from = t->as_quantity("s", -kUnlimited, kUnlimited).value_or(from);
-      if (const auto t = trim.optional("to"))
-        to = t->as_quantity("s", -kUnlimited, kUnlimited).value_or(to);
-      trim.finish();
-    }
-    const auto trimmed = [&](std::vector<double> values) {
-      std::vector<double> kept;
-      for (std::size_t i = 0; i < values.size(); ++i)
-        if ((*times)[i] >= from && (*times)[i] <= to) kept.push_back(values[i]);
-      return kept;
-    };
-
+    const Trim trim = trim_node ? read_trim(*trim_node) : Trim();
     ConfigMap signals(signals_node);
-    // The input: a command in volts, or for a force source also a recorded force.
+    const auto input = read_input(data, signals_node, signals, times, recording);
+    const bool any_named = read_measurements(data, signals, times, trim, recording);
+    signals.finish();
+    if (!times || !input) return;
+    // Commands from before the first sample kept still act on it.
+    Values command_times, commands;
+    for (std::size_t i = 0; i < times->size() && (*times)[i] <= trim.to; ++i) {
+      command_times.push_back((*times)[i]);
+      commands.push_back((*input)[i]);
+    }
+    recording.command = schedule_from_samples(command_times, commands);
+    recording.times = trimmed(*times, *times, trim);
+    if (recording.times.size() < 10) {
+      trim_node.value_or(time_node).error(
+          fmt::format("{} samples are too few: at least 10 must be left", recording.times.size()));
+      recording.times = {0.0, 1.0};
+      return;
+    }
+    check_samples(signals_node, any_named, recording);
+    if (recording.initial_state == InitialState::data) initial_state_from_data(recording);
+    if (!recording.acceleration_at_rest) leave_out_acceleration_at_rest(recording);
+  }
+
+  /// What drives the axis: a command in volts, for a force source also a recorded force, or a
+  /// position reference. Nothing, with diagnostics, unless it fits the times.
+  std::optional<Values> read_input(const RecordingFile& data, const ConfigNode& signals_node,
+                                   ConfigMap& signals, const std::optional<Values>& times,
+                                   Recording& recording) {
     const bool force_source = result_.rig.model.structure.drive == Drive::force_source;
     const auto command = signals.optional("command");
     const auto force = force_source ? signals.optional("drive_force") : std::nullopt;
     const auto reference = force_source ? std::nullopt : signals.optional("position_reference");
-    std::optional<std::vector<double>> input;
-    if (command && force) {
+    if (command && force)
       force->error("give either the command or the drive force, not both: each drives the axis");
-    } else if (force) {
+    if (command && reference)
+      reference->error("the command is recorded and drives the axis: remove the reference");
+    if (!command && !force && !reference)
+      signals_node.error(force_source
+                             ? "the axis is driven by a command or a drive_force: name one "
+                               "of them"
+                             : "the axis is driven by the command: name its column, or that of the "
+                               "position_reference, from which the slave control unit makes it");
+    if (command && force) return std::nullopt;
+    if (reference && !command) return read_reference(data, *reference, signals, times);
+    std::optional<Values> input;
+    if (force) {
       input = read_column(data, *force, "N");
       // The source turns U into K_f U newtons; a force in newtons needs no gain.
       const std::size_t gain = find_quantity("K_f")->index;
@@ -247,93 +294,15 @@ class JobReader {
       recording.overrides.emplace_back(gain, 1.0);
     } else if (command) {
       input = read_column(data, *command, "V");
-      if (reference)
-        reference->error("the command is recorded and drives the axis: remove the reference");
-    } else if (reference) {
-      input = read_reference(data, *reference, signals, times);
-    } else {
-      signals_node.error(force_source
-                             ? "the axis is driven by a command or a drive_force: name one "
-                               "of them"
-                             : "the axis is driven by the command: name its column, or that of the "
-                               "position_reference, from which the slave control unit makes it");
     }
-    bool any_named = false;
-    for (const SignalInfo& signal : kSignalTable) {
-      if (signal.signal == Signal::drive_force && force_source) continue;
-      const auto given = signals.optional(signal.name);
-      if (!given) continue;
-      any_named = true;
-      if (!has_signal(signal.signal, result_.rig.model.structure)) {
-        given->error(fmt::format("the drive of this axis has no {}: remove it", signal.name));
-        continue;
-      }
-      ConfigMap map(*given);
-      Measurement measurement;
-      measurement.signal = signal.signal;
-      auto values = read_column(data, map, signal.unit);
-      if (const auto fit = map.optional("fit")) measurement.fitted = fit->as_bool().value_or(true);
-      const auto sigma = map.optional("sigma");
-      if (sigma) {
-        measurement.sigma = read_sigma(*sigma, signal.unit);
-        measurement.sigma_given = true;
-      }
-      map.finish();
-      if (!values || !times) continue;
-      if (!same_length(*given, *values, *times)) continue;
-      measurement.values = trimmed(std::move(*values));
-      if (!sigma) {
-        measurement.sigma = noise_from_differences(measurement.values);
-        if (!(measurement.sigma > 0.0))
-          given->error(
-              fmt::format("the noise of {} cannot be estimated from these samples: give "
-                          "its sigma, for example 'sigma: {}'",
-                          signal.name, unit_text(0.01, signal.unit)));
-      }
-      recording.measurements.push_back(std::move(measurement));
-    }
-    signals.finish();
-    if (!times || !input || !same_length(force ? *force : *command, *input, *times)) return;
-    // Commands from before the first sample kept still act on it.
-    std::vector<double> command_times, commands;
-    for (std::size_t i = 0; i < times->size() && (*times)[i] <= to; ++i) {
-      command_times.push_back((*times)[i]);
-      commands.push_back((*input)[i]);
-    }
-    recording.command = schedule_from_samples(command_times, commands);
-    recording.times = trimmed(*times);
-    if (recording.times.size() < 10) {
-      (trim_node ? *trim_node : time_node)
-          .error(fmt::format("{} samples are too few: at least 10 must be left",
-                             recording.times.size()));
-      recording.times = {0.0, 1.0};
-      return;
-    }
-    if (!any_named)
-      signals_node.error(
-          fmt::format("nothing to compare with: name at least one of {}",
-                      fmt::join(kSignalTable | std::views::transform(&SignalInfo::name), ", ")));
-    else if (recording.role == Role::fit && !recording.measurements.empty() &&
-             std::ranges::none_of(recording.measurements, &Measurement::fitted))
-      signals_node.error(
-          "nothing to fit: every signal says fit: false; drop that from one, or give "
-          "the recording the role validate");
-    if (result_.job.options.coupling == CouplingMode::fixed &&
-        recording.find(Signal::position) == nullptr && recording.find(Signal::velocity) == nullptr)
-      signals_node.error("a fixed coupling needs a recorded position or velocity");
-    if (recording.initial_state == InitialState::data) {
-      if (recording.find(Signal::position) == nullptr &&
-          recording.find(Signal::velocity) == nullptr)
-        signals_node.error("initial_state: data needs a recorded position or velocity");
-      initial_state_from_data(recording);
-    }
-    if (!recording.acceleration_at_rest) leave_out_acceleration_at_rest(recording);
+    if (input && times && !same_length(force ? *force : *command, *input, *times)) input.reset();
+    return input;
   }
 
   /// The command that the axis file's slave control unit makes of a recorded position reference.
-  std::optional<std::vector<double>> read_reference(
-      const RecordingFile& data, const ConfigNode& node, ConfigMap& signals,
-      const std::optional<std::vector<double>>& times) const {
+  std::optional<Values> read_reference(const RecordingFile& data, const ConfigNode& node,
+                                       ConfigMap& signals,
+                                       const std::optional<Values>& times) const {
     const auto reference = read_column(data, node, "m");
     const auto position_node = signals.optional("position");
     if (!position_node) {
@@ -348,6 +317,75 @@ class JobReader {
     if (!same_length(node, *reference, *times) || !same_length(*position_node, *position, *times))
       return std::nullopt;
     return command_from_reference(result_.rig.controller, *times, *reference, *position);
+  }
+
+  /// All signals but the input. Returns whether any was named, rightly or wrongly.
+  bool read_measurements(const RecordingFile& data, ConfigMap& signals,
+                         const std::optional<Values>& times, const Trim& trim,
+                         Recording& recording) {
+    const Structure& structure = result_.rig.model.structure;
+    bool any_named = false;
+    for (const SignalInfo& signal : kSignalTable) {
+      const bool is_input =
+          signal.signal == Signal::drive_force && structure.drive == Drive::force_source;
+      const auto given = is_input ? std::nullopt : signals.optional(signal.name);
+      if (!given) continue;
+      any_named = true;
+      if (!has_signal(signal.signal, structure)) {
+        given->error(fmt::format("the drive of this axis has no {}: remove it", signal.name));
+        continue;
+      }
+      auto measurement = read_measurement(data, *given, signal, times, trim);
+      if (measurement) recording.measurements.push_back(std::move(*measurement));
+    }
+    return any_named;
+  }
+
+  static std::optional<Measurement> read_measurement(const RecordingFile& data,
+                                                     const ConfigNode& node,
+                                                     const SignalInfo& signal,
+                                                     const std::optional<Values>& times,
+                                                     const Trim& trim) {
+    ConfigMap map(node);
+    Measurement measurement;
+    measurement.signal = signal.signal;
+    const auto values = read_column(data, map, signal.unit);
+    if (const auto fit = map.optional("fit")) measurement.fitted = fit->as_bool().value_or(true);
+    if (const auto sigma = map.optional("sigma")) {
+      measurement.sigma = read_sigma(*sigma, signal.unit);
+      measurement.sigma_given = true;
+    }
+    map.finish();
+    if (!values || !times || !same_length(node, *values, *times)) return std::nullopt;
+    measurement.values = trimmed(*values, *times, trim);
+    if (!measurement.sigma_given) {
+      measurement.sigma = noise_from_differences(measurement.values);
+      if (!(measurement.sigma > 0.0))
+        node.error(
+            fmt::format("the noise of {} cannot be estimated from these samples: give its "
+                        "sigma, for example 'sigma: {}'",
+                        signal.name, rounded(0.01, signal.unit)));
+    }
+    return measurement;
+  }
+
+  /// Whether the recording has what its role and the options of the fit need.
+  void check_samples(const ConfigNode& signals_node, bool any_named,
+                     const Recording& recording) const {
+    const bool held = recording.find(Signal::position) || recording.find(Signal::velocity);
+    if (!any_named)
+      signals_node.error(
+          fmt::format("nothing to compare with: name at least one of {}",
+                      fmt::join(kSignalTable | std::views::transform(&SignalInfo::name), ", ")));
+    else if (recording.role == Role::fit && !recording.measurements.empty() &&
+             std::ranges::none_of(recording.measurements, &Measurement::fitted))
+      signals_node.error(
+          "nothing to fit: every signal says fit: false; drop that from one, or give "
+          "the recording the role validate");
+    if (result_.job.options.coupling == CouplingMode::fixed && !held)
+      signals_node.error("a fixed coupling needs a recorded position or velocity");
+    if (recording.initial_state == InitialState::data && !held)
+      signals_node.error("initial_state: data needs a recorded position or velocity");
   }
 
   static bool same_length(const ConfigNode& node, const std::vector<double>& values,
@@ -430,9 +468,8 @@ class JobReader {
                         entry.name));
       else if (p.initial < p.lower || p.initial > p.upper)
         node.error(fmt::format("the initial value {} of {} lies outside its bounds, {} to {}",
-                               unit_text(p.initial, quantity.unit), entry.name,
-                               unit_text(p.lower, quantity.unit),
-                               unit_text(p.upper, quantity.unit)));
+                               rounded(p.initial, quantity.unit), entry.name,
+                               rounded(p.lower, quantity.unit), rounded(p.upper, quantity.unit)));
       for (const Recording& r : result_.job.recordings)
         for (const auto& [index, value] : r.overrides)
           if (!p.recording && index == p.quantity && entry.group != "initial")

@@ -8,7 +8,6 @@
 
 #include "apps/config.h"
 #include "apps/recording_file.h"
-#include "apps/units.h"
 #include "sim/table.h"
 
 namespace axisfit {

@@ -43,42 +43,86 @@ std::string reason(const std::exception& error) {
   return known != nullptr ? known->code().message() : error.what();
 }
 
+/// The folder where files are made before they go into the one the user named.
+class PartialFolder {
+ public:
+  explicit PartialFolder(const std::string& folder) : folder_(folder) {
+    const fs::path given = fs::absolute(folder).lexically_normal();
+    target_ = given.has_filename() ? given : given.parent_path();
+    path_ = target_.parent_path() /
+            fmt::format(".{}.partial-{}", target_.filename().string(), ::getpid());
+    made_ = path_;
+    std::error_code ignored;
+    while (fs::symlink_status(made_.parent_path(), ignored).type() == fs::file_type::not_found)
+      made_ = made_.parent_path();
+  }
+
+  const fs::path& path() const { return path_; }
+  const fs::path& target() const { return target_; }
+
+  void remove() const {
+    std::error_code ignored;
+    fs::remove_all(made_, ignored);
+  }
+
+  /// Makes the folder and does `work`. Whatever goes wrong, the remains are removed.
+  template <class Work>
+  void use(Work&& work) const {
+    try {
+      fs::create_directories(path_);
+      work();
+    } catch (const std::exception& error) {
+      remove();
+      throw std::runtime_error(
+          fmt::format("results not written to {}: {}", folder_, reason(error)));
+    }
+  }
+
+  /// Found out before anything is replaced.
+  void refuse_folder_at(const std::string& name) const {
+    if (fs::is_directory(target_ / name))
+      throw fs::filesystem_error("cannot replace", target_ / name,
+                                 std::make_error_code(std::errc::is_a_directory));
+  }
+
+ private:
+  std::string folder_;
+  fs::path target_, path_;
+  fs::path made_;  // what a failure must remove again: the topmost folder that was not there
+};
+
 }  // namespace
 
 void write_folder(const std::string& folder,
                   const std::vector<std::pair<std::string, std::string>>& files) {
-  const fs::path target = fs::absolute(folder).lexically_normal();
-  const fs::path parent =
-      target.has_filename() ? target.parent_path() : target.parent_path().parent_path();
-  const fs::path partial =
-      parent / fmt::format(".{}.partial-{}",
-                           target.has_filename() ? target.filename().string()
-                                                 : target.parent_path().filename().string(),
-                           ::getpid());
-  // What a failure must remove again: the topmost folder that was not there.
-  std::error_code ignored;
-  fs::path made = partial;
-  while (fs::symlink_status(made.parent_path(), ignored).type() == fs::file_type::not_found)
-    made = made.parent_path();
-  try {
-    fs::create_directories(partial);
+  const PartialFolder partial(folder);
+  partial.use([&] {
     for (const auto& [name, contents] : files) {
-      write_through(partial / name, contents);
-      // Found out before anything is replaced.
-      if (fs::is_directory(target / name))
-        throw fs::filesystem_error("cannot replace", target / name,
-                                   std::make_error_code(std::errc::is_a_directory));
+      write_through(partial.path() / name, contents);
+      partial.refuse_folder_at(name);
     }
-    if (!fs::exists(target)) {
-      fs::rename(partial, target.has_filename() ? target : target.parent_path());
+    if (!fs::exists(partial.target())) {
+      fs::rename(partial.path(), partial.target());
       return;
     }
-    for (const auto& [name, contents] : files) fs::rename(partial / name, target / name);
-    fs::remove_all(partial);
-  } catch (const std::exception& error) {
-    fs::remove_all(made, ignored);
-    throw std::runtime_error(fmt::format("results not written to {}: {}", folder, reason(error)));
-  }
+    for (const auto& [name, contents] : files)
+      fs::rename(partial.path() / name, partial.target() / name);
+    fs::remove_all(partial.path());
+  });
+}
+
+void check_folder(const std::string& folder, const std::vector<std::string>& names) {
+  const PartialFolder partial(folder);
+  partial.use([&] {
+    for (const std::string& name : names) partial.refuse_folder_at(name);
+    // The way that results would go, with a file that is not there for long.
+    const std::string probe = fmt::format(".probe-{}", ::getpid());
+    write_through(partial.path() / probe, "");
+    if (!fs::exists(partial.target())) return;
+    fs::rename(partial.path() / probe, partial.target() / probe);
+    fs::remove(partial.target() / probe);
+  });
+  partial.remove();
 }
 
 void write_file(const std::string& path, const std::string& contents) {

@@ -13,7 +13,11 @@ namespace axisfit {
 void write_folder(const std::string& folder,
                   const std::vector<std::pair<std::string, std::string>>& files);
 
-/// The same for a single file.
+/// Throws as write_folder would if these files cannot be put into the folder. Leaves nothing
+/// behind. For programs that work for long before they have anything to write.
+void check_folder(const std::string& folder, const std::vector<std::string>& names);
+
+/// As write_folder, for a single file.
 void write_file(const std::string& path, const std::string& contents);
 
 }  // namespace axisfit

@@ -7,49 +7,26 @@
 #include <limits>
 #include <sstream>
 
+#include "apps/text_table.h"
 #include "sim/table.h"
 
 namespace axisfit {
 namespace {
 
-/// Rows of text as columns: the first and all named `left` are flush left, the others flush right.
-std::string aligned(const std::vector<std::vector<std::string>>& rows,
-                    const std::vector<bool>& left) {
-  // Width in characters; units may contain multi-byte ones.
-  const auto width_of = [](const std::string& text) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
-  };
-  std::vector<std::size_t> width(left.size(), 0);
-  for (const auto& row : rows)
-    for (std::size_t c = 0; c < row.size(); ++c) width[c] = std::max(width[c], width_of(row[c]));
+/// What an accelerometer shows at rest, where it has nothing to show and is left out.
+std::string rest_text(const Recording& recording) {
   std::string text;
-  for (const auto& row : rows) {
-    std::string line = " ";
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      const std::string pad(width[c] - width_of(row[c]), ' ');
-      line.append(1, ' ')
-          .append(left[c] ? row[c] : pad)
-          .append(left[c] ? pad : row[c])
-          .append(1, ' ');
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
+  for (const Measurement& m : recording.measurements) {
+    const auto rest = left_out(m);
+    if (!rest) continue;
+    const std::string unit(info(m.signal).unit);
+    text += paragraph(
+        fmt::format("{}: {} samples of the {} at rest are left out, {:.3g} {} on average{}.",
+                    recording.name, rest->samples, info(m.signal).name, rest->mean, unit,
+                    rest->is_noise ? "" : ": a bias or an artefact of the instrument"),
+        2);
   }
   return text;
-}
-
-/// A value with as many digits as its standard error justifies: two of the error.
-std::string with_digits_of(double value, double error) {
-  if (!(error > 0.0) || !std::isfinite(error)) return fmt::format("{:.4g}", value);
-  const int last = static_cast<int>(std::floor(std::log10(error))) - 1;
-  const int first = value == 0.0 ? last : static_cast<int>(std::floor(std::log10(std::abs(value))));
-  const int digits = std::clamp(first - last + 1, 1, 15);
-  // Plain figures where they are readable, powers of ten elsewhere.
-  if (last <= 0 && first < 7 && first > -4)
-    return fmt::format("{:.{}f}", value, std::min(-last, 12));
-  if (last > 0 && first < 5) return fmt::format("{:.0f}", value);
-  return fmt::format("{:.{}e}", value, digits - 1);
 }
 
 std::string recordings_text(const Job& job) {
@@ -62,30 +39,42 @@ std::string recordings_text(const Job& job) {
                     fmt::format("{} samples", r.times.size()),
                     fmt::format("{:.4g} s to {:.4g} s", r.times.front(), r.times.back()), signals});
   }
-  return "Recordings\n" + aligned(rows, {true, true, false, true, true});
+  std::string text =
+      "Recordings\n" + aligned(rows, {Set::left, Set::left, Set::right, Set::left, Set::left});
+  for (const Recording& r : job.recordings) text += rest_text(r);
+  return text;
 }
 
-std::string parameters_text(const Job& job, const FitResult& result) {
-  std::vector<std::vector<std::string>> rows{
-      {"", "", "value", "std. error", "95 % interval", "initial", "unit", ""}};
+/// With a closed loop, the declared model's estimates stand where the initial values would.
+std::string parameters_text(const Outcome& outcome) {
+  const Job& job = outcome.job();
+  const FitResult& result = outcome.fit();
+  std::vector<std::vector<std::string>> rows{{"", "", "value", "std. error", "95 % interval",
+                                              outcome.loop ? "declared" : "initial", "unit", ""}};
   for (std::size_t i = 0; i < job.free.size(); ++i) {
     const ParameterResult& p = result.parameters[i];
     const ParameterUncertainty& u = p.uncertainty;
     const Quantity& quantity = quantity_list()[job.free[i].quantity].quantity;
     const double error = u.determined ? u.standard_error : 0.0;
     const bool open = !u.determined && !u.at_bound;
+    std::string other = fmt::format("{:.4g}", job.free[i].initial);
+    if (outcome.loop) {
+      const auto& declared = outcome.loop->models.front().fit.parameters;
+      other = i < declared.size() ? fmt::format("{:.4g}", declared[i].value) : "-";
+    }
     rows.push_back({p.name, std::string(quantity.meaning),
                     open ? fmt::format("~{:.1g}", p.value) : with_digits_of(p.value, error),
                     u.determined ? fmt::format("{:.2g}", error) : "-",
                     u.determined ? fmt::format("{} .. {}", with_digits_of(u.lower, error),
                                                with_digits_of(u.upper, error))
                                  : "-",
-                    fmt::format("{:.4g}", job.free[i].initial), std::string(quantity.unit),
+                    other, std::string(quantity.unit),
                     u.at_bound ? "at bound"
                     : open     ? "not determined"
                                : ""});
   }
-  return "Parameters\n" + aligned(rows, {true, true, false, false, false, false, true, true});
+  return "Parameters\n" + aligned(rows, {Set::left, Set::left, Set::right, Set::right, Set::right,
+                                         Set::right, Set::left, Set::left});
 }
 
 std::string errors_text(const Job& job, const FitResult& result) {
@@ -111,7 +100,8 @@ std::string errors_text(const Job& job, const FitResult& result) {
     }
   }
   std::string text = "Errors of the free-running simulation\n" +
-                     aligned(rows, {true, true, true, false, false, false, false, true, false});
+                     aligned(rows, {Set::left, Set::left, Set::left, Set::right, Set::right,
+                                    Set::right, Set::right, Set::left, Set::right});
   const bool estimated = std::ranges::any_of(job.recordings, [](const Recording& r) {
     return std::ranges::any_of(r.measurements, [](const Measurement& m) { return !m.sigma_given; });
   });
@@ -121,16 +111,32 @@ std::string errors_text(const Job& job, const FitResult& result) {
 
 }  // namespace
 
-std::string report_text(const JobFile& file, const FitResult& result) {
-  const Job& job = file.job;
+std::string report_text(const Outcome& outcome) {
+  const Job& job = outcome.job();
+  const FitResult& result = outcome.fit();
   const std::string assumption =
       result.reduced_chi_square > 1.0
           ? fmt::format("independent residuals of the size found, {:.3g} times the noise",
                         std::sqrt(result.reduced_chi_square))
           : "independent noise of the size stated below";
-  return fmt::format("{}\n{}  Standard errors assume {}.\n\n{}\n{}\n", recordings_text(job),
-                     parameters_text(job, result), assumption, errors_text(job, result),
-                     result.verdict);
+  std::string text = fmt::format("{}\n{}  Standard errors assume {}.\n\n{}\n", recordings_text(job),
+                                 parameters_text(outcome), assumption,
+                                 outcome.loop ? loop_text(outcome) : errors_text(job, result));
+  if (outcome.diagnosis && !outcome.diagnosis->explained)
+    text += residual_text(job, *outcome.diagnosis) + "\n";
+  // The loop has told of the force, and has put the suspects to the test.
+  if (outcome.diagnosis && !outcome.diagnosis->explained && !outcome.loop)
+    text += suspects_text(job, *outcome.diagnosis) + "\n";
+  if (outcome.loop) {
+    // The loop's verdict is on the same model, by the same residual.
+    if (!result.usable) text += result.verdict + "\n";
+    text += paragraph((result.usable ? "Usable fit. " : "") + outcome.loop->verdict);
+    for (const std::string& hint : outcome.loop->hints) text += paragraph(hint);
+    return text;
+  }
+  text += result.verdict + "\n";
+  if (outcome.diagnosis) text += residual_verdict(job, *outcome.diagnosis);
+  return text;
 }
 
 std::string residuals_csv(const Job& job, const FitResult& result) {

@@ -1,15 +1,31 @@
-// The result of a fit as text for a terminal.
+// What was found as text for a terminal. Lines end with '\n'; those of tables and paragraphs fit 80
+// characters, except for the table of parameters.
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "apps/job_file.h"
-#include "fit/estimate.h"
+#include "apps/outcome.h"
 
 namespace axisfit {
 
-/// Recordings, table of parameters, errors per signal, verdict; lines end with '\n'.
-std::string report_text(const JobFile& file, const FitResult& result);
+/// Recordings, table of parameters, errors per signal or the models of the loop, and the verdicts.
+std::string report_text(const Outcome& outcome);
+
+/// Its part on a residual that is not explained: how much that is, and what it depends on.
+std::string residual_text(const Job& job, const Diagnosis& diagnosis);
+
+/// What the residual may come from: the missing force and the suspects.
+std::string suspects_text(const Job& job, const Diagnosis& diagnosis);
+
+/// The verdict on the residual, one paragraph.
+std::string residual_verdict(const Job& job, const Diagnosis& diagnosis);
+
+/// Its part on the closed loop: effects that were tried, and the errors before and after.
+std::string loop_text(const Outcome& outcome);
+
+/// Cells of one row about a missing force: name, rms, noise, per cent of the drive force, cutoff.
+std::vector<std::string> force_cells(const std::string& name, const MissingForce& force);
 
 /// residuals.csv: recording (its number in the job), time_s, and measured, simulated and residual
 /// of every signal, of the free-running simulation. Empty where a recording lacks a signal.

@@ -1,5 +1,7 @@
 #include "apps/result_json.h"
 
+#include <cmath>
+
 #include "apps/version.h"
 
 namespace axisfit {
@@ -21,31 +23,44 @@ const char* text(Status status) {
 
 /// A number, or null where there is none.
 Json optional(bool present, double value) { return present ? Json(value) : Json(nullptr); }
-Json optional(const std::optional<double>& value) {
-  return optional(value.has_value(), value.value_or(0.0));
+Json finite(double value) { return optional(std::isfinite(value), value); }
+
+/// A list with one entry for each of the values.
+template <class Values, class Entry>
+Json list(const Values& values, Entry&& entry) {
+  Json array = Json::array();
+  for (const auto& value : values) array.push_back(entry(value));
+  return array;
+}
+
+Json signal_json(const Measurement& measurement, const SignalError& e, bool finished) {
+  Json signal{{"name", info(e.signal).name},
+              {"unit", info(e.signal).unit},
+              {"fitted", e.fitted},
+              {"rmse", optional(finished, e.rmse)},
+              {"nrmse_percent", optional(finished, e.nrmse_percent)},
+              {"sigma", e.sigma},
+              {"sigma_source", e.sigma_given ? "given" : "differences"},
+              {"reduced_chi_square", optional(finished, e.reduced_chi_square)}};
+  if (e.prediction_rmse) {
+    signal["prediction_rmse"] = *e.prediction_rmse;
+    signal["prediction_reduced_chi_square"] = e.prediction_reduced_chi_square.value();
+  }
+  if (const auto rest = left_out(measurement)) {
+    signal["left_out"] = rest->samples;
+    signal["mean_left_out"] = rest->mean;
+  }
+  return signal;
 }
 
 Json recording_json(const Recording& recording, const RecordingResult& result) {
   Json signals = Json::array();
-  const bool finished = result.prediction.finished;
-  for (const SignalError& e : result.signals) {
-    Json signal{{"name", info(e.signal).name},
-                {"unit", info(e.signal).unit},
-                {"fitted", e.fitted},
-                {"rmse", optional(finished, e.rmse)},
-                {"nrmse_percent", optional(finished, e.nrmse_percent)},
-                {"sigma", e.sigma},
-                {"sigma_source", e.sigma_given ? "given" : "differences"},
-                {"reduced_chi_square", optional(finished, e.reduced_chi_square)}};
-    if (e.prediction_rmse) {
-      signal["prediction_rmse"] = optional(e.prediction_rmse);
-      signal["prediction_reduced_chi_square"] = optional(e.prediction_reduced_chi_square);
-    }
-    signals.push_back(std::move(signal));
-  }
+  for (std::size_t m = 0; m < recording.measurements.size(); ++m)
+    signals.push_back(
+        signal_json(recording.measurements[m], result.signals[m], result.prediction.finished));
   return {{"name", recording.name},
           {"file", recording.file},
-          {"role", recording.role == Role::fit ? "fit" : "validate"},
+          {"role", role_name(recording, true)},
           {"samples", recording.times.size()},
           {"start_s", recording.times.front()},
           {"end_s", recording.times.back()},
@@ -53,56 +68,197 @@ Json recording_json(const Recording& recording, const RecordingResult& result) {
           {"signals", std::move(signals)}};
 }
 
+/// What is said of an estimate wherever it stands.
+Json estimate_json(const ParameterResult& p) {
+  const Quantity& quantity = find_quantity(p.name.substr(0, p.name.find('@')))->quantity;
+  const ParameterUncertainty& u = p.uncertainty;
+  return {{"name", p.name},
+          {"unit", quantity.unit},
+          {"meaning", quantity.meaning},
+          {"value", p.value},
+          {"determined", u.determined},
+          {"standard_error", optional(u.determined, u.standard_error)},
+          {"confidence_interval", u.determined ? Json{u.lower, u.upper} : Json(nullptr)},
+          {"at_bound", u.at_bound}};
+}
+
+Json parameter_json(const ParameterResult& p, const FreeParameter& free) {
+  Json parameter = estimate_json(p);
+  parameter.update(Json{{"initial", free.initial},
+                        {"lower", free.lower},
+                        {"upper", free.upper},
+                        {"scale", free.logarithmic ? "log" : "linear"}});
+  return parameter;
+}
+
+Json force_json(const MissingForce& force) {
+  if (!force.found) return nullptr;
+  return {{"rms_n", force.rms},
+          {"noise_n", force.noise},
+          {"cutoff_hz", force.cutoff},
+          {"drive_rms_n", force.drive_rms}};
+}
+
+Json test_json(const Job& job, const SeriesTest& test) {
+  const Recording& recording = job.recordings[test.series.recording];
+  return {{"recording", recording.name},
+          {"signal", info(recording.measurements[test.series.measurement].signal).name},
+          {"role", role_name(recording, test.series.fitted)},
+          {"reduced_chi_square", test.reduced_chi_square},
+          {"autocorrelation_time", test.autocorrelation_time},
+          {"unexplained_percent", test.unexplained_percent},
+          {"explained", test.explained},
+          {"dependences", list(test.dependences, [](const Dependence& d) {
+             return Json{{"on", d.on}, {"share", d.share}, {"p_value", d.p_value}};
+           })}};
+}
+
+Json quantities_json(const std::vector<std::size_t>& quantities,
+                     const std::vector<double>& values) {
+  Json array = Json::array();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const QuantityEntry& entry = quantity_list()[quantities[i]];
+    array.push_back({{"name", entry.name}, {"unit", entry.quantity.unit}, {"value", values[i]}});
+  }
+  return array;
+}
+
+Json suspect_json(const Suspect& s) {
+  return {{"name", s.candidate.name},
+          {"slot", s.candidate.slot},
+          {"meaning", s.candidate.meaning},
+          {"share", s.share},
+          {"strengths", quantities_json(s.candidate.strengths, s.strengths)},
+          {"shapes", quantities_json(s.candidate.shapes, s.shapes)}};
+}
+
+Json residual_json(const Job& job, const Diagnosis& diagnosis) {
+  Json forces = Json::array();
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    Json force{{"recording", job.recordings[r].name}};
+    const Json found = force_json(diagnosis.forces[r]);
+    if (!found.is_null()) force.update(found);
+    if (!found.is_null()) forces.push_back(std::move(force));
+  }
+  return {{"explained", diagnosis.explained},
+          {"tests", list(diagnosis.tests, [&](const SeriesTest& t) { return test_json(job, t); })},
+          {"suspects", list(diagnosis.suspects, suspect_json)},
+          {"missing_force", std::move(forces)}};
+}
+
+Json effect_json(const EffectTrial& t) {
+  const bool judged = t.improvement.comparable;
+  return {{"name", t.candidate.name},
+          {"slot", t.candidate.slot},
+          {"meaning", t.candidate.meaning},
+          {"decision", decision_name(t.decision)},
+          {"accepted", t.decision == Decision::accepted},
+          {"reason", t.reason},
+          {"round", t.round},
+          {"score", t.score},
+          {"parameters", list(t.parameters, estimate_json)},
+          {"p_value", optional(judged, t.improvement.p_value)},
+          {"validate_improvement_percent", optional(judged, t.improvement.validate_percent)}};
+}
+
+Json score_json(const Job& job, const SignalScore& score) {
+  const Recording& recording = job.recordings[score.recording];
+  const SignalInfo& signal = info(recording.measurements[score.measurement].signal);
+  const bool finished = score.free_running.has_value();
+  const SignalErrors errors = score.free_running.value_or(SignalErrors());
+  Json json{{"name", signal.name},
+            {"unit", signal.unit},
+            {"role", role_name(recording, score.fitted)},
+            {"rmse", optional(finished, errors.rmse)},
+            {"nrmse_percent", optional(finished, errors.nrmse_percent)},
+            {"reduced_chi_square", optional(finished, errors.reduced_chi_square)}};
+  if (score.held) {
+    json["prediction_rmse"] = score.held->rmse;
+    json["prediction_reduced_chi_square"] = score.held->reduced_chi_square;
+  }
+  return json;
+}
+
+Json model_json(const LoopModel& model, const ModelScore& score) {
+  Json recordings = Json::array();
+  for (std::size_t r = 0; r < model.job.recordings.size(); ++r) {
+    const Recording& recording = model.job.recordings[r];
+    Json signals = Json::array();
+    for (const SignalScore& s : score.signals)
+      if (s.recording == r) signals.push_back(score_json(model.job, s));
+    recordings.push_back({{"name", recording.name},
+                          {"role", role_name(recording, true)},
+                          {"signals", std::move(signals)},
+                          {"missing_force", force_json(score.forces[r])}});
+  }
+  return {{"added", model.added},
+          {"reduced_chi_square", finite(model.fit.reduced_chi_square)},
+          {"recordings", std::move(recordings)},
+          {"parameters", list(model.fit.parameters, estimate_json)}};
+}
+
+/// What only a closed loop has.
+Json loop_json(const ClosedLoop& loop, const std::vector<ModelScore>& scores) {
+  Json models = Json::array();
+  for (std::size_t i = 0; i < loop.models.size(); ++i)
+    models.push_back(model_json(loop.models[i], scores[i]));
+  Json json{{"effects", list(loop.effects, effect_json)},
+            {"before", models.front()},
+            {"after", models.back()}};
+  models.erase(0);
+  json["models"] = std::move(models);
+  json["closed_loop"] = {{"verdict", loop.verdict},
+                         {"explained", loop.explained},
+                         {"held_out_blocks", loop.held_out_blocks},
+                         {"hints", loop.hints}};
+  return json;
+}
+
 }  // namespace
 
-Json result_json(const JobFile& file, const FitResult& result, double wall_time_s) {
-  const Job& job = file.job;
-  Json recordings = Json::array(), parameters = Json::array(), stages = Json::array(),
-       starts = Json::array();
+Json result_json(const Outcome& outcome) {
+  const Job& job = outcome.job();
+  const FitResult& fit = outcome.fit();
+  Json recordings = Json::array(), parameters = Json::array();
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
-    recordings.push_back(recording_json(job.recordings[r], result.recordings[r]));
+    recordings.push_back(recording_json(job.recordings[r], fit.recordings[r]));
   for (std::size_t i = 0; i < job.free.size(); ++i) {
-    const FreeParameter& free = job.free[i];
-    const ParameterResult& p = result.parameters[i];
-    const ParameterUncertainty& u = p.uncertainty;
-    const Quantity& quantity = quantity_list()[free.quantity].quantity;
+    // The loop starts its models from one another; the user's initial values are the job's.
+    const std::vector<FreeParameter>& declared = outcome.file.job.free;
     parameters.push_back(
-        {{"name", p.name},
-         {"unit", quantity.unit},
-         {"meaning", quantity.meaning},
-         {"value", p.value},
-         {"determined", u.determined},
-         {"standard_error", optional(u.determined, u.standard_error)},
-         {"confidence_interval", u.determined ? Json{u.lower, u.upper} : Json(nullptr)},
-         {"initial", free.initial},
-         {"lower", free.lower},
-         {"upper", free.upper},
-         {"scale", free.logarithmic ? "log" : "linear"},
-         {"at_bound", u.at_bound}});
+        parameter_json(fit.parameters[i], i < declared.size() ? declared[i] : job.free[i]));
   }
-  for (const Stage& s : result.stages)
-    stages.push_back({{"coupling_rate", s.coupling_rate},
-                      {"reduced_cost", s.reduced_cost},
-                      {"iterations", s.iterations},
-                      {"accepted", s.accepted}});
-  for (const StartResult& s : result.starts)
-    starts.push_back(
-        {{"from", s.from}, {"to", s.to}, {"usable", s.usable}, {"reduced_cost", s.reduced_cost}});
-  return {{"version", kVersion},
-          {"status", text(result.status)},
-          {"usable", result.usable},
-          {"verdict", result.verdict},
-          {"message", result.message},
-          {"axis", file.rig.name},
-          {"recordings", std::move(recordings)},
-          {"parameters", std::move(parameters)},
-          {"reduced_chi_square", result.reduced_chi_square},
-          {"coupling_rate", result.coupling_rate},
-          {"stages", std::move(stages)},
-          {"starts", std::move(starts)},
-          {"iterations", result.iterations},
-          {"seed", job.options.seed},
-          {"wall_time_s", wall_time_s}};
+  Json json{
+      {"version", kVersion},
+      {"status", text(fit.status)},
+      {"usable", fit.usable},
+      {"verdict", fit.verdict},
+      {"message", fit.message},
+      {"axis", outcome.file.rig.name},
+      {"recordings", std::move(recordings)},
+      {"parameters", std::move(parameters)},
+      {"reduced_chi_square", finite(fit.reduced_chi_square)},
+      {"residual", outcome.diagnosis ? residual_json(job, *outcome.diagnosis) : Json(nullptr)}};
+  if (outcome.loop) json.update(loop_json(*outcome.loop, outcome.scores));
+  json.update(Json{{"coupling_rate", fit.coupling_rate},
+                   {"stages", list(fit.stages,
+                                   [](const Stage& s) {
+                                     return Json{{"coupling_rate", s.coupling_rate},
+                                                 {"reduced_cost", finite(s.reduced_cost)},
+                                                 {"iterations", s.iterations},
+                                                 {"accepted", s.accepted}};
+                                   })},
+                   {"starts", list(outcome.first.starts,
+                                   [](const StartResult& s) {
+                                     return Json{{"from", s.from},
+                                                 {"to", s.to},
+                                                 {"usable", s.usable},
+                                                 {"reduced_cost", finite(s.reduced_cost)}};
+                                   })},
+                   {"iterations", fit.iterations},
+                   {"seed", outcome.file.job.options.seed},
+                   {"wall_time_s", outcome.wall_time}});
+  return json;
 }
 
 }  // namespace axisfit

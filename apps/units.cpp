@@ -240,4 +240,9 @@ bool is_dimensionless(std::string_view si_unit) {
   return target.database.is_dimensionless(target.unit);
 }
 
+std::string with_unit(std::string number, std::string_view si_unit) {
+  if (!is_dimensionless(si_unit)) number.append(" ").append(si_unit);
+  return number;
+}
+
 }  // namespace axisfit

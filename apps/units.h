@@ -38,4 +38,7 @@ std::variant<double, UnitError> unit_factor(std::string_view unit, std::string_v
 /// Throws like unit_factor.
 bool is_dimensionless(std::string_view si_unit);
 
+/// "0.56 ohm": a number with its unit, which is left out of plain numbers.
+std::string with_unit(std::string number, std::string_view si_unit);
+
 }  // namespace axisfit

@@ -29,11 +29,15 @@ struct Entry {
 /// The effects of sim/effects, with the settings of their shapes. An effect with several strengths
 /// that mean different things stands here once for each.
 std::vector<Entry> entries(const Scales& s, double pinion_radius) {
-  std::vector<std::vector<double>> periods, orders;
-  for (const double period : s.periods) {
-    periods.push_back({period});
-    orders.push_back({2.0 * std::numbers::pi * pinion_radius / period});
-  }
+  std::vector<std::vector<double>> periods;
+  for (const double period : s.periods) periods.push_back({period});
+  // Per turn of the motor: those that the residual shows, and the likely ones.
+  const auto orders_of = [&](const std::vector<double>& lengths) {
+    std::vector<std::vector<double>> orders{{1.0}, {2.0}, {3.0}, {4.0}, {6.0}};
+    for (const double length : lengths)
+      orders.push_back({2.0 * std::numbers::pi * pinion_radius / length});
+    return orders;
+  };
   const double speed = std::max(s.speed, 1e-3);
   // From a few cycles in the recording up to a third of the sampling rate.
   auto modes = geometric(std::max(1.0, 4.0 / (s.end - s.start)), 0.33 / s.interval, 20);
@@ -57,8 +61,8 @@ std::vector<Entry> entries(const Scales& s, double pinion_radius) {
       {"periodic_force", "arm force", {"F_s2", "F_c2"}},
       {"added_mass", "inertia", {"dM"}},
       {"elastic_mode", "inertia", {"m_e"}, {"f_e", "zeta_e"}, modes},
-      {"cogging_torque", "motor torque", {"T_s", "T_c"}, {"order"}, orders},
-      {"torque_ripple", "motor torque", {"r_s", "r_c"}, {"order"}, orders},
+      {"cogging_torque", "motor torque", {"T_s", "T_c"}, {"order"}, orders_of(s.periods)},
+      {"torque_ripple", "motor torque", {"r_s", "r_c"}, {"order"}, orders_of(s.drive_periods)},
       {"torque_droop", "motor torque", {"c_i"}},
       {"torque_fade", "motor torque", {"c_t"}},
       {"drive_lag", "drive", {"T_l"}},
@@ -168,17 +172,24 @@ std::vector<Candidate> catalogue(const Job& job, const Scales& scales) {
       candidate.shapes.push_back(
           index_of_quantity(std::string(entry.name) + "." + std::string(symbol)));
     candidate.settings = entry.settings;
+    if (entry.name == "drive_lag") candidate.probe = 2.0 * scales.interval;
     // A part of an effect that needs another part of it, as a second harmonic the first.
     const auto effect = effect_named(entry.name);
     if (entry.strengths[0] == "F_s2" && !job.model.structure.effects[*effect]) continue;
     offer(std::move(candidate));
   }
-  offer({"dead_time", "drive", "dead time of the command", {index_of_quantity("T_d")}, {}, {{}}});
+  Candidate dead_time{"dead_time", "drive", "dead time of the command", {}, {}, {{}}};
+  dead_time.strengths = {index_of_quantity("T_d")};
+  offer(std::move(dead_time));
   for (const SignalInfo& signal : kSignalTable) {
     if (!is_recorded(job, signal.signal)) continue;
     for (const std::string_view part : {"bias", "gain", "lag", "delay"}) {
       const std::string name = std::string(signal.name) + "." + std::string(part);
       const QuantityEntry* entry = find_quantity(name);
+      // A simulation that is held to a late signal to the end is late itself.
+      const bool held = job.options.coupling == CouplingMode::fixed &&
+                        (signal.signal == Signal::position || signal.signal == Signal::velocity);
+      if (held && (part == "lag" || part == "delay")) continue;
       offer({name, "sensor", std::string(entry->quantity.meaning), {entry->index}, {}, {{}}});
     }
   }

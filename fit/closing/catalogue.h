@@ -23,7 +23,10 @@ struct Candidate {
   std::vector<std::size_t> shapes;
   std::vector<std::vector<double>> settings;
   bool shapes_are_free = true;  ///< whether the shapes are estimated too; a curve's ends are not
-  bool unnamed = false;         ///< a curve: it fits whatever no other effect explains
+  /// A strength at which the score test looks instead of at zero, because the derivative there says
+  /// little: that of a lag holds for lags shorter than anything else. Zero: none.
+  double probe = 0.0;
+  bool unnamed = false;  ///< a curve: it fits whatever no other effect explains
 
   std::size_t parameters() const {
     return strengths.size() + (shapes_are_free ? shapes.size() : 0);
@@ -38,6 +41,7 @@ struct Scales {
   double start = 0.0, end = 0.0;                   ///< s
   double interval = 0.0;                           ///< s, between samples, mean
   std::vector<double> periods;                     ///< m, of forces along the stroke, best first
+  std::vector<double> drive_periods;  ///< m, of such in proportion to the drive's force
 };
 
 /// All candidates that the job's axis can have, its recordings could show, and its model lacks.

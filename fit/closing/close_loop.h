@@ -47,7 +47,8 @@ struct LoopModel {
 };
 
 struct ClosedLoop {
-  std::vector<LoopModel> models;     ///< the declared one first; the last is the result
+  std::vector<LoopModel> models;     ///< the declared one first, then one for each accepted effect
+  LoopModel result;                  ///< the last of them, fitted to all samples
   std::vector<EffectTrial> effects;  ///< every effect that was refitted, its last trial
   bool held_out_blocks = false;      ///< no recording to validate: blocks of the fitted were kept
   bool explained = false;            ///< nothing but noise is left

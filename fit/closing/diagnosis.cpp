@@ -10,8 +10,8 @@ namespace axisfit {
 Diagnosis diagnose(const Job& job, const FitResult& result) {
   Diagnosis diagnosis;
   diagnosis.tests = test_residuals(job, result);
-  diagnosis.explained = !diagnosis.tests.empty() &&
-                        std::ranges::all_of(diagnosis.tests, &SeriesTest::explained);
+  diagnosis.explained =
+      !diagnosis.tests.empty() && std::ranges::all_of(diagnosis.tests, &SeriesTest::explained);
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     diagnosis.forces.push_back(missing_force(job, result, r));
   if (diagnosis.explained || !result.usable) return diagnosis;

@@ -44,9 +44,9 @@ Eigen::VectorXcd response(const Recording& recording, const std::vector<std::com
 
 }  // namespace
 
-std::vector<double> periods_in(const Job&, const Recording& recording, const Prediction& prediction,
+std::vector<double> periods_in(const Recording& recording, const Prediction& prediction,
                                const Coupling& coupling, const Eigen::VectorXd& residuals,
-                               const Eigen::MatrixXd& basis, std::size_t most) {
+                               const Eigen::MatrixXd& basis, std::size_t most, bool of_drive) {
   const std::size_t n = prediction.samples.size();
   if (n < 16 || n != recording.times.size()) return {};
   double low = INFINITY, high = -INFINITY, speed = 0.0;
@@ -70,7 +70,8 @@ std::vector<double> periods_in(const Job&, const Recording& recording, const Pre
   for (double wave = 2.0 * spacing; wave < 1.0 / shortest; wave += spacing) {
     std::vector<std::complex<double>> force(n);
     for (std::size_t i = 0; i < n; ++i)
-      force[i] = std::polar(1.0, 2.0 * std::numbers::pi * wave * prediction.samples[i].position);
+      force[i] = std::polar(1.0, 2.0 * std::numbers::pi * wave * prediction.samples[i].position) *
+                 (of_drive ? prediction.samples[i].drive_force : 1.0);
     const Eigen::VectorXcd d = response(recording, force, coupling);
     Eigen::MatrixXd columns(d.size(), 2);
     columns << d.real(), d.imag();

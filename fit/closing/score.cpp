@@ -39,7 +39,7 @@ Eigen::MatrixXd basis_of(const Eigen::MatrixXd& a) {
 
 Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u, double rate,
                  const Linearization& base, const Eigen::MatrixXd& basis) {
-  Scales s{INFINITY, -INFINITY, 0.0, INFINITY, -INFINITY, INFINITY, -INFINITY, 0.0, {}};
+  Scales s{INFINITY, -INFINITY, 0.0, INFINITY, -INFINITY, INFINITY, -INFINITY, 0.0, {}, {}};
   Eigen::Index row = 0;
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     const Recording& recording = job.recordings[r];
@@ -58,10 +58,13 @@ Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::Vecto
                                           static_cast<double>(recording.times.size() - 1));
     const Eigen::Index rows = RecordingCost(job, space, r, coupling).num_residuals();
     constexpr std::size_t kPeriods = 3;
-    for (const double period :
-         periods_in(job, recording, prediction, coupling, base.residuals.segment(row, rows),
-                    basis.middleRows(row, rows), kPeriods))
-      s.periods.push_back(period);
+    for (const bool of_drive : {false, true}) {
+      auto& periods = of_drive ? s.drive_periods : s.periods;
+      for (const double period :
+           periods_in(recording, prediction, coupling, base.residuals.segment(row, rows),
+                      basis.middleRows(row, rows), kPeriods, of_drive))
+        periods.push_back(period);
+    }
     row += rows;
   }
   s.speed = std::max(std::abs(s.velocity_low), std::abs(s.velocity_high));
@@ -106,8 +109,14 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
     const Job extended = with_candidate(fixed, shaped, {}, neutral, score.shapes);
     const ParameterSpace strengths(extended);
     const Eigen::VectorXd u = strengths.internal(neutral);
-    const Linearization d = linearize(extended, strengths, u, rate);
+    Linearization d = linearize(extended, strengths, u, rate);
     if (!d.finite || d.jacobian.rows() != basis.rows()) return;
+    if (candidate.probe > 0.0) {
+      const Eigen::VectorXd there = strengths.internal(std::vector{candidate.probe});
+      const Linearization probed = linearize(extended, strengths, there, rate);
+      if (!probed.finite) return;
+      d.jacobian.col(0) = (probed.residuals - d.residuals) / (there[0] - u[0]);
+    }
     const Eigen::MatrixXd columns = d.jacobian - basis * (basis.transpose() * d.jacobian);
     // What is left of a column is rounding where the free parameters do the same.
     for (Eigen::Index k = 0; k < columns.cols(); ++k)

@@ -168,10 +168,10 @@ double random_value(std::mt19937_64& generator, double lower, double upper) {
 }
 
 Rig random_rig(std::mt19937_64& generator, Drive drive, Transmission transmission,
-               unsigned long effects) {
+               const EffectSet& effects) {
   Rig rig;
-  rig.name = "rig " + std::to_string(effects);
-  rig.model.structure = {drive, transmission, EffectSet(effects)};
+  rig.name = "rig " + effects.to_string();
+  rig.model.structure = {drive, transmission, effects};
   const auto member = members(rig.model);
   for (const QuantityEntry& entry : quantity_list())
     *member[entry.index] = random_value(generator, entry.quantity.lower, entry.quantity.upper);
@@ -187,11 +187,27 @@ Rig random_rig(std::mt19937_64& generator, Drive drive, Transmission transmissio
   return rig;
 }
 
+EffectSet usable_effects(Structure structure) {
+  EffectSet usable;
+  structure.effects.set();
+  const Effects<double> effects{};
+  visit_effects(effects, [&](std::size_t index, const auto& effect) {
+    for (const QuantityEntry& entry : quantity_list())
+      if (entry.group == effect.name && is_used(entry, structure)) usable.set(index);
+  });
+  return usable;
+}
+
 TEST_F(AxisFileTest, EveryVariantSurvivesWritingDigitForDigit) {
   std::mt19937_64 generator(7);
   for (const Drive drive : {Drive::velocity_loop, Drive::current_source, Drive::force_source}) {
     for (const Transmission transmission : {Transmission::backlash, Transmission::rigid}) {
-      for (unsigned long effects = 0; effects < 1ul << kEffects; ++effects) {
+      // None, each alone, and all, of those that have a part in the axis.
+      const EffectSet all = usable_effects({drive, transmission, {}});
+      std::vector<EffectSet> sets{{}, all};
+      for (std::size_t i = 0; i < kEffects; ++i)
+        if (all[i]) sets.push_back(EffectSet().set(i));
+      for (const EffectSet& effects : sets) {
         const Rig rig = random_rig(generator, drive, transmission, effects);
         const std::string text = format_axis_file(rig, "written by a test");
         SCOPED_TRACE(text);
@@ -212,6 +228,43 @@ TEST_F(AxisFileTest, ValuesOnTheirLimitsSurviveWriting) {
     rig.model.axis.J_m = std::max(rig.model.axis.J_m, std::numeric_limits<double>::min());
     expect_same(read(format_axis_file(rig, "")), rig);
   }
+}
+
+TEST_F(AxisFileTest, QuantitiesOfAnEffectMayHaveAStandardValue) {
+  const Rig rig = read(std::string(kMass) + R"(effects:
+  elastic_mode: {m_e: 1 kg, f_e: 30 Hz}
+  periodic_force: {F_s1: 2 N, F_c1: 0 N, period: 36 mm, F_c2: -1 N}
+  force_over_position: {from: -1 m, to: 2 m, c16: 3 N}
+)");
+  EXPECT_EQ(value_of(rig, "elastic_mode.zeta_e"), 0.02);
+  EXPECT_EQ(value_of(rig, "periodic_force.F_s2"), 0.0);
+  EXPECT_EQ(value_of(rig, "periodic_force.F_c2"), -1.0);
+  EXPECT_EQ(value_of(rig, "force_over_position.c1"), 0.0);
+  EXPECT_EQ(value_of(rig, "force_over_position.c16"), 3.0);
+  expect_same(read(format_axis_file(rig, "")), rig);
+  EXPECT_EQ(errors(std::string(kMass) + R"(effects:
+  elastic_mode: {m_e: 1 kg}
+  torque_droop: {c_i: 0 1/A}
+  force_over_motor_angle: {}
+)"),
+            "axis.yaml:8:17: key 'f_e' is missing in elastic_mode\n"
+            "axis.yaml:9:17: torque_droop has no part in an axis with drive force_source and "
+            "transmission rigid: remove it\n"
+            "axis.yaml:10:27: force_over_motor_angle has no part in an axis with drive "
+            "force_source and transmission rigid: remove it\n");
+}
+
+TEST_F(AxisFileTest, InstrumentsMayLagAndBeLate) {
+  const Rig rig = read(std::string(kMass) +
+                       "instruments: {velocity: {lag: 3 ms, delay: -200 us}, "
+                       "acceleration: {bias: 2 cm/s^2}}\n");
+  EXPECT_EQ(value_of(rig, "velocity.lag"), 0.003);
+  EXPECT_DOUBLE_EQ(value_of(rig, "velocity.delay"), -0.0002);
+  EXPECT_EQ(value_of(rig, "acceleration.lag"), 0.0);
+  expect_same(read(format_axis_file(rig, "")), rig);
+  EXPECT_EQ(errors(std::string(kMass) + "instruments: {velocity: {lag: -1 ms, delay: 2}}\n"),
+            "axis.yaml:7:31: lag must lie between 0 s and 1 s, not -1 ms\n"
+            "axis.yaml:7:45: delay needs a unit, for example '2 s'\n");
 }
 
 TEST_F(AxisFileTest, AnyNameAndCommentSurviveWriting) {
@@ -264,7 +317,7 @@ TEST_F(AxisFileTest, EveryMistakeIsNamedWithItsPlace) {
             "27:3: unknown key 'speed'; known keys: position, velocity, acceleration, tachometer, "
             "motor_current, V_c, V_m, drive_force"},
            {"gain: 101 %", "scale: 101 %",
-            "27:14: unknown key 'scale'; known keys: gain, bias, noise"},
+            "27:14: unknown key 'scale'; known keys: gain, bias, lag, delay, noise"},
            {"  period: 4 ms", "  perod: 4 ms", "29:3: unknown key 'perod'; did you mean 'period'?"},
            // Kinds of values.
            {"name: test axis", "name:", "1:1: name must be a text, not empty"},

@@ -172,6 +172,42 @@ TEST_F(CommandLineTest, OutputThatCannotBeWrittenIsAnError) {
   EXPECT_EQ(folder_.names(), (Names{"job.yaml", "judge.csv", "short.csv"}));
 }
 
+TEST_F(CommandLineTest, OutputThatCannotBeWrittenIsFoundBeforeTheFit) {
+  // A fit that would take hours.
+  const std::string slow = job(fit_job("{starts: 1000000}"));
+  EXPECT_EQ(fit({slow, "--output", folder_.path("job.yaml")}).exit_code, 2);
+  std::filesystem::create_directories(folder_.path("results/fitted.yaml"));
+  const Outcome outcome = fit({slow, "--output", folder_.path("results")});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(folder_.without_path(outcome.err), "results not written to results: Is a directory\n");
+}
+
+TEST_F(CommandLineTest, TheLoopIsClosedOnDemand) {
+  write_rubbing_mass(folder_);
+  const std::string results = folder_.path("results");
+  const Outcome outcome = fit({job(rubbing_job()), "--close-loop", "--json", "--output", results});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err, "");
+  const Json json = Json::parse(outcome.out);
+  EXPECT_EQ(folder_.read("results/result.json"), outcome.out);
+  EXPECT_EQ(json.at("after").at("added"), "coulomb_friction");
+  EXPECT_EQ(json.at("residual").at("explained"), true);
+  // The axis that was found rubs.
+  EXPECT_NE(folder_.read("results/fitted.yaml").find("coulomb_friction:\n    F_c: "),
+            std::string::npos);
+  EXPECT_EQ(simulate({results + "/fitted.yaml", motion()}).exit_code, 0);
+}
+
+TEST_F(CommandLineTest, NoLoopIsClosedAroundAnUnusableFit) {
+  const std::string poor = job(fit_job("{max_iterations: 1, coupling: none}"));
+  const Outcome outcome = fit({poor, "--close-loop", "--json"});
+  EXPECT_EQ(outcome.exit_code, 3);
+  const Json json = Json::parse(outcome.out);
+  EXPECT_TRUE(json.at("residual").is_null());
+  EXPECT_FALSE(json.contains("closed_loop"));
+}
+
 TEST_F(CommandLineTest, ResultsServeBothPrograms) {
   const std::string results = folder_.path("results");
   const Outcome first = fit({job(), "--output", results, "--json"});

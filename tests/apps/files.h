@@ -10,9 +10,12 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+
+#include "sim/table.h"
 
 namespace axisfit {
 
@@ -44,6 +47,13 @@ class TempFolder {
     out.close();
     if (!out) throw std::runtime_error("cannot write " + path(name));
     return path(name);
+  }
+
+  /// Writes a CSV file with so many digits, or all of them, and returns its path.
+  std::string write(const std::string& name, const Table& table, int digits = 0) const {
+    std::ostringstream out;
+    write_csv(out, table, digits);
+    return write(name, out.str());
   }
 
   std::string read(const std::string& name) const {

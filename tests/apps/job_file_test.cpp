@@ -107,10 +107,9 @@ class JobFileTest : public ::testing::Test {
   }
 
   void write_data(const std::string& name, std::vector<Column> columns) {
-    std::ofstream out(folder_.path(name));
     Table table;
     table.columns = std::move(columns);
-    write_csv(out, table);
+    folder_.write(name, table);
   }
 
   JobFile read(const std::string& text, const std::string& data_directory = {}) {
@@ -159,10 +158,11 @@ TEST_F(JobFileTest, ReadsTheShippedPaperJob) {
   EXPECT_EQ(step.initial_state, InitialState::given);
   EXPECT_TRUE(step.score_initial_samples);
   EXPECT_TRUE(step.overrides.empty());
-  ASSERT_EQ(step.times.size(), 2121u);
+  EXPECT_FALSE(step.acceleration_at_rest);
+  ASSERT_EQ(step.times.size(), 2501u);
   EXPECT_EQ(step.times.front(), 0.0);
   EXPECT_EQ(step.times[1], 0.001);
-  EXPECT_EQ(step.times.back(), 2.12);
+  EXPECT_EQ(step.times.back(), 2.5);
   EXPECT_EQ(step.command.times, (Values{0.0, 1.5}));
   EXPECT_EQ(step.command.values, (Values{10.0, 0.0}));
 
@@ -173,10 +173,14 @@ TEST_F(JobFileTest, ReadsTheShippedPaperJob) {
   EXPECT_EQ(step.measurements[1].signal, Signal::acceleration);
   EXPECT_DOUBLE_EQ(step.measurements[1].sigma, 0.05);
   for (const Measurement& m : step.measurements) {
-    EXPECT_EQ(m.values.size(), 2121u);
+    EXPECT_EQ(m.values.size(), 2501u);
     EXPECT_TRUE(m.sigma_given);
     EXPECT_TRUE(m.fitted);
   }
+  // The arm rests at the end.
+  EXPECT_TRUE(step.measurements[0].left_out.empty());
+  EXPECT_TRUE(step.measurements[1].counts(1800));
+  EXPECT_FALSE(step.measurements[1].counts(2400));
 
   const std::vector<std::pair<const char*, double>> free{
       {"V_L", 8.0}, {"B_a", 60.0}, {"b_g", 5000.0}, {"k_g", 1.5e6}, {"T_p", 0.1}};
@@ -344,6 +348,32 @@ TEST_F(JobFileTest, UnscoredInitialSamplesMustLeaveSomeToScore) {
             "job.yaml:3:5: 20 initial samples that are not scored leave nothing of 14 to score");
 }
 
+TEST_F(JobFileTest, AccelerationAtRestIsLeftOutUnlessKept) {
+  std::vector<Column> columns{{"t_ms", {}}, {"u", {}}, {"v", {}}, {"a", {}}};
+  for (int i = 0; i < 200; ++i) {
+    const bool rests = i >= 100;
+    const double row[] = {double(i), 1.0, rests ? 0.0 : 0.5, rests ? 0.2 : 1.0};
+    for (std::size_t c = 0; c < 4; ++c) columns[c].values.push_back(row[c]);
+  }
+  write_data("data.csv", columns);
+  const std::string text =
+      replaced(kJob, "sigma: 1 mm/s}\n",
+               "sigma: 1 mm/s}\n      acceleration: {column: a, unit: m/s^2, sigma: 1 cm/s^2}\n");
+  const auto with = [&](const std::string& value) {
+    return replaced(text, "  - file: data.csv\n",
+                    "  - file: data.csv\n    acceleration_at_rest: " + value + "\n");
+  };
+  for (const std::string& left_out : {text, with("leave_out")}) {
+    const Recording recording = read(left_out).job.recordings.front();
+    EXPECT_TRUE(recording.measurements[0].counts(150));
+    EXPECT_TRUE(recording.measurements[1].counts(50));
+    EXPECT_FALSE(recording.measurements[1].counts(150));
+  }
+  EXPECT_TRUE(read(with("keep")).job.recordings.front().measurements[1].counts(150));
+  EXPECT_EQ(errors(with("drop")),
+            "job.yaml:4:27: acceleration_at_rest must be one of leave_out, keep, not 'drop'");
+}
+
 TEST_F(JobFileTest, OverridesHoldForTheirRecording) {
   const JobFile file = read(with_lines("    set: {B_a: 1 kN s/m, velocity.bias: 3 mm/s}\n"));
   EXPECT_EQ(file.job.recordings.front().overrides,
@@ -456,10 +486,9 @@ TEST_F(JobFileTest, EffectsOfTheJobAddToThoseOfTheAxis) {
   EXPECT_EQ(errors_with("M: {}", "constant_force.F_0: {}"),
             "job.yaml:9:3: constant_force.F_0 needs the effect: add it to the axis or job, as in "
             "'effects: {constant_force: {F_0: ...}}'");
-  EXPECT_EQ(errors(std::string(kJob) + "effects: {drag: {c: 3 N}, constant_force: {}}\n"),
-            "job.yaml:10:11: unknown key 'drag'; known keys: coulomb_friction, constant_force, "
-            "quadratic_drag\n"
-            "job.yaml:10:43: key 'F_0' is missing in constant_force");
+  EXPECT_EQ(errors(std::string(kJob) + "effects: {quadratic_darg: {c: 3 N}, constant_force: {}}\n"),
+            "job.yaml:10:11: unknown key 'quadratic_darg'; did you mean 'quadratic_drag'?\n"
+            "job.yaml:10:53: key 'F_0' is missing in constant_force");
 }
 
 TEST_F(JobFileTest, ReadsEveryOptionOfTheFit) {
@@ -616,7 +645,7 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
             "9:3: there is no quantity 'coulomb_friction'; did you mean 'coulomb_friction.F_c'?"},
            {"M: {}", "friction_of_the_arm: {}",
             "9:3: there is no quantity 'friction_of_the_arm'; the axis has its parameters, "
-            "effect.parameter, signal.gain, signal.bias and initial.y0 ... initial.y6"},
+            "effect.parameter, signal.gain, bias, lag and delay, and initial.y0 ... initial.y6"},
            {"M: {}", "K_m: {}",
             "9:3: K_m has no part in this axis: its drive or transmission leaves it out"},
            {"free:\n  M: {}", "free: {}",

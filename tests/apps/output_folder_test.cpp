@@ -129,6 +129,29 @@ TEST_F(OutputFolderTest, ChangesNothingWhenTheLastFileCannotBeReplaced) {
   EXPECT_EQ(folder_.read("results/result.json"), "old");
 }
 
+TEST_F(OutputFolderTest, ACheckFailsAsWritingWouldAndLeavesNothing) {
+  const auto check = [&](const std::string& name) {
+    return folder_.without_path(error_of([&] {
+      check_folder(folder_.path(name), {"result.json", "residuals.csv"});
+    }));
+  };
+  EXPECT_EQ(check("results"), "");
+  EXPECT_EQ(check("a/b/c"), "");
+  EXPECT_EQ(folder_.names(), Names{});
+  folder_.write("file", "mine");
+  write_folder(folder_.path("results"), {{"result.json", "old"}});
+  std::filesystem::create_directories(folder_.path("taken/residuals.csv"));
+  const std::string name(300, 'x');
+  EXPECT_EQ(check("results"), "");
+  EXPECT_EQ(check("file"), "results not written to file: Not a directory");
+  EXPECT_EQ(check("file/results"), "results not written to file/results: Not a directory");
+  EXPECT_EQ(check("new/" + name), "results not written to new/" + name + ": File name too long");
+  EXPECT_EQ(check("taken"), "results not written to taken: Is a directory");
+  EXPECT_EQ(folder_.names(), (Names{"file", "results", "taken"}));
+  EXPECT_EQ(folder_.names("results"), Names{"result.json"});
+  EXPECT_EQ(folder_.names("taken"), Names{"residuals.csv"});
+}
+
 TEST_F(OutputFolderTest, WritesAFile) {
   EXPECT_EQ(error_at("step.csv"), "");
   EXPECT_EQ(folder_.read("step.csv"), "new");

@@ -1,6 +1,7 @@
 // What is told of a fit: result.json, residuals.csv and the text for a terminal.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -9,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/axis_file.h"
 #include "apps/job_file.h"
+#include "apps/outcome.h"
 #include "apps/report_text.h"
 #include "apps/result_json.h"
 #include "apps/version.h"
@@ -28,18 +31,19 @@ std::vector<std::string> keys(const Json& object) {
   return result;
 }
 
-/// A job and its fit.
-struct Fitted {
-  explicit Fitted(const std::string& job) {
+/// What was found for a job on the recordings of fit_job.h, and what is told of it.
+struct Found {
+  explicit Found(const std::string& job, bool close_the_loop = false) {
     const TempFolder folder;
     write_recordings(folder);
-    file = read_job_file(folder.write("job.yaml", job));
-    result = estimate(file.job);
-    json = result_json(file, result, 0.25);
+    write_rubbing_mass(folder);
+    outcome = find_outcome(read_job_file(folder.write("job.yaml", job)), close_the_loop);
+    json = result_json(outcome);
+    text = report_text(outcome);
   }
-  JobFile file;
-  FitResult result;
+  Outcome outcome;
   Json json;
+  std::string text;
 };
 
 /// No reader of JSON takes nan or inf, and null is only for what the documentation says may lack.
@@ -51,12 +55,25 @@ void expect_finite(const Json& value, const std::string& where) {
 }
 
 TEST(ResultTest, JsonHasItsDocumentedKeys) {
-  const Json json = Fitted(fit_job("{starts: 2, seed: 5}")).json;
+  const Json json = Found(fit_job("{starts: 2, seed: 5}")).json;
   // docs/result.md promises these to other programs.
-  EXPECT_EQ(keys(json), (std::vector<std::string>{"version", "status", "usable", "verdict",
-                                                  "message", "axis", "recordings", "parameters",
-                                                  "reduced_chi_square", "coupling_rate", "stages",
-                                                  "starts", "iterations", "seed", "wall_time_s"}));
+  EXPECT_EQ(keys(json),
+            (std::vector<std::string>{"version", "status", "usable", "verdict", "message", "axis",
+                                      "recordings", "parameters", "reduced_chi_square", "residual",
+                                      "coupling_rate", "stages", "starts", "iterations", "seed",
+                                      "wall_time_s"}));
+  EXPECT_EQ(keys(json.at("residual")),
+            (std::vector<std::string>{"explained", "tests", "suspects", "missing_force"}));
+  ASSERT_EQ(json.at("residual").at("tests").size(), 2u);
+  for (const Json& test : json.at("residual").at("tests"))
+    EXPECT_EQ(keys(test),
+              (std::vector<std::string>{"recording", "signal", "role", "reduced_chi_square",
+                                        "autocorrelation_time", "unexplained_percent", "explained",
+                                        "dependences"}));
+  ASSERT_EQ(json.at("residual").at("missing_force").size(), 2u);
+  for (const Json& force : json.at("residual").at("missing_force"))
+    EXPECT_EQ(keys(force), (std::vector<std::string>{"recording", "rms_n", "noise_n", "cutoff_hz",
+                                                     "drive_rms_n"}));
   for (const Json& recording : json.at("recordings")) {
     EXPECT_EQ(keys(recording), (std::vector<std::string>{"name", "file", "role", "samples",
                                                          "start_s", "end_s", "events", "signals"}));
@@ -68,27 +85,28 @@ TEST(ResultTest, JsonHasItsDocumentedKeys) {
   for (const Json& parameter : json.at("parameters"))
     EXPECT_EQ(keys(parameter),
               (std::vector<std::string>{"name", "unit", "meaning", "value", "determined",
-                                        "standard_error", "confidence_interval", "initial", "lower",
-                                        "upper", "scale", "at_bound"}));
+                                        "standard_error", "confidence_interval", "at_bound",
+                                        "initial", "lower", "upper", "scale"}));
   expect_finite(json, "");
 }
 
 TEST(ResultTest, JsonSaysWhatTheFitFound) {
-  const Fitted fit(fit_job("{starts: 2, seed: 5}"));
+  const Found fit(fit_job("{starts: 2, seed: 5}"));
   const Json& json = fit.json;
   EXPECT_EQ(json.at("status"), "converged");
   EXPECT_EQ(json.at("usable"), true);
-  EXPECT_EQ(json.at("verdict"), fit.result.verdict);
+  EXPECT_EQ(json.at("verdict"), fit.outcome.first.verdict);
   EXPECT_EQ(json.at("axis"), "x axis of the Automatix AID 600");
   EXPECT_EQ(json.at("version"), kVersion);
   EXPECT_EQ(json.at("seed"), 5);
-  EXPECT_EQ(json.at("wall_time_s"), 0.25);
-  EXPECT_EQ(json.at("iterations"), fit.result.iterations);
-  EXPECT_GT(fit.result.iterations, 0);
-  EXPECT_EQ(json.at("reduced_chi_square"), fit.result.reduced_chi_square);
+  EXPECT_EQ(json.at("wall_time_s"), fit.outcome.wall_time);
+  EXPECT_GT(fit.outcome.wall_time, 0.0);
+  EXPECT_EQ(json.at("iterations"), fit.outcome.first.iterations);
+  EXPECT_GT(fit.outcome.first.iterations, 0);
+  EXPECT_EQ(json.at("reduced_chi_square"), fit.outcome.first.reduced_chi_square);
   EXPECT_EQ(json.at("coupling_rate"), 0.0);
   EXPECT_EQ(json.at("starts").size(), 2u);
-  EXPECT_EQ(json.at("stages").size(), fit.result.stages.size());
+  EXPECT_EQ(json.at("stages").size(), fit.outcome.first.stages.size());
 
   ASSERT_EQ(json.at("recordings").size(), 2u);
   const Json& first = json.at("recordings")[0];
@@ -101,7 +119,7 @@ TEST(ResultTest, JsonSaysWhatTheFitFound) {
   EXPECT_EQ(json.at("recordings")[1].at("role"), "validate");
   ASSERT_EQ(first.at("signals").size(), 2u);
   const Json& velocity = first.at("signals")[0];
-  const SignalError& error = fit.result.recordings[0].signals[0];
+  const SignalError& error = fit.outcome.first.recordings[0].signals[0];
   EXPECT_EQ(velocity.at("name"), "velocity");
   EXPECT_EQ(velocity.at("unit"), "m/s");
   EXPECT_EQ(velocity.at("fitted"), true);
@@ -115,7 +133,7 @@ TEST(ResultTest, JsonSaysWhatTheFitFound) {
 
   ASSERT_EQ(json.at("parameters").size(), 2u);
   const Json& damping = json.at("parameters")[0];
-  const ParameterResult& found = fit.result.parameters[0];
+  const ParameterResult& found = fit.outcome.first.parameters[0];
   EXPECT_EQ(damping.at("name"), "B_a");
   EXPECT_EQ(damping.at("unit"), "N s/m");
   EXPECT_EQ(damping.at("value"), found.value);
@@ -129,39 +147,39 @@ TEST(ResultTest, JsonSaysWhatTheFitFound) {
   EXPECT_EQ(damping.at("at_bound"), false);
   // The truth, by which the recording was made.
   EXPECT_NEAR(found.value, 200.0, 5.0 * found.uncertainty.standard_error);
-  EXPECT_NEAR(fit.result.parameters[1].value, 2.7,
-              5.0 * fit.result.parameters[1].uncertainty.standard_error);
+  EXPECT_NEAR(fit.outcome.first.parameters[1].value, 2.7,
+              5.0 * fit.outcome.first.parameters[1].uncertainty.standard_error);
 }
 
 TEST(ResultTest, AParameterAtItsBoundHasNoStandardError) {
-  const Fitted fit(replaced(fit_job(), "{initial: 100 N s/m}",
-                            "{initial: 100 N s/m, bounds: [1 N s/m, 120 N s/m]}"));
+  const Found fit(replaced(fit_job(), "{initial: 100 N s/m}",
+                           "{initial: 100 N s/m, bounds: [1 N s/m, 120 N s/m]}"));
   const Json& damping = fit.json.at("parameters")[0];
   EXPECT_EQ(damping.at("at_bound"), true);
   EXPECT_DOUBLE_EQ(damping.at("value"), 120.0);
   EXPECT_TRUE(damping.at("standard_error").is_null());
   EXPECT_TRUE(damping.at("confidence_interval").is_null());
-  EXPECT_NE(report_text(fit.file, fit.result).find("at bound"), std::string::npos);
+  EXPECT_NE(fit.text.find("at bound"), std::string::npos);
 }
 
 TEST(ResultTest, AFixedCouplingAlsoTellsThePredictionError) {
-  const Fitted fit(fit_job("{coupling: {fixed: 100 1/s}}"));
+  const Found fit(fit_job("{coupling: {fixed: 100 1/s}}"));
   const Json& velocity = fit.json.at("recordings")[0].at("signals")[0];
   EXPECT_EQ(velocity.at("prediction_rmse"),
-            fit.result.recordings[0].signals[0].prediction_rmse.value());
+            fit.outcome.first.recordings[0].signals[0].prediction_rmse.value());
   EXPECT_TRUE(velocity.contains("prediction_reduced_chi_square"));
   EXPECT_EQ(fit.json.at("coupling_rate"), 100.0);
-  EXPECT_NE(report_text(fit.file, fit.result).find("predicted rmse"), std::string::npos);
+  EXPECT_NE(fit.text.find("predicted rmse"), std::string::npos);
 }
 
 TEST(ResultTest, ReportHasEveryFreeParameterAndTheVerdict) {
-  const Fitted fit(fit_job());
-  const std::string text = report_text(fit.file, fit.result);
+  const Found fit(fit_job());
+  const std::string& text = fit.text;
   for (const char* part : {"B_a  arm viscous friction", "V_L  preamplifier limit", "N s/m", "short",
                            "judge", "validate", "compare", "motor_current", "151 samples",
                            "* estimated from differences of the samples"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
-  EXPECT_TRUE(text.ends_with("\n" + fit.result.verdict + "\n"));
+  EXPECT_NE(text.find("\n" + fit.outcome.first.verdict + "\n"), std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -196,8 +214,8 @@ struct Csv {
 };
 
 TEST(ResultTest, ResidualsAreMeasuredMinusSimulated) {
-  const Fitted fit(fit_job());
-  const Csv csv(residuals_csv(fit.file.job, fit.result));
+  const Found fit(fit_job());
+  const Csv csv(residuals_csv(fit.outcome.file.job, fit.outcome.first));
   ASSERT_EQ(csv.header, (std::vector<std::string>{
                             "recording", "time_s", "velocity_measured", "velocity_simulated",
                             "velocity_residual", "motor_current_measured",
@@ -209,8 +227,8 @@ TEST(ResultTest, ResidualsAreMeasuredMinusSimulated) {
     ASSERT_EQ(row.size(), csv.header.size());
     const std::size_t recording = i / 151, sample = i % 151;
     EXPECT_EQ(row[0], static_cast<double>(recording + 1));
-    EXPECT_EQ(row[1], fit.file.job.recordings[recording].times[sample]);
-    EXPECT_EQ(row[2], fit.file.job.recordings[recording].measurements[0].values[sample]);
+    EXPECT_EQ(row[1], fit.outcome.file.job.recordings[recording].times[sample]);
+    EXPECT_EQ(row[2], fit.outcome.file.job.recordings[recording].measurements[0].values[sample]);
     EXPECT_NEAR(row[4], row[2] - row[3], 1e-8);
     squares[recording][0] += row[4] * row[4];
     if (recording == 0) {
@@ -221,7 +239,7 @@ TEST(ResultTest, ResidualsAreMeasuredMinusSimulated) {
     }
   }
   const auto rmse = [&](std::size_t recording, std::size_t signal) {
-    return fit.result.recordings[recording].signals[signal].rmse;
+    return fit.outcome.first.recordings[recording].signals[signal].rmse;
   };
   EXPECT_NEAR(std::sqrt(squares[0][0] / 151.0) / rmse(0, 0), 1.0, 1e-6);
   EXPECT_NEAR(std::sqrt(squares[0][1] / 151.0) / rmse(0, 1), 1.0, 1e-6);
@@ -234,18 +252,209 @@ TEST(ResultTest, ARecordingThatCannotBeSimulatedHasNoErrors) {
   write_recordings(folder);
   JobFile file = read_job_file(folder.write("job.yaml", fit_job("{max_iterations: 1}")));
   file.job.model.axis.J_m = 0.0;
-  const FitResult result = estimate(file.job);
-  EXPECT_EQ(result.status, Status::failed);
-  EXPECT_FALSE(result.usable);
-  const Json json = result_json(file, result, 0.0);
+  const Outcome outcome = find_outcome(std::move(file), true);
+  EXPECT_EQ(outcome.first.status, Status::failed);
+  EXPECT_FALSE(outcome.first.usable);
+  EXPECT_FALSE(outcome.loop.has_value());
+  const Json json = result_json(outcome);
   EXPECT_EQ(json.at("status"), "failed");
   EXPECT_TRUE(json.at("recordings")[0].at("signals")[0].at("rmse").is_null());
+  EXPECT_TRUE(json.at("residual").is_null());
+  EXPECT_FALSE(json.contains("closed_loop"));
   EXPECT_EQ(json.dump().find("nan"), std::string::npos);
   EXPECT_EQ(json.dump().find("inf"), std::string::npos);
-  const Csv csv(residuals_csv(file.job, result));
+  const Csv csv(residuals_csv(outcome.job(), outcome.fit()));
   EXPECT_EQ(csv.rows.size(), 302u);
-  EXPECT_NE(report_text(file, result).find(" - "), std::string::npos);
-  EXPECT_EQ(report_text(file, result).find("nan"), std::string::npos);
+  const std::string text = report_text(outcome);
+  EXPECT_NE(text.find(" - "), std::string::npos);
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+  EXPECT_TRUE(text.ends_with("\n" + outcome.first.verdict + "\n"));
+}
+
+/// The lines of a text that are not the table of parameters or the verdict of the fit.
+void expect_narrow(const std::string& text) {
+  std::istringstream lines(text);
+  bool parameters = false;
+  for (std::string line; std::getline(lines, line);) {
+    parameters = line == "Parameters" || (parameters && !line.empty());
+    const bool may_be_long = parameters || line.starts_with("Usable fit");
+    EXPECT_TRUE(may_be_long || line.size() <= 80) << line;
+  }
+}
+
+TEST(ResultTest, AnExplainedResidualIsSaidToBe) {
+  const Found fit(fit_job());
+  EXPECT_EQ(fit.json.at("residual").at("explained"), true);
+  EXPECT_EQ(fit.json.at("residual").at("suspects"), Json::array());
+  EXPECT_EQ(fit.text.find("Suspects"), std::string::npos);
+  EXPECT_NE(fit.text.find("\nWhat was not fitted is explained down to the noise, too. "),
+            std::string::npos);
+  expect_narrow(fit.text);
+}
+
+TEST(ResultTest, AResidualThatIsNotExplainedNamesItsSuspects) {
+  const Found fit(rubbing_job());
+  const Json& residual = fit.json.at("residual");
+  EXPECT_EQ(residual.at("explained"), false);
+  ASSERT_EQ(residual.at("tests").size(), 2u);
+  const Json& test = residual.at("tests")[1];
+  EXPECT_EQ(test.at("recording"), "judged");
+  EXPECT_EQ(test.at("signal"), "velocity");
+  EXPECT_EQ(test.at("role"), "validate");
+  EXPECT_EQ(test.at("explained"), false);
+  EXPECT_GT(test.at("unexplained_percent"), 90.0);
+  ASSERT_GE(residual.at("suspects").size(), 1u);
+  for (const Json& suspect : residual.at("suspects"))
+    EXPECT_EQ(keys(suspect), (std::vector<std::string>{"name", "slot", "meaning", "share",
+                                                       "strengths", "shapes"}));
+  const auto rubbing = std::ranges::find_if(residual.at("suspects"), [](const Json& suspect) {
+    return suspect.at("name") == "coulomb_friction";
+  });
+  ASSERT_NE(rubbing, residual.at("suspects").end());
+  EXPECT_EQ(rubbing->at("slot"), "friction");
+  EXPECT_EQ(keys(rubbing->at("strengths")[0]), (std::vector<std::string>{"name", "unit", "value"}));
+  EXPECT_EQ(rubbing->at("strengths")[0].at("name"), "coulomb_friction.F_c");
+  EXPECT_GT(rubbing->at("strengths")[0].at("value"), 0.5);
+  for (const char* part : {"\nSuspects", "\n  coulomb_friction ", "\nUnexplained: up to ",
+                           "\nMissing force", "at rest are left out"})
+    EXPECT_NE(fit.text.find(part), std::string::npos) << part << " in\n" << fit.text;
+  expect_narrow(fit.text);
+}
+
+TEST(ResultTest, WhatAResidualDependsOnIsNamed) {
+  Found fit(rubbing_job());
+  SeriesTest& test = fit.outcome.diagnosis->tests[1];
+  test.dependences = {{"motor angle", 0.25, 1e-9}, {"load", 0.125, 1e-5}};
+  const Json dependences = result_json(fit.outcome).at("residual").at("tests")[1].at("dependences");
+  ASSERT_EQ(dependences.size(), 2u);
+  EXPECT_EQ(dependences[0], (Json{{"on", "motor angle"}, {"share", 0.25}, {"p_value", 1e-9}}));
+  EXPECT_NE(report_text(fit.outcome).find(" %  motor angle 25 %, load 12 %\n"), std::string::npos);
+  fit.outcome.diagnosis->explained = true;
+  std::string text = report_text(fit.outcome);
+  std::ranges::replace(text, '\n', ' ');
+  EXPECT_NE(
+      text.find("A trace is left that depends on load, motor angle: at most 25 % of the mean "),
+      std::string::npos);
+}
+
+TEST(ResultTest, SamplesAtRestAreCounted) {
+  const Found fit(rubbing_job());
+  const Json& acceleration = fit.json.at("recordings")[0].at("signals")[1];
+  EXPECT_GT(acceleration.at("left_out"), 80);
+  EXPECT_NEAR(acceleration.at("mean_left_out"), 0.0, 0.03);
+  EXPECT_FALSE(fit.json.at("recordings")[0].at("signals")[0].contains("left_out"));
+  const Measurement biased{Signal::acceleration, {1.0, 0.2, 0.2}, 0.05, true, true,
+                           {false, true, true}};
+  ASSERT_TRUE(left_out(biased).has_value());
+  EXPECT_EQ(left_out(biased)->samples, 2u);
+  EXPECT_DOUBLE_EQ(left_out(biased)->mean, 0.2);
+  EXPECT_FALSE(left_out(biased)->is_noise);
+}
+
+TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
+  const Found found(rubbing_job(), true);
+  const Json& json = found.json;
+  EXPECT_EQ(keys(json),
+            (std::vector<std::string>{"version",       "status",     "usable",
+                                      "verdict",       "message",    "axis",
+                                      "recordings",    "parameters", "reduced_chi_square",
+                                      "residual",      "effects",    "before",
+                                      "after",         "models",     "closed_loop",
+                                      "coupling_rate", "stages",     "starts",
+                                      "iterations",    "seed",       "wall_time_s"}));
+  EXPECT_EQ(keys(json.at("closed_loop")),
+            (std::vector<std::string>{"verdict", "explained", "held_out_blocks", "hints"}));
+  EXPECT_EQ(json.at("closed_loop").at("explained"), true);
+  EXPECT_EQ(json.at("closed_loop").at("held_out_blocks"), false);
+  int accepted = 0;
+  for (const Json& effect : json.at("effects")) {
+    EXPECT_EQ(keys(effect),
+              (std::vector<std::string>{"name", "slot", "meaning", "decision", "accepted", "reason",
+                                        "round", "score", "parameters", "p_value",
+                                        "validate_improvement_percent"}));
+    EXPECT_EQ(effect.at("accepted"), effect.at("decision") == "accepted");
+    EXPECT_NE(effect.at("reason"), "");
+    if (!effect.at("accepted").get<bool>()) continue;
+    ++accepted;
+    EXPECT_EQ(effect.at("name"), "coulomb_friction");
+    EXPECT_EQ(effect.at("parameters")[0].at("name"), "coulomb_friction.F_c");
+    EXPECT_NEAR(effect.at("parameters")[0].at("value"), 6.0, 0.1);
+    EXPECT_LT(effect.at("p_value"), 1e-3);
+    EXPECT_GT(effect.at("validate_improvement_percent"), 50.0);
+  }
+  EXPECT_EQ(accepted, 1);
+
+  ASSERT_EQ(json.at("models").size(), 1u);
+  EXPECT_EQ(json.at("models")[0], json.at("after"));
+  EXPECT_EQ(json.at("before").at("added"), "");
+  EXPECT_EQ(json.at("after").at("added"), "coulomb_friction");
+  for (const char* model : {"before", "after"}) {
+    EXPECT_EQ(keys(json.at(model)), (std::vector<std::string>{"added", "reduced_chi_square",
+                                                              "recordings", "parameters"}));
+    for (const Json& recording : json.at(model).at("recordings")) {
+      EXPECT_EQ(keys(recording),
+                (std::vector<std::string>{"name", "role", "signals", "missing_force"}));
+      EXPECT_EQ(keys(recording.at("missing_force")),
+                (std::vector<std::string>{"rms_n", "noise_n", "cutoff_hz", "drive_rms_n"}));
+      ASSERT_EQ(recording.at("signals").size(), 1u);
+      for (const Json& signal : recording.at("signals"))
+        EXPECT_EQ(keys(signal), (std::vector<std::string>{"name", "unit", "role", "rmse",
+                                                          "nrmse_percent", "reduced_chi_square"}));
+    }
+    for (const Json& parameter : json.at(model).at("parameters"))
+      EXPECT_EQ(keys(parameter),
+                (std::vector<std::string>{"name", "unit", "meaning", "value", "determined",
+                                          "standard_error", "confidence_interval", "at_bound"}));
+  }
+  EXPECT_GT(json.at("before").at("reduced_chi_square"), 10.0);
+  EXPECT_LT(json.at("after").at("reduced_chi_square"), 1.5);
+  // What stands at the top is the final model's, which is fitted once more.
+  EXPECT_NEAR(json.at("reduced_chi_square"), json.at("after").at("reduced_chi_square"), 1e-4);
+  ASSERT_EQ(json.at("parameters").size(), 3u);
+  EXPECT_EQ(json.at("parameters")[0].at("initial"), 10.0);
+  EXPECT_EQ(json.at("parameters")[2].at("name"), "coulomb_friction.F_c");
+  for (std::size_t r = 0; r < 2; ++r)
+    EXPECT_NEAR(json.at("recordings")[r].at("signals")[0].at("rmse"),
+                json.at("after").at("recordings")[r].at("signals")[0].at("rmse"), 1e-6);
+  expect_finite(json, "");
+
+  for (const char* part :
+       {"  declared  unit\n", "\n  accepted  coulomb_friction  F_c = ", "\n  refused ",
+        "\n  judged, validate: velocity\n    declared ", "\n    + coulomb_friction ",
+        "Missing force on the arm, before and after"})
+    EXPECT_NE(found.text.find(part), std::string::npos) << part << " in\n" << found.text;
+  expect_narrow(found.text);
+
+  // residuals.csv and fitted.yaml are of the final model.
+  const Csv csv(residuals_csv(found.outcome.job(), found.outcome.fit()));
+  double squares = 0.0;
+  for (std::size_t i = 0; i < 501; ++i) squares += csv.rows[i][4] * csv.rows[i][4];
+  EXPECT_NEAR(std::sqrt(squares / 501.0) /
+                  json.at("recordings")[0].at("signals")[0].at("rmse").get<double>(),
+              1.0, 1e-5);
+  const TempFolder folder;
+  Rig fitted = found.outcome.file.rig;
+  fitted.model = fitted_model(found.outcome.job(), found.outcome.fit());
+  Diagnostics diagnostics;
+  const auto again =
+      read_axis_file(folder.write("fitted.yaml", format_axis_file(fitted, "")), diagnostics);
+  ASSERT_TRUE(again.has_value());
+  Model<double> model = again->model;
+  EXPECT_EQ(model.structure.effects, fitted.model.structure.effects);
+  EXPECT_EQ(*members(model)[find_quantity("coulomb_friction.F_c")->index],
+            json.at("parameters")[2].at("value").get<double>());
+}
+
+TEST(ResultTest, BlocksHeldOutAreScoredApart) {
+  const Found found(rubbing_job(false), true);
+  EXPECT_EQ(found.json.at("closed_loop").at("held_out_blocks"), true);
+  const Json& signals = found.json.at("after").at("recordings")[0].at("signals");
+  ASSERT_EQ(signals.size(), 2u);
+  std::set<std::string> roles;
+  for (const Json& s : signals) roles.insert(s.at("role").get<std::string>());
+  EXPECT_EQ(roles, (std::set<std::string>{"fit", "held_out"}));
+  EXPECT_NE(found.text.find("fitted, held_out: velocity"), std::string::npos);
+  EXPECT_NE(found.text.find("No recording has the role validate"), std::string::npos);
 }
 
 }  // namespace

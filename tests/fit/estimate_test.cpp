@@ -14,7 +14,7 @@ namespace {
 Job example_job() {
   Job job;
   job.model = paper_axis();
-  job.recordings = {recorded_step(job.model, 2e-3, 0.05)};
+  job.recordings = {recorded_step(job.model)};
   job.free = {free_parameter("V_L", 8.0), free_parameter("k_g", 1.5e6)};
   return job;
 }
@@ -88,7 +88,7 @@ TEST(Estimate, SharesParametersAndKeepsOthersPerRecording) {
   Job job = example_job();
   Model<double> loaded = job.model;
   loaded.axis.M = 161.0;
-  Recording second = recorded_step(loaded, 2e-3, 0.05, 3);
+  Recording second = recorded_step(loaded, 3);
   second.name = "loaded";
   job.recordings.push_back(second);
   job.free[1] = free_parameter("M", 130.0);
@@ -107,7 +107,7 @@ TEST(Estimate, SharesParametersAndKeepsOthersPerRecording) {
 
 TEST(Estimate, JudgesValidationRecordingsThatItDidNotFit) {
   Job job = example_job();
-  Recording held_out = recorded_step(job.model, 2e-3, 0.05, 5);
+  Recording held_out = recorded_step(job.model, 5);
   held_out.name = "held out";
   held_out.role = Role::validate;
   job.recordings.push_back(held_out);

@@ -1,32 +1,99 @@
-// A small job with a known truth, for the tests of the fit.
+// Small jobs with a known truth, for the tests of the fit.
 #pragma once
 
-#include "fit/job.h"
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fit/estimate.h"
 #include "sim/rig.h"
 #include "tests/sim/axes.h"
 
 namespace axisfit {
 
-/// The paper's x axis, recorded for 0.7 s by a rig with the given noise (velocity m/s, acceleration
-/// m/s^2): a 10 V step with the gear ringing at its end.
-inline Recording recorded_step(const Model<double>& truth, double velocity_noise,
-                               double acceleration_noise, std::uint64_t seed = 2) {
+/// Standard deviation of the noise of an instrument in these tests, in the signal's unit.
+constexpr double usual_noise(Signal signal) {
+  switch (signal) {
+    case Signal::position:
+      return 1e-4;
+    case Signal::velocity:
+      return 2e-3;
+    case Signal::tachometer:
+      return 2e-2;
+    default:
+      return 5e-2;
+  }
+}
+
+/// What instruments with the usual noise record of an axis. `noisy` false: exact readings, whose
+/// errors are still stated as the usual ones.
+inline Recording recorded(const Model<double>& truth, const Motion& motion, double duration,
+                          std::uint64_t seed,
+                          const std::vector<Signal>& signals = {Signal::velocity,
+                                                                Signal::acceleration},
+                          bool noisy = true) {
   Rig rig;
   rig.model = truth;
-  rig.noise[index_of(Signal::velocity)] = velocity_noise;
-  rig.noise[index_of(Signal::acceleration)] = acceleration_noise;
+  rig.controller.counts_per_revolution = 0.0;
+  for (const Signal signal : signals) rig.noise[index_of(signal)] = usual_noise(signal);
   RecordingOptions options;
-  options.duration = 0.7;
+  options.duration = duration;
   options.seed = seed;
-  options.signals = {Signal::velocity, Signal::acceleration};
-  const Table table = record(rig, StepMotion{10.0, 0.0}, options);
+  options.signals = signals;
+  options.noise = noisy;
+  const Table table = record(rig, motion, options);
   Recording recording;
-  recording.name = "step";
+  recording.name = "fit";
   recording.times = table.columns[0].values;
   recording.command = schedule_from_samples(recording.times, table.columns[1].values);
-  recording.measurements = {{Signal::velocity, table.columns[2].values, 2e-3, true, true},
-                            {Signal::acceleration, table.columns[3].values, 0.05, true, true}};
+  for (std::size_t s = 0; s < signals.size(); ++s) {
+    Measurement& m = recording.measurements.emplace_back();
+    m.signal = signals[s];
+    m.values = table.columns[2 + s].values;
+    m.sigma = usual_noise(signals[s]);
+    m.sigma_given = true;
+  }
   return recording;
+}
+
+/// The paper's x axis in 0.7 s of a 10 V step, with the gear ringing at its end.
+inline Recording recorded_step(const Model<double>& truth, std::uint64_t seed = 2,
+                               bool noisy = true) {
+  Recording recording = recorded(truth, StepMotion{10.0, 0.0}, 0.7, seed,
+                                 {Signal::velocity, Signal::acceleration}, noisy);
+  recording.name = "step";
+  return recording;
+}
+
+/// A slide with a linear motor: a force of 40 N per volt on 20 kg, hardly any friction. Quick to
+/// simulate, and every effect of the arm stands out.
+inline Model<double> slide() {
+  Model<double> model = driven_mass(20.0);
+  model.axis.K_f = 40.0;
+  model.axis.B_a = 30.0;
+  return model;
+}
+
+/// The paper's axis without its gear, with an ideal power stage that is rarely at its limit.
+inline Model<double> motor_axis() {
+  Model<double> model = paper_axis();
+  model.structure.drive = Drive::current_source;
+  model.structure.transmission = Transmission::rigid;
+  model.axis.V_L = 8.0;
+  return model;
+}
+
+/// Two motions of 1.2 s to and fro, at several levels, that differ.
+inline Motion fit_motion(double volts = 6.0) {
+  return LevelsMotion{{volts, -volts, -0.7 * volts, volts, 0.3 * volts, -0.5 * volts}, 0.2};
+}
+inline Motion validate_motion(double volts = 6.0) {
+  return LevelsMotion{
+      {-0.8 * volts, 0.9 * volts, 0.4 * volts, -volts, -0.3 * volts, 0.6 * volts, volts}, 0.175};
 }
 
 /// Frees a quantity on a logarithmic scale from `initial`.
@@ -38,5 +105,62 @@ inline FreeParameter free_parameter(const char* name, double initial) {
   p.upper = initial * 100.0;
   return p;
 }
+
+/// A job with one recording to fit and one to validate of `truth`, by somebody who takes it for
+/// `declared`. The free parameters start at the values of the latter.
+inline Job two_recordings(const Model<double>& truth, const Model<double>& declared,
+                          const std::vector<const char*>& free, double volts = 6.0,
+                          const std::vector<Signal>& signals = {Signal::velocity,
+                                                                Signal::acceleration},
+                          std::uint64_t seed = 1) {
+  Job job;
+  job.model = declared;
+  job.options.threads = 1;
+  job.recordings = {recorded(truth, fit_motion(volts), 1.2, 2 * seed, signals),
+                    recorded(truth, validate_motion(volts), 1.2, 2 * seed + 1, signals)};
+  job.recordings[1].name = "validate";
+  job.recordings[1].role = Role::validate;
+  Model<double> values = declared;
+  for (const char* name : free)
+    job.free.push_back(free_parameter(name, *members(values)[find_quantity(name)->index]));
+  return job;
+}
+
+/// What a fit that ends at the initial values hands over, without their uncertainties.
+inline FitResult result_at_start(const Job& job) {
+  const ParameterSpace space(job);
+  FitResult result;
+  result.usable = true;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    values.push_back(job.free[i].initial);
+    result.parameters.push_back({space.name(i), job.free[i].initial, {}});
+  }
+  const Eigen::VectorXd u = space.internal(values);
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    result.recordings.emplace_back();
+    result.recordings.back().prediction = predict(job, space, r, u.data(), {});
+  }
+  return result;
+}
+
+/// White normal noise of unit variance, the same on every machine.
+class Normal {
+ public:
+  explicit Normal(std::uint64_t seed) : generator_(seed) {}
+  double operator()() {
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
+    return radius * std::cos(2.0 * std::numbers::pi * uniform());
+  }
+  std::vector<double> values(std::size_t n) {
+    std::vector<double> list(n);
+    for (double& x : list) x = (*this)();
+    return list;
+  }
+
+ private:
+  double uniform() { return std::ldexp(static_cast<double>(generator_() >> 11), -53); }
+  std::mt19937_64 generator_;
+};
 
 }  // namespace axisfit

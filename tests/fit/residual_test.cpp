@@ -27,7 +27,7 @@ Evaluated evaluate(const RecordingCost& cost, const Eigen::VectorXd& u) {
 Job example_job() {
   Job job;
   job.model = paper_axis();
-  job.recordings = {recorded_step(job.model, 2e-3, 0.05)};
+  job.recordings = {recorded_step(job.model)};
   job.free = {free_parameter("V_L", 2.7), free_parameter("B_a", 200.0),
               free_parameter("b_g", 1500.0), free_parameter("k_g", 5e6),
               free_parameter("T_p", 0.04)};
@@ -139,9 +139,9 @@ TEST(RecordingCost, HuberCountsOutliersLinearly) {
 TEST(CouplingFor, TakesVelocityThenPosition) {
   Recording recording;
   EXPECT_FALSE(coupling_for(recording, 100.0).active());
-  recording.measurements.push_back({Signal::position, {}, 1.0, true, true});
+  recording.measurements.push_back({Signal::position, {}, 1.0, true, true, {}});
   EXPECT_EQ(coupling_for(recording, 100.0).acceleration, 1e4);
-  recording.measurements.push_back({Signal::velocity, {}, 1.0, true, true});
+  recording.measurements.push_back({Signal::velocity, {}, 1.0, true, true, {}});
   EXPECT_EQ(coupling_for(recording, 100.0).velocity, 100.0);
   EXPECT_EQ(coupling_for(recording, 100.0).position, 100.0);
   EXPECT_FALSE(coupling_for(recording, 0.0).active());

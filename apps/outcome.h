@@ -1,0 +1,73 @@
+// What a run of fit-params finds: the fit, what it leaves unexplained, and the models on the way to
+// explaining that. Text and JSON are made from it.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "apps/job_file.h"
+#include "fit/closing/close_loop.h"
+#include "fit/closing/diagnosis.h"
+#include "fit/estimate.h"
+
+namespace axisfit {
+
+struct SignalErrors {
+  double rmse = 0.0;           ///< in the signal's unit
+  double nrmse_percent = 0.0;  ///< of the measured range
+  double reduced_chi_square = 0.0;
+};
+
+/// The errors of one signal of one recording over the samples that were fitted, or over those that
+/// were not.
+struct SignalScore {
+  std::size_t recording = 0;
+  std::size_t measurement = 0;
+  bool fitted = false;
+  std::optional<SignalErrors> free_running;  ///< none where that did not finish
+  std::optional<SignalErrors> held;          ///< at a coupling, where the fit kept one to its end
+
+  const std::optional<SignalErrors>& judged() const { return held ? held : free_running; }
+};
+
+/// How well a model does.
+struct ModelScore {
+  std::vector<SignalScore> signals;  ///< without those that are only compared
+  std::vector<MissingForce> forces;  ///< of every recording
+};
+
+struct Outcome {
+  JobFile file;     ///< as declared
+  FitResult first;  ///< fit of the declared job
+  /// None unless it was asked for and the first fit is usable.
+  std::optional<ClosedLoop> loop;
+  std::vector<ModelScore> scores;      ///< of the loop's models
+  std::optional<Diagnosis> diagnosis;  ///< of the final model; none unless that is usable
+  double wall_time = 0.0;              ///< s
+
+  /// The final model's: the result of the loop, or else the declared one.
+  const Job& job() const { return loop ? loop->result.job : file.job; }
+  const FitResult& fit() const { return loop ? loop->result.fit : first; }
+};
+
+/// Fits the job, looks for what it lacks and, where asked, adds that.
+Outcome find_outcome(JobFile file, bool close_the_loop,
+                     const std::function<void(const Progress&)>& fitting = {},
+                     const LoopProgress& closing = {});
+
+/// Samples of a signal that do not count, since the arm rests (fit/rest.h).
+struct LeftOut {
+  std::size_t samples = 0;
+  double mean = 0.0;      ///< of what was measured there
+  bool is_noise = false;  ///< whether that mean is no further from zero than noise would be
+};
+std::optional<LeftOut> left_out(const Measurement& measurement);
+
+/// "accepted", "undecided", "refused"
+const char* decision_name(Decision decision);
+
+/// "fit", "validate" or, where a recording was fitted in part, "held_out".
+const char* role_name(const Recording& recording, bool fitted);
+
+}  // namespace axisfit

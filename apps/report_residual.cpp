@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+#include "apps/report_text.h"
+#include "apps/text_table.h"
+#include "apps/units.h"
+
+namespace axisfit {
+namespace {
+
+/// "velocity of levels"
+std::string name_of(const Job& job, const ResidualSeries& series) {
+  const Recording& r = job.recordings[series.recording];
+  return fmt::format("{} of {}", info(r.measurements[series.measurement].signal).name, r.name);
+}
+
+/// "F_s1 -3.2 N, F_c1 10.2 N, period 0.036 m"
+std::string estimate_of(const Suspect& suspect) {
+  std::vector<std::string> parts;
+  const auto add = [&](const std::vector<std::size_t>& quantities,
+                       const std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const Quantity& q = quantity_list()[quantities[i]].quantity;
+      parts.push_back(
+          fmt::format("{} {}", q.symbol, with_unit(fmt::format("{:.3g}", values[i]), q.unit)));
+    }
+  };
+  add(suspect.candidate.strengths, suspect.strengths);
+  add(suspect.candidate.shapes, suspect.shapes);
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string forces_text(const Job& job, const Diagnosis& diagnosis) {
+  std::vector<std::vector<std::string>> rows{{"", "rms", "its noise", "of drive force", "below"}};
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    rows.push_back(force_cells(job.recordings[r].name, diagnosis.forces[r]));
+  return "Missing force on the arm\n" +
+         aligned(rows, {Set::left, Set::right, Set::right, Set::right, Set::right});
+}
+
+}  // namespace
+
+std::vector<std::string> force_cells(const std::string& name, const MissingForce& force) {
+  if (!force.found) return {name, "-", "-", "-", "-"};
+  return {
+      name, fmt::format("{:.3g} N", force.rms), fmt::format("{:.2g} N", force.noise),
+      force.drive_rms > 0.0 ? fmt::format("{:.3g} %", 100.0 * force.rms / force.drive_rms) : "-",
+      fmt::format("{:.3g} Hz", force.cutoff)};
+}
+
+std::string residual_text(const Job& job, const Diagnosis& diagnosis) {
+  std::vector<std::vector<std::string>> rows{
+      {"", "", "", "unexplained", "depends on (share of the mean square)"}};
+  for (const SeriesTest& test : diagnosis.tests) {
+    const Recording& recording = job.recordings[test.series.recording];
+    std::vector<std::string> on;
+    constexpr std::size_t kNamed = 3;
+    for (const Dependence& d : test.dependences)
+      if (on.size() < kNamed) on.push_back(fmt::format("{} {:.2g} %", d.on, 100.0 * d.share));
+    rows.push_back({recording.name, role_name(recording, test.series.fitted),
+                    std::string(info(recording.measurements[test.series.measurement].signal).name),
+                    test.explained ? "noise" : fmt::format("{:.3g} %", test.unexplained_percent),
+                    fmt::format("{}", fmt::join(on, ", "))});
+  }
+  return "Residual beyond the noise, of the root mean square\n" +
+         aligned(rows, {Set::left, Set::left, Set::left, Set::right, Set::wrapped});
+}
+
+std::string suspects_text(const Job& job, const Diagnosis& diagnosis) {
+  const std::string forces = forces_text(job, diagnosis);
+  if (diagnosis.suspects.empty()) return forces;
+  std::vector<std::vector<std::string>> rows{{"", "acts on", "explains", "estimate"}};
+  for (const Suspect& s : diagnosis.suspects)
+    rows.push_back({s.candidate.name, s.candidate.slot, fmt::format("{:.2g} %", 100.0 * s.share),
+                    estimate_of(s)});
+  return forces + "\nSuspects, by the residual of the simulation held to the recordings\n" +
+         aligned(rows, {Set::left, Set::left, Set::right, Set::wrapped});
+}
+
+std::string residual_verdict(const Job& job, const Diagnosis& diagnosis) {
+  const auto& tests = diagnosis.tests;
+  if (tests.empty()) return "";
+  if (!diagnosis.explained) {
+    const auto worst = std::ranges::max_element(tests, {}, &SeriesTest::unexplained_percent);
+    std::string text = fmt::format("Unexplained: up to {:.3g} % of the residual, in the {}. ",
+                                   worst->unexplained_percent, name_of(job, worst->series));
+    if (diagnosis.suspects.empty())
+      text += "No effect that axisfit knows is a suspect.";
+    else
+      text += fmt::format("Strongest suspect: {}. To put the suspects to the test: --close-loop.",
+                          diagnosis.suspects.front().candidate.name);
+    return paragraph(text);
+  }
+  std::set<std::string> on;
+  double share = 0.0;
+  for (const SeriesTest& test : tests)
+    for (const Dependence& d : test.dependences) {
+      on.insert(d.on);
+      share = std::max(share, d.share);
+    }
+  std::string text =
+      std::ranges::any_of(tests, [](const SeriesTest& t) { return !t.series.fitted; })
+          ? "What was not fitted is explained down to the noise, too. "
+          : "";
+  text += on.empty()
+              ? "The residual depends on nothing: not on the motion, the position, the command or "
+                "the time."
+              : fmt::format(
+                    "A trace is left that depends on {}: at most {:.2g} % of the mean "
+                    "square.",
+                    fmt::join(on, ", "), 100.0 * share);
+  return paragraph(text);
+}
+
+}  // namespace axisfit

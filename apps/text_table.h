@@ -1,0 +1,27 @@
+// Text for a terminal: columns, paragraphs and numbers.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace axisfit {
+
+inline constexpr std::size_t kTextWidth = 80;  ///< characters in a line that nobody has to scroll
+
+/// How a column is set.
+enum class Set {
+  left,
+  right,
+  wrapped,  ///< left, and broken at blanks where the line would be too long; the last column only
+};
+
+/// Rows as columns, a line or more for each, all ending with '\n'.
+std::string aligned(const std::vector<std::vector<std::string>>& rows, const std::vector<Set>& set);
+
+/// A paragraph, broken at blanks, each line after `indent` blanks and ending with '\n'.
+std::string paragraph(const std::string& text, std::size_t indent = 0);
+
+/// A value with as many digits as its standard error justifies: two of the error.
+std::string with_digits_of(double value, double error);
+
+}  // namespace axisfit
