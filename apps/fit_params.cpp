@@ -110,7 +110,7 @@ int run(const Arguments& arguments) {
     fitted.model = fitted_model(outcome.job(), outcome.fit());
     const std::string comment =
         fmt::format("Fitted by axisfit {} from {}, starting from {}.\n{}", kVersion, arguments.job,
-                    outcome.file.axis_file, outcome.fit().verdict);
+                    outcome.file.axis_file, verdict_of(outcome));
     write_folder(arguments.output, {{kResultFile, json},
                                     {kAxisFile, format_axis_file(fitted, comment)},
                                     {kResidualsFile, residuals_csv(outcome.job(), outcome.fit())}});

@@ -69,6 +69,13 @@ Outcome find_outcome(JobFile file, bool close_the_loop,
   return outcome;
 }
 
+std::string verdict_of(const Outcome& outcome) {
+  const FitResult& fit = outcome.fit();
+  if (!outcome.loop) return fit.verdict;
+  // Both judge the same model by the same residual.
+  return (fit.usable ? "Usable fit." : fit.verdict) + " " + outcome.loop->verdict;
+}
+
 std::optional<LeftOut> left_out(const Measurement& measurement) {
   LeftOut rest;
   for (std::size_t i = 0; i < measurement.values.size(); ++i) {

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "apps/job_file.h"
@@ -50,6 +51,9 @@ struct Outcome {
   const Job& job() const { return loop ? loop->result.job : file.job; }
   const FitResult& fit() const { return loop ? loop->result.fit : first; }
 };
+
+/// Whether the fit can be used, and what a closed loop says of it.
+std::string verdict_of(const Outcome& outcome);
 
 /// Fits the job, looks for what it lacks and, where asked, adds that.
 Outcome find_outcome(JobFile file, bool close_the_loop,

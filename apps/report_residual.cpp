@@ -52,8 +52,7 @@ std::vector<std::string> force_cells(const std::string& name, const MissingForce
 }
 
 std::string residual_text(const Job& job, const Diagnosis& diagnosis) {
-  std::vector<std::vector<std::string>> rows{
-      {"", "", "", "unexplained", "depends on (share of the mean square)"}};
+  std::vector<std::vector<std::string>> rows{{"", "", "", "unexplained", "depends on (share)"}};
   for (const SeriesTest& test : diagnosis.tests) {
     const Recording& recording = job.recordings[test.series.recording];
     std::vector<std::string> on;
@@ -70,13 +69,15 @@ std::string residual_text(const Job& job, const Diagnosis& diagnosis) {
 }
 
 std::string suspects_text(const Job& job, const Diagnosis& diagnosis) {
-  const std::string forces = forces_text(job, diagnosis);
-  if (diagnosis.suspects.empty()) return forces;
+  const bool found = std::ranges::any_of(diagnosis.forces, &MissingForce::found);
+  std::string text = found ? forces_text(job, diagnosis) : "";
+  if (diagnosis.suspects.empty()) return text;
+  if (found) text += "\n";
   std::vector<std::vector<std::string>> rows{{"", "acts on", "explains", "estimate"}};
   for (const Suspect& s : diagnosis.suspects)
     rows.push_back({s.candidate.name, s.candidate.slot, fmt::format("{:.2g} %", 100.0 * s.share),
                     estimate_of(s)});
-  return forces + "\nSuspects, by the residual of the simulation held to the recordings\n" +
+  return text + "Suspects, by the residual of the simulation held to the recordings\n" +
          aligned(rows, {Set::left, Set::left, Set::right, Set::wrapped});
 }
 

@@ -122,20 +122,17 @@ std::string report_text(const Outcome& outcome) {
   std::string text = fmt::format("{}\n{}  Standard errors assume {}.\n\n{}\n", recordings_text(job),
                                  parameters_text(outcome), assumption,
                                  outcome.loop ? loop_text(outcome) : errors_text(job, result));
-  if (outcome.diagnosis && !outcome.diagnosis->explained)
+  if (outcome.diagnosis && !outcome.diagnosis->explained) {
     text += residual_text(job, *outcome.diagnosis) + "\n";
-  // The loop has told of the force, and has put the suspects to the test.
-  if (outcome.diagnosis && !outcome.diagnosis->explained && !outcome.loop)
-    text += suspects_text(job, *outcome.diagnosis) + "\n";
-  if (outcome.loop) {
-    // The loop's verdict is on the same model, by the same residual.
-    if (!result.usable) text += result.verdict + "\n";
-    text += paragraph((result.usable ? "Usable fit. " : "") + outcome.loop->verdict);
-    for (const std::string& hint : outcome.loop->hints) text += paragraph(hint);
-    return text;
+    // A loop has told of the force, and has put the suspects to the test.
+    const std::string suspects = outcome.loop ? "" : suspects_text(job, *outcome.diagnosis);
+    if (!suspects.empty()) text += suspects + "\n";
   }
-  text += result.verdict + "\n";
-  if (outcome.diagnosis) text += residual_verdict(job, *outcome.diagnosis);
+  text += outcome.loop ? paragraph(verdict_of(outcome)) : verdict_of(outcome) + "\n";
+  if (outcome.loop)
+    for (const std::string& hint : outcome.loop->hints) text += paragraph(hint);
+  else if (outcome.diagnosis)
+    text += residual_verdict(job, *outcome.diagnosis);
   return text;
 }
 

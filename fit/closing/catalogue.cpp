@@ -51,6 +51,8 @@ std::vector<Entry> entries(const Scales& s, double pinion_radius) {
        {"v_st"},
        geometric(0.003 * speed, 0.3 * speed, 5)},
       {"position_friction", "friction", {"G_c"}},
+      {"position_friction", "friction", {"G_q"}},
+      {"position_friction", "friction", {"G_c", "G_q"}},
       {"position_friction", "friction", {"G_b"}},
       {"load_friction", "friction", {"mu"}},
       {"dahl_friction", "friction", {"F_d"}, {"l_d"}, geometric(1e-5, 1e-2, 4)},

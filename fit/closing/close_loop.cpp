@@ -166,7 +166,9 @@ class Loop {
   }
 
   bool explained() {
-    const auto series = residual_series(current().job, current().fit);
+    auto series = residual_series(current().job, current().fit);
+    if (std::ranges::all_of(series, is_explained)) return !series.empty();
+    allow_for_parameters(current().job, current().fit, series);
     return !series.empty() && std::ranges::all_of(series, is_explained);
   }
 

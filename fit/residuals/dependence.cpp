@@ -59,7 +59,9 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
   constexpr std::size_t kRanges = 12;
   constexpr double kSignificant = 1e-3;
   std::vector<SeriesTest> tests;
-  for (ResidualSeries& series : residual_series(job, result)) {
+  std::vector<ResidualSeries> list = residual_series(job, result);
+  if (result.usable) allow_for_parameters(job, result, list);
+  for (ResidualSeries& series : list) {
     SeriesTest test;
     const double n = static_cast<double>(series.values.size());
     test.reduced_chi_square = mean_square(series.values);

@@ -1,5 +1,6 @@
 #include "fit/residuals/series.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -58,10 +59,45 @@ double autocorrelation_time(std::span<const double> values) {
   return std::max(1.0, time);
 }
 
+void allow_for_parameters(const Job& job, const FitResult& result,
+                          std::vector<ResidualSeries>& list) {
+  // The recordings to validate, as if they were to be fitted.
+  Job other = job;
+  for (Recording& r : other.recordings) r.role = r.role == Role::fit ? Role::validate : Role::fit;
+  const ParameterSpace space(job), others(other);
+  const Eigen::VectorXd u = space.internal(values_of(result));
+  const Linearization fitted = linearize(job, space, u, result.coupling_rate);
+  const Linearization judged = linearize(other, others, u, result.coupling_rate);
+  if (!fitted.finite || !judged.finite || judged.jacobian.rows() == 0) return;
+  // Columns of equal length, and what is not determined to one part in a thousand left out: an
+  // undetermined parameter must not excuse everything.
+  Eigen::VectorXd length = fitted.jacobian.colwise().norm().cwiseMax(1e-300);
+  const Eigen::MatrixXd scaled = fitted.jacobian * length.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled.transpose() * scaled);
+  Eigen::MatrixXd root = eigen.eigenvectors();
+  for (Eigen::Index k = 0; k < root.cols(); ++k)
+    root.col(k) *= eigen.eigenvalues()[k] > 1e-6 ? 1.0 / std::sqrt(eigen.eigenvalues()[k]) : 0.0;
+  const Eigen::MatrixXd shown = judged.jacobian * length.cwiseInverse().asDiagonal() * root;
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < other.recordings.size(); ++r) {
+    const Recording& recording = other.recordings[r];
+    for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
+      Eigen::Index n = 0;
+      for (std::size_t i = 0; i < recording.times.size(); ++i)
+        n += recording.fits(recording.measurements[m], i) ? 1 : 0;
+      for (ResidualSeries& series : list)
+        if (n > 0 && series.recording == r && series.measurement == m && !series.fitted)
+          series.allowance = shown.middleRows(row, n).squaredNorm() / static_cast<double>(n) *
+                             std::max(1.0, result.reduced_chi_square);
+      row += n;
+    }
+  }
+}
+
 bool is_explained(const ResidualSeries& series) {
   const double n = static_cast<double>(series.values.size());
   const double scatter = 4.0 * std::sqrt(2.0 * autocorrelation_time(series.values) / n);
-  return mean_square(series.values) < 1.0 + std::max(0.05, scatter);
+  return mean_square(series.values) < 1.0 + std::max(0.05, scatter) + 4.0 * series.allowance;
 }
 
 }  // namespace axisfit

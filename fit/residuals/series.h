@@ -14,6 +14,9 @@ struct ResidualSeries {
   bool fitted = false;               ///< whether the fit minimised it
   std::vector<std::size_t> samples;  ///< that count, in order
   std::vector<double> values;        ///< (measured - simulated) / sigma at those
+  /// What the uncertainty of the estimates alone adds to the mean square, on average; zero where
+  /// the series was fitted, and until allow_for_parameters() finds it.
+  double allowance = 0.0;
 };
 
 /// The residuals that a fit is judged by: of the simulation in the way it was fitted, free running
@@ -29,8 +32,13 @@ double mean_square(std::span<const double> values);
 /// Source: C. J. Geyer, Statistical Science 7 (1992), initial positive sequence.
 double autocorrelation_time(std::span<const double> values);
 
+/// Finds the allowances of all series that were not fitted: what the fit leaves open, another
+/// motion may show all the more.
+void allow_for_parameters(const Job& job, const FitResult& result,
+                          std::vector<ResidualSeries>& list);
+
 /// Whether a series shows no more than its noise: a mean square within 5 % of one, or within four
-/// standard errors for as many independent samples as it has.
+/// standard errors for as many independent samples as it has, the allowance four times.
 bool is_explained(const ResidualSeries& series);
 
 }  // namespace axisfit

@@ -174,8 +174,8 @@ TEST(Catalogue, OffersNothingThatTheStructureDoesNotUse) {
   Job job = job_with({Signal::velocity});
   job.model = slide();
   const auto list = catalogue(job, scales());
-  for (const char* name : {"cogging_torque", "torque_ripple", "torque_droop",
-                           "force_over_motor_angle"})
+  for (const char* name :
+       {"cogging_torque", "torque_ripple", "torque_droop", "force_over_motor_angle"})
     EXPECT_EQ(find(list, name), nullptr) << name;
   for (const char* name : {"torque_fade", "drive_lag", "command_offset", "dead_time"})
     EXPECT_NE(find(list, name), nullptr) << name;
@@ -299,8 +299,7 @@ TEST_F(WithCandidate, OfNeutralStrengthPredictsTheSameBitForBit) {
       neutral.push_back(std::isnan(standard) ? 0.0 : standard);
     }
     for (const auto& setting : c.settings) {
-      const FitResult with =
-          result_at_start(with_candidate(job_, c, values, neutral, setting));
+      const FitResult with = result_at_start(with_candidate(job_, c, values, neutral, setting));
       for (std::size_t r = 0; r < 2; ++r)
         ASSERT_EQ(with.recordings[r].prediction.simulated,
                   without.recordings[r].prediction.simulated);

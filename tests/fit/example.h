@@ -92,8 +92,8 @@ inline Motion fit_motion(double volts = 6.0) {
   return LevelsMotion{{volts, -volts, -0.7 * volts, volts, 0.3 * volts, -0.5 * volts}, 0.2};
 }
 inline Motion validate_motion(double volts = 6.0) {
-  return LevelsMotion{
-      {-0.8 * volts, 0.9 * volts, 0.4 * volts, -volts, -0.3 * volts, 0.6 * volts, volts}, 0.175};
+  return LevelsMotion{{0.8 * volts, -0.9 * volts, -0.4 * volts, volts, 0.3 * volts, -0.6 * volts},
+                      0.2};
 }
 
 /// Frees a quantity on a logarithmic scale from `initial`.

@@ -83,8 +83,8 @@ TEST(ImprovementTest, DoesNotDependOnTheStatedNoise) {
 TEST(ImprovementTest, CorrelatedResidualsCountLess) {
   // The wave is slow against five samples, so that it hardly notices.
   const auto fitted = held_for_five(noise(1)), judged = held_for_five(noise(2));
-  const Improvement gain = improvement(pair(with_wave(fitted, 1.0), with_wave(judged, 1.0)),
-                                       pair(fitted, judged));
+  const Improvement gain =
+      improvement(pair(with_wave(fitted, 1.0), with_wave(judged, 1.0)), pair(fitted, judged));
   EXPECT_NEAR(gain.samples, kSamples / 5.0, 0.25 * kSamples / 5.0);
   EXPECT_LT(gain.fit_gain, 0.3 * kSamples / 2.0);
   EXPECT_GT(gain.fit_gain, 0.08 * kSamples / 2.0);
@@ -146,8 +146,7 @@ TEST(DisadvantageTest, OfAModelThatFailsIsInfinite) {
 
 TEST(DisadvantageTest, CorrelatedResidualsCountLess) {
   const auto best = pair(held_for_five(noise(1)), held_for_five(noise(2)));
-  const auto other =
-      pair(with_wave(best[0].values, 0.5), with_wave(best[1].values, 0.5));
+  const auto other = pair(with_wave(best[0].values, 0.5), with_wave(best[1].values, 0.5));
   EXPECT_NEAR(disadvantage(best, 3, other, 3), 2.0 * kSamples / 8.0 / 5.0, 0.03 * kSamples);
 }
 

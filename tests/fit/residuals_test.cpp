@@ -175,8 +175,8 @@ class DependenceTest : public testing::Test {
  protected:
   DependenceTest() {
     job_.model = paper_axis();
-    job_.recordings = {recorded(job_.model, LevelsMotion{{8, -5, 3, -8, 2}, 0.3}, 1.5, 1,
-                                {Signal::velocity})};
+    job_.recordings = {
+        recorded(job_.model, LevelsMotion{{8, -5, 3, -8, 2}, 0.3}, 1.5, 1, {Signal::velocity})};
     result_ = result_at_start(job_);
     measurement().sigma = 1.0;
     result_.recordings[0].prediction.simulated[0].assign(size(), 0.0);
@@ -274,8 +274,7 @@ Job undeclared_friction(double friction, Signal signal, std::uint64_t seed = 1) 
   add_effect<CoulombFriction>(truth).F_c = friction;
   Job job;
   job.model = slide();
-  job.recordings = {
-      recorded(truth, LevelsMotion{{6, -6, -6, 6, 6, -6}, 0.4}, 2.4, seed, {signal})};
+  job.recordings = {recorded(truth, LevelsMotion{{6, -6, -6, 6, 6, -6}, 0.4}, 2.4, seed, {signal})};
   return job;
 }
 

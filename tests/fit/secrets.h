@@ -1,8 +1,11 @@
-// Effects that a recording holds and its job does not declare: one of every slot.
+// Effects that recordings hold and their job does not declare: of every slot at least one.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <ostream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,15 +15,21 @@ namespace axisfit {
 
 struct Secret {
   std::string slot;
-  std::string name;                                        ///< as in the catalogue
-  std::vector<std::pair<std::string, double>> strengths;   ///< full names of quantities
+  std::string name;                                       ///< as in the catalogue
+  std::vector<std::pair<std::string, double>> strengths;  ///< full names of quantities
   std::vector<std::pair<std::string, double>> shapes = {};
-  std::vector<const char*> free = {"M", "B_a"};            ///< of the declared model
-  bool motor = false;                                      ///< whether the axis needs to have one
+  bool motor = false;     ///< whether the axis has a motor
+  bool linear = true;     ///< whether one step of least squares comes close to the strength
+  std::string twin = {};  ///< another effect that does exactly the same to this axis
+  std::vector<const char*> free = {"M", "B_a"};  ///< of the declared model
 
   Model<double> declared() const { return motor ? motor_axis() : slide(); }
   Model<double> truth() const {
     Model<double> model = declared();
+    put_into(model);
+    return model;
+  }
+  void put_into(Model<double>& model) const {
     for (const auto& list : {strengths, shapes}) {
       for (const auto& [quantity, value] : list) {
         visit_effects(model.effects, [&](std::size_t index, const auto& effect) {
@@ -29,30 +38,32 @@ struct Secret {
         *members(model)[find_quantity(quantity)->index] = value;
       }
     }
-    return model;
   }
   Job job() const { return two_recordings(truth(), declared(), free); }
   double neutral(std::size_t strength) const {
     const double standard = find_quantity(strengths[strength].first)->quantity.standard;
     return std::isnan(standard) ? 0.0 : standard;
   }
+  /// Letters and underscores only.
   std::string label() const {
     std::string text = slot + "_" + name;
     for (char& c : text)
       if (c == ' ' || c == '.') c = '_';
     return text;
   }
+  friend void PrintTo(const Secret& secret, std::ostream* out) { *out << secret.name; }
 };
 
 inline std::vector<Secret> secrets() {
-  return {
+  std::vector<Secret> list{
       {"friction", "coulomb_friction", {{"coulomb_friction.F_c", 5.0}}},
       {"arm force", "stroke_spring", {{"stroke_spring.k_s", 20.0}}},
       {"arm force",
        "periodic_force",
        {{"periodic_force.F_s1", 4.0}, {"periodic_force.F_c1", 3.0}},
        {{"periodic_force.period", 0.05}}},
-      {"inertia", "added_mass", {{"added_mass.dM", 0.5}}, {}, {"B_a"}},
+      {"arm force", "constant_force", {{"constant_force.F_0", 3.0}}},
+      {"inertia", "added_mass", {{"added_mass.dM", 0.5}}},
       {"inertia",
        "elastic_mode",
        {{"elastic_mode.m_e", 0.3}},
@@ -60,23 +71,38 @@ inline std::vector<Secret> secrets() {
       {"motor torque",
        "cogging_torque",
        {{"cogging_torque.T_s", 0.1}, {"cogging_torque.T_c", 0.1}},
-       {{"cogging_torque.order", 2.0}},
-       {"M", "B_a"},
-       true},
-      {"motor torque", "torque_droop", {{"torque_droop.c_i", 0.01}}, {}, {"M", "B_a"}, true},
+       {{"cogging_torque.order", 2.0}}},
       {"motor torque",
        "torque_ripple",
        {{"torque_ripple.r_s", 0.03}, {"torque_ripple.r_c", -0.04}},
-       {{"torque_ripple.order", 3.0}},
-       {"M", "B_a"},
-       true},
+       {{"torque_ripple.order", 3.0}}},
       {"drive", "drive_lag", {{"drive_lag.T_l", 2e-3}}},
       {"drive", "dead_time", {{"T_d", 2e-3}}},
       {"sensor", "acceleration.lag", {{"acceleration.lag", 1e-3}}},
-      {"sensor", "velocity.gain", {{"velocity.gain", 1.02}}},
       {"sensor", "acceleration.bias", {{"acceleration.bias", 0.1}}},
+      {"sensor", "velocity.gain", {{"velocity.gain", 1.02}}},
       {"sensor", "velocity.lag", {{"velocity.lag", 3e-3}}},
   };
+  const auto secret = [&](std::string_view name) -> Secret& {
+    return *std::ranges::find(list, name, &Secret::name);
+  };
+  // With M free as well it would be the same twice.
+  secret("added_mass").free = {"B_a"};
+  secret("constant_force").twin = "command_offset";
+  secret("cogging_torque").motor = secret("torque_ripple").motor = true;
+  secret("cogging_torque").twin = "periodic_force";
+  secret("velocity.gain").twin = "acceleration.gain";
+  // A ripple in which the current changes its sign has no one period along the stroke, and a
+  // simulation that is held to a late velocity is late itself.
+  secret("torque_ripple").linear = secret("velocity.lag").linear = false;
+  return list;
+}
+
+/// Those that have a twin, or those that have none.
+inline std::vector<Secret> secrets(bool with_twin) {
+  std::vector<Secret> list = secrets();
+  std::erase_if(list, [&](const Secret& s) { return s.twin.empty() == with_twin; });
+  return list;
 }
 
 }  // namespace axisfit

@@ -34,6 +34,7 @@ double typical(const std::string& name) {
       {"stribeck_friction.F_st", 12.0},
       {"stribeck_friction.v_st", 0.05},
       {"position_friction.G_c", 60.0},
+      {"position_friction.G_q", 40.0},
       {"position_friction.G_b", 300.0},
       {"load_friction.mu", 0.05},
       {"dahl_friction.F_d", 10.0},
