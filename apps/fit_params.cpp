@@ -111,9 +111,11 @@ int run(const Arguments& arguments) {
     const std::string comment =
         fmt::format("Fitted by axisfit {} from {}, starting from {}.\n{}", kVersion, arguments.job,
                     outcome.file.axis_file, verdict_of(outcome));
-    write_folder(arguments.output, {{kResultFile, json},
-                                    {kAxisFile, format_axis_file(fitted, comment)},
-                                    {kResidualsFile, residuals_csv(outcome.job(), outcome.fit())}});
+    write_folder(
+        arguments.output,
+        {{kResultFile, json},
+         {kAxisFile, format_axis_file(fitted, comment)},
+         {kResidualsFile, residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis)}});
   }
   return outcome.fit().usable ? kUsable : kNoUsableFit;
 }

@@ -136,8 +136,34 @@ std::string report_text(const Outcome& outcome) {
   return text;
 }
 
-std::string residuals_csv(const Job& job, const FitResult& result) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// The missing force of all recordings, one after the other, and what it may depend on.
+std::vector<Column> force_columns(const Job& job, const Diagnosis& diagnosis) {
+  constexpr std::pair<const char*, double Sample::*> kCourse[]{
+      {"command_v", &Sample::command},         {"arm_position_m", &Sample::position},
+      {"arm_velocity_mps", &Sample::velocity}, {"motor_angle_rad", &Sample::motor_angle},
+      {"motor_current_a", &Sample::current},   {"drive_force_n", &Sample::drive_force},
+      {"gear_force_n", &Sample::gear_force}};
+  std::vector<Column> columns{{"missing_force_n", {}}};
+  for (const auto& [name, member] : kCourse) columns.push_back({name, {}});
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    const MissingForce& force = diagnosis.forces[r];
+    for (std::size_t i = 0; i < job.recordings[r].times.size(); ++i) {
+      columns.front().values.push_back(force.found ? force.force[i] : kNone);
+      for (std::size_t c = 0; c < std::size(kCourse); ++c)
+        columns[c + 1].values.push_back(force.found ? force.samples[i].*kCourse[c].second : kNone);
+    }
+  }
+  return columns;
+}
+
+}  // namespace
+
+std::string residuals_csv(const Job& job, const FitResult& result,
+                          const std::optional<Diagnosis>& diagnosis) {
   Table table;
   std::size_t rows = 0;
   for (const Recording& r : job.recordings) rows += r.times.size();
@@ -171,6 +197,9 @@ std::string residuals_csv(const Job& job, const FitResult& result) {
     if (!recorded) continue;
     for (Column* c : {&measured, &simulated, &residual}) table.columns.push_back(std::move(*c));
   }
+  if (diagnosis)
+    for (Column& column : force_columns(job, *diagnosis))
+      table.columns.push_back(std::move(column));
   std::ostringstream out;
   write_csv(out, table, 9);
   return out.str();

@@ -28,7 +28,10 @@ std::string loop_text(const Outcome& outcome);
 std::vector<std::string> force_cells(const std::string& name, const MissingForce& force);
 
 /// residuals.csv: recording (its number in the job), time_s, and measured, simulated and residual
-/// of every signal, of the free-running simulation. Empty where a recording lacks a signal.
-std::string residuals_csv(const Job& job, const FitResult& result);
+/// of every signal, of the free-running simulation. With a diagnosis also the missing force and
+/// what it may depend on, of the simulation that is held to the recording. Empty where a recording
+/// lacks a signal.
+std::string residuals_csv(const Job& job, const FitResult& result,
+                          const std::optional<Diagnosis>& diagnosis = {});
 
 }  // namespace axisfit

@@ -110,22 +110,6 @@ std::string hopeless_signal(const Job& job, const FitResult& result) {
   return {};
 }
 
-/// The fitted signal that is explained worst.
-std::string worst_signal(const Job& job, const FitResult& result) {
-  double worst = -1.0;
-  std::string name;
-  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
-    for (const SignalError& e : result.recordings[r].signals) {
-      const double chi_square = e.prediction_reduced_chi_square.value_or(e.reduced_chi_square);
-      if (!e.fitted || chi_square <= worst) continue;
-      worst = chi_square;
-      name = fmt::format("{} of {} ({:.3g} times its noise)", info(e.signal).name,
-                         job.recordings[r].name, std::sqrt(chi_square));
-    }
-  }
-  return name;
-}
-
 std::string open_parameters(const FitResult& result) {
   std::string names;
   for (const ParameterResult& p : result.parameters)
@@ -161,19 +145,10 @@ void conclude(const Job& job, const SolveResult& solved, FitResult& result) {
     return;
   }
   result.usable = true;
-  const double chi_square = result.reduced_chi_square;
+  // Whether it explains everything is for the test of the residuals to say.
+  result.verdict = fmt::format("Usable fit: reduced chi-square {:.4g} of what was fitted.",
+                               result.reduced_chi_square);
   const std::string open = open_parameters(result);
-  if (chi_square < 1.1)
-    result.verdict = fmt::format(
-        "Usable fit: the model explains the recordings down to the noise (reduced chi-square "
-        "{:.3f}).",
-        chi_square);
-  else
-    result.verdict = fmt::format(
-        "Usable fit, but the model lacks something: reduced chi-square {:.4g} instead of 1, most "
-        "in "
-        "the {}.",
-        chi_square, worst_signal(job, result));
   if (!open.empty()) result.verdict += " These recordings do not determine " + open + ".";
 }
 

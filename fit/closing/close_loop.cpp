@@ -369,8 +369,8 @@ class Loop {
       trial.decision = Decision::accepted;
       trial.reason = fmt::format(
           "explains the residual best: {:.3g} % less error on what was not "
-          "fitted (p = {:.2g})",
-          e.gain.validate_percent, e.gain.p_value);
+          "fitted ({:.3g} standard deviations of chance)",
+          e.gain.validate_percent, e.gain.z);
     } else {
       trial.reason = !e.refusal.empty()
                          ? e.refusal
