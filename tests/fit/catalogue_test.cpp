@@ -90,16 +90,23 @@ TEST(Catalogue, EntriesAreComplete) {
 
 TEST(Catalogue, SeeksPeriodsWhereTheSpectrumShowsThem) {
   const Job job = job_with({Signal::velocity});
-  const auto list = catalogue(job, scales());
+  Scales s = scales();
+  s.drive_periods = {0.01};
+  const auto list = catalogue(job, s);
   EXPECT_EQ(find(list, "periodic_force")->settings,
             (std::vector<std::vector<double>>{{0.05}, {0.02}}));
-  EXPECT_NEAR(find(list, "cogging_torque")->settings[0][0],
-              2.0 * std::numbers::pi * job.model.axis.r_g / 0.05, 1e-12);
+  const auto has_order = [&](const char* name, double period) {
+    const double order = 2.0 * std::numbers::pi * job.model.axis.r_g / period;
+    return std::ranges::any_of(find(list, name)->settings, [&](const auto& setting) {
+      return std::abs(setting[0] - order) < 1e-12;
+    });
+  };
+  EXPECT_TRUE(has_order("cogging_torque", 0.05));
+  EXPECT_TRUE(has_order("cogging_torque", 0.02));
+  EXPECT_TRUE(has_order("torque_ripple", 0.01));
   Scales none = scales();
   none.periods.clear();
-  const auto without = catalogue(job, none);
-  for (const char* name : {"periodic_force", "cogging_torque", "torque_ripple"})
-    EXPECT_EQ(find(without, name), nullptr) << name;
+  EXPECT_EQ(find(catalogue(job, none), "periodic_force"), nullptr);
 }
 
 TEST(Catalogue, CurvesSpanTheMotion) {

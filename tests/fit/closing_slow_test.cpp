@@ -79,20 +79,20 @@ TEST_P(OnThePapersAxis, OneUndeclaredEffectIsAcceptedAlone) {
   const Secret& secret = GetParam();
   Model<double> truth = paper_axis();
   secret.put_into(truth);
-  const ClosedLoop loop = close(paper_job(truth, {"V_L", "B_a", "k_g"}));
+  const ClosedLoop loop = close(paper_job(truth, {"B_a", "k_g", "T_p"}));
   EXPECT_EQ(accepted(loop), Names{secret.name}) << loop.verdict;
   EXPECT_TRUE(loop.explained);
   for (const auto& [name, value] : secret.strengths) expect_found(loop, name, value);
-  expect_found(loop, "V_L", 2.7);
   expect_found(loop, "B_a", 200.0);
   expect_found(loop, "k_g", 5e6);
+  expect_found(loop, "T_p", 0.04);
 }
 
 INSTANTIATE_TEST_SUITE_P(EverySlot, OnThePapersAxis, testing::ValuesIn(paper_secrets()),
                          [](const auto& one) { return one.param.label(); });
 
 TEST(CloseLoopOnThePapersAxis, AddsNothingForNoiseThatIsLargerThanStated) {
-  Job job = paper_job(paper_axis(), {"V_L", "B_a", "k_g"});
+  Job job = paper_job(paper_axis(), {"B_a", "k_g", "T_p"});
   for (Recording& r : job.recordings)
     for (Measurement& m : r.measurements) m.sigma *= 0.7;
   EXPECT_EQ(accepted(close(job)), Names{});
