@@ -72,9 +72,13 @@ std::vector<Entry> entries(const Scales& s, double pinion_radius) {
   };
 }
 
-bool is_free(const Job& job, std::size_t quantity) {
-  return std::ranges::any_of(
-      job.free, [&](const FreeParameter& p) { return p.quantity == quantity && !p.recording; });
+/// Whether a quantity is estimated, or given to a single recording: then there is a value of it.
+bool is_taken(const Job& job, std::size_t quantity) {
+  return std::ranges::any_of(job.free, [&](const auto& p) { return p.quantity == quantity; }) ||
+         std::ranges::any_of(job.recordings, [&](const Recording& r) {
+           return std::ranges::any_of(r.overrides,
+                                      [&](const auto& o) { return o.first == quantity; });
+         });
 }
 
 std::optional<std::size_t> effect_named(std::string_view name) {
@@ -105,7 +109,7 @@ bool is_absent(const Job& job, const std::vector<std::size_t>& strengths) {
     const QuantityEntry& entry = quantity_list()[q];
     const auto effect = effect_named(entry.group);
     const bool written = effect && !job.model.structure.effects[*effect];
-    return is_used(entry, extended(job.model.structure, q)) && !is_free(job, q) &&
+    return is_used(entry, extended(job.model.structure, q)) && !is_taken(job, q) &&
            (written || *member[q] == neutral(entry.quantity));
   });
 }
@@ -162,6 +166,8 @@ std::vector<Candidate> catalogue(const Job& job, const Scales& scales) {
     if (!candidate.settings.empty() && is_absent(job, candidate.strengths))
       list.push_back(std::move(candidate));
   };
+  const std::vector<double> later{2.0 * scales.interval, 8.0 * scales.interval};
+  const std::vector<double> either_way{-2.0 * scales.interval, 2.0 * scales.interval};
   for (const Entry& entry : entries(scales, job.model.axis.r_g)) {
     Candidate candidate;
     candidate.name = entry.name;
@@ -174,7 +180,7 @@ std::vector<Candidate> catalogue(const Job& job, const Scales& scales) {
       candidate.shapes.push_back(
           index_of_quantity(std::string(entry.name) + "." + std::string(symbol)));
     candidate.settings = entry.settings;
-    if (entry.name == "drive_lag") candidate.probe = 2.0 * scales.interval;
+    if (entry.name == "drive_lag") candidate.probes = later;
     // A part of an effect that needs another part of it, as a second harmonic the first.
     const auto effect = effect_named(entry.name);
     if (entry.strengths[0] == "F_s2" && !job.model.structure.effects[*effect]) continue;
@@ -182,6 +188,7 @@ std::vector<Candidate> catalogue(const Job& job, const Scales& scales) {
   }
   Candidate dead_time{"dead_time", "drive", "dead time of the command", {}, {}, {{}}};
   dead_time.strengths = {index_of_quantity("T_d")};
+  dead_time.probes = later;
   offer(std::move(dead_time));
   for (const SignalInfo& signal : kSignalTable) {
     if (!is_recorded(job, signal.signal)) continue;
@@ -192,7 +199,11 @@ std::vector<Candidate> catalogue(const Job& job, const Scales& scales) {
       const bool held = job.options.coupling == CouplingMode::fixed &&
                         (signal.signal == Signal::position || signal.signal == Signal::velocity);
       if (held && (part == "lag" || part == "delay")) continue;
-      offer({name, "sensor", std::string(entry->quantity.meaning), {entry->index}, {}, {{}}});
+      Candidate candidate{name,           "sensor", std::string(entry->quantity.meaning),
+                          {entry->index}, {},       {{}}};
+      if (part == "lag") candidate.probes = later;
+      if (part == "delay") candidate.probes = either_way;
+      offer(std::move(candidate));
     }
   }
   for (const std::string_view name :

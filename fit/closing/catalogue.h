@@ -23,9 +23,9 @@ struct Candidate {
   std::vector<std::size_t> shapes;
   std::vector<std::vector<double>> settings;
   bool shapes_are_free = true;  ///< whether the shapes are estimated too; a curve's ends are not
-  /// A strength at which the score test looks instead of at zero, because the derivative there says
-  /// little: that of a lag holds for lags shorter than anything else. Zero: none.
-  double probe = 0.0;
+  /// Strengths at which the score test looks instead of at zero, where the derivative there says
+  /// little: that of a lag or delay holds while it is shorter than anything else. Empty: none.
+  std::vector<double> probes = {};
   bool unnamed = false;  ///< a curve: it fits whatever no other effect explains
 
   std::size_t parameters() const {

@@ -186,26 +186,27 @@ class Loop {
       tell("looking for suspects");
       const ScoreTest test = score_test(current().job, values_of(current().fit), rate, threads_);
       tried_ = std::max(tried_, test.scores.size());
-      int taken = 0;
+      std::vector<Promise> taken;
       for (const Score& score : test.scores) {
         const Candidate& candidate = test.candidates[score.candidate];
         constexpr double kLeastGain = 6.0;  // of a sum of squares: below is chance
         if (candidate.unnamed != curves || score.gain < kLeastGain) continue;
-        if (taken++ == options_.shortlist) break;
-        const auto known = std::ranges::find_if(list, [&](const Promise& p) {
-          return p.candidate.strengths == candidate.strengths && p.score.shapes == score.shapes;
+        if (taken.size() == static_cast<std::size_t>(options_.shortlist)) break;
+        // One candidate with many settings must not crowd out the others.
+        constexpr int kSettings = 2;
+        const auto same = std::ranges::count_if(
+            taken, [&](const Promise& p) { return p.candidate.strengths == candidate.strengths; });
+        if (same < kSettings) taken.push_back({candidate, score, candidate.settings.size()});
+      }
+      for (Promise& promise : taken) {
+        const bool known = std::ranges::any_of(list, [&](const Promise& p) {
+          return p.candidate.strengths == promise.candidate.strengths &&
+                 p.score.shapes == promise.score.shapes;
         });
-        if (known == list.end()) list.push_back({candidate, score, candidate.settings.size()});
+        if (!known) list.push_back(std::move(promise));
       }
     }
-    // One candidate with many settings must not crowd out the others.
-    std::vector<Promise> kept;
-    for (Promise& p : list) {
-      const auto same = std::ranges::count_if(
-          kept, [&](const Promise& k) { return k.candidate.strengths == p.candidate.strengths; });
-      if (same < 2) kept.push_back(std::move(p));
-    }
-    return heat(std::move(kept), rates.front());
+    return heat(std::move(list), rates.front());
   }
 
   /// Fits each with the simulation still held to the data, which is quick, and keeps those that may

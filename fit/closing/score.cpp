@@ -109,32 +109,35 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
     const Job extended = with_candidate(fixed, shaped, {}, neutral, score.shapes);
     const ParameterSpace strengths(extended);
     const Eigen::VectorXd u = strengths.internal(neutral);
-    Linearization d = linearize(extended, strengths, u, rate);
+    const Linearization d = linearize(extended, strengths, u, rate);
     if (!d.finite || d.jacobian.rows() != basis.rows()) return;
-    if (candidate.probe > 0.0) {
-      const Eigen::VectorXd there = strengths.internal(std::vector{candidate.probe});
+    const auto consider = [&](const Eigen::MatrixXd& derivatives) {
+      const Eigen::MatrixXd columns = derivatives - basis * (basis.transpose() * derivatives);
+      // What is left of a column is rounding where the free parameters do the same.
+      for (Eigen::Index k = 0; k < columns.cols(); ++k)
+        if (columns.col(k).norm() < 1e-4 * derivatives.col(k).norm()) return;
+      const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(columns);
+      const Eigen::VectorXd step = solver.solve(-rest);
+      if (!step.allFinite()) return;
+      const std::vector<double> reached = strengths.values(u + step);
+      for (std::size_t k = 0; k < reached.size(); ++k) {
+        const Quantity& q = quantity_list()[candidate.strengths[k]].quantity;
+        if (reached.size() == 1 && (reached[k] < q.lower || reached[k] > q.upper)) return;
+      }
+      const double gain = test.sum_of_squares - (rest + columns * step).squaredNorm();
+      if (gain <= score.gain) return;
+      score.gain = gain;
+      score.strengths = reached;
+      // The free parameters give way to the effect; no further than a linear step can be believed.
+      const Eigen::VectorXd way = base_solver.solve(-(base.residuals + derivatives * step));
+      score.values = space.values(held.u + way.cwiseMax(-0.7).cwiseMin(0.7));
+    };
+    if (candidate.probes.empty()) consider(d.jacobian);
+    for (const double probe : candidate.probes) {
+      const Eigen::VectorXd there = strengths.internal(std::vector{probe});
       const Linearization probed = linearize(extended, strengths, there, rate);
-      if (!probed.finite) return;
-      d.jacobian.col(0) = (probed.residuals - d.residuals) / (there[0] - u[0]);
+      if (probed.finite) consider((probed.residuals - d.residuals) / (there[0] - u[0]));
     }
-    const Eigen::MatrixXd columns = d.jacobian - basis * (basis.transpose() * d.jacobian);
-    // What is left of a column is rounding where the free parameters do the same.
-    for (Eigen::Index k = 0; k < columns.cols(); ++k)
-      if (columns.col(k).norm() < 1e-4 * d.jacobian.col(k).norm()) return;
-    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(columns);
-    const Eigen::VectorXd step = solver.solve(-rest);
-    if (!step.allFinite()) return;
-    const std::vector<double> reached = strengths.values(u + step);
-    for (std::size_t k = 0; k < reached.size(); ++k) {
-      const Quantity& q = quantity_list()[candidate.strengths[k]].quantity;
-      if (candidate.strengths.size() == 1 && (reached[k] < q.lower || reached[k] > q.upper)) return;
-    }
-    score.strengths = reached;
-    // The free parameters give way to the effect; no further than a linear step can be believed.
-    const Eigen::VectorXd way = base_solver.solve(-(base.residuals + d.jacobian * step));
-    Eigen::VectorXd u_base = held.u + way.cwiseMax(-0.7).cwiseMin(0.7);
-    score.values = space.values(u_base);
-    score.gain = test.sum_of_squares - (rest + columns * step).squaredNorm();
   });
   std::ranges::stable_sort(test.scores, std::greater{}, &Score::gain);
   return test;

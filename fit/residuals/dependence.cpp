@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 namespace axisfit {
 namespace {
@@ -45,11 +46,12 @@ std::vector<std::size_t> quantile_ranges(const std::vector<double>& x, std::size
   return range;
 }
 
-/// Probability of a chi-square variable with k degrees of freedom above x; E. B. Wilson and M. M.
-/// Hilferty (1931).
-double chi_square_tail(double x, double k) {
-  const double a = 2.0 / (9.0 * k);
-  const double z = (std::cbrt(x / k) - (1.0 - a)) / std::sqrt(a);
+/// Probability that the ratio of two mean squares of a and b degrees of freedom is above f: the F
+/// distribution's tail after E. Paulson (1942).
+double f_tail(double f, double a, double b) {
+  const double of_a = 2.0 / (9.0 * a), of_b = 2.0 / (9.0 * b);
+  const double root = std::cbrt(f);
+  const double z = ((1.0 - of_b) * root - (1.0 - of_a)) / std::sqrt(of_b * root * root + of_a);
   return 0.5 * std::erfc(z / std::numbers::sqrt2);
 }
 
@@ -75,25 +77,29 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
       std::vector<double> x;
       for (const std::size_t i : series.samples)
         x.push_back(regressor.value(samples[i], times[i] - times.front()));
-      struct Sum {
-        double count = 0.0, total = 0.0;
+      struct Range {
+        double count = 0.0, mean = 0.0;
       };
-      std::map<std::size_t, Sum> sums;
-      double total = 0.0;
+      std::map<std::size_t, Range> ranges;
       const auto range = quantile_ranges(x, kRanges);
       for (std::size_t i = 0; i < x.size(); ++i) {
-        Sum& sum = sums[range[i]];
-        sum.count += 1.0;
-        sum.total += series.values[i];
-        total += series.values[i];
+        Range& r = ranges[range[i]];
+        r.count += 1.0;
+        r.mean += (series.values[i] - r.mean) / r.count;
       }
-      if (sums.size() < 2) continue;  // it does not vary
-      double between = -total * total / n;
-      for (const auto& [_, sum] : sums) between += sum.total * sum.total / sum.count;
-      const double variance = test.reduced_chi_square - total * total / (n * n);
-      if (!(variance > 0.0)) continue;
-      const double p = chi_square_tail(between / (variance * test.autocorrelation_time),
-                                       static_cast<double>(sums.size() - 1));
+      if (ranges.size() < 2) continue;  // it does not vary
+      const double mean = std::accumulate(series.values.begin(), series.values.end(), 0.0) / n;
+      double between = 0.0;
+      for (const auto& [_, r] : ranges) between += r.count * (r.mean - mean) * (r.mean - mean);
+      // Noise is what is left: what depends on x would look like slow noise.
+      std::vector<double> rest = series.values;
+      for (std::size_t i = 0; i < x.size(); ++i) rest[i] -= ranges[range[i]].mean;
+      const double time = autocorrelation_time(rest);
+      const double freedom = n / time - static_cast<double>(ranges.size());
+      if (!(freedom > 3.0 && mean_square(rest) > 0.0)) continue;
+      const double worth = mean_square(rest) * n / freedom;
+      const double groups = static_cast<double>(ranges.size() - 1);
+      const double p = f_tail(between / groups / worth, groups, freedom);
       if (p < kSignificant)
         test.dependences.push_back({regressor.name, between / (n * test.reduced_chi_square), p});
     }

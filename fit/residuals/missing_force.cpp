@@ -61,11 +61,19 @@ double noise_floor(const Recording& recording, const Coupling& coupling, double 
 
 std::vector<double> low_pass(std::vector<double> values, double interval, double cutoff) {
   if (values.size() < 2 || cutoff >= 0.49 / interval) return values;
+  // Mirrored at both ends, or else the noise of the first and of the last value would count as if
+  // it had been there for ever.
+  const auto edge = static_cast<std::ptrdiff_t>(
+      std::min(static_cast<double>(values.size() - 1), std::ceil(2.0 / (cutoff * interval))));
+  std::vector<double> extended(values.rend() - edge - 1, values.rend() - 1);
+  extended.insert(extended.end(), values.begin(), values.end());
+  extended.insert(extended.end(), values.rbegin() + 1, values.rbegin() + 1 + edge);
   for (int run = 0; run < 2; ++run) {
-    section(values, 0.5411961, interval, cutoff);
-    section(values, 1.3065630, interval, cutoff);
-    std::ranges::reverse(values);
+    section(extended, 0.5411961, interval, cutoff);
+    section(extended, 1.3065630, interval, cutoff);
+    std::ranges::reverse(extended);
   }
+  std::copy_n(extended.begin() + edge, values.size(), values.begin());
   return values;
 }
 
