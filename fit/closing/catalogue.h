@@ -33,6 +33,11 @@ struct Candidate {
   }
 };
 
+/// Whether they are the same effect, whatever its shape.
+inline bool same_effect(const Candidate& a, const Candidate& b) {
+  return a.strengths == b.strengths;
+}
+
 /// What the recordings span: the scales on which shapes are sought.
 struct Scales {
   double position_low = 0.0, position_high = 0.0;  ///< m, of the arm

@@ -9,8 +9,9 @@
 #include <numeric>
 #include <set>
 
-#include "fit/closing/score.h"
+#include "fit/closing/extension.h"
 #include "fit/closing/separation.h"
+#include "fit/closing/shortlist.h"
 #include "fit/parallel.h"
 
 namespace axisfit {
@@ -19,35 +20,6 @@ namespace {
 /// Advantages below this, in units of the sum of squares, are no ground for a preference: two
 /// natural logarithms of a hundred.
 constexpr double kUndecided = 9.2;
-
-/// A refitted model.
-struct Extension {
-  Candidate candidate;
-  double score = 0.0;
-  std::size_t settings = 1;
-  Job job;
-  FitResult fit;
-  std::vector<ResidualSeries> residuals;
-  Improvement gain;
-  std::string refusal;
-};
-
-/// The fit of a job from close by: one start, one continuation.
-FitResult refit(Job& job) {
-  const FitOptions declared = job.options;
-  job.options.starts = 1;
-  job.options.attempts = 1;
-  job.options.tolerance = 1e-7;
-  job.options.max_iterations = std::min(job.options.max_iterations, 25);
-  // Smooth effects are then a few parts in a hundred thousand off, and twice as quick.
-  job.options.step = 2.0 * declared.step;
-  job.options.threads = 1;
-  if (job.options.coupling == CouplingMode::continuation)
-    job.options.coupling_rate = score_rates(job).front();
-  FitResult result = estimate(job);
-  job.options = declared;
-  return result;
-}
 
 class Loop {
  public:
@@ -77,10 +49,13 @@ class Loop {
   }
 
  private:
+  struct Rival {
+    Candidate candidate;
+    OwnValues values;
+  };
   struct Accepted {
     Candidate candidate;
-    std::vector<Candidate> rivals;  // that explained as much when it was chosen
-    std::vector<std::vector<double>> rival_strengths, rival_shapes;
+    std::vector<Rival> rivals;  ///< that explained as much when it was chosen
   };
 
   /// An accepted effect (its place) and another that explains the data as well.
@@ -154,113 +129,11 @@ class Loop {
     model.fit = refit_from(model.job, values_of(model.fit));
   }
 
-  static FitResult refit_from(Job& job, const std::vector<double>& values) {
-    std::vector<double> declared;
-    for (std::size_t i = 0; i < job.free.size(); ++i) {
-      declared.push_back(job.free[i].initial);
-      job.free[i].initial = std::clamp(values[i], job.free[i].lower, job.free[i].upper);
-    }
-    FitResult result = refit(job);
-    for (std::size_t i = 0; i < job.free.size(); ++i) job.free[i].initial = declared[i];
-    return result;
-  }
-
   bool explained() {
     auto series = residual_series(current().job, current().fit);
     if (std::ranges::all_of(series, is_explained)) return !series.empty();
     allow_for_parameters(current().job, current().fit, series);
     return !series.empty() && std::ranges::all_of(series, is_explained);
-  }
-
-  /// The most promising candidates and settings, those of the catalogue or the curves.
-  struct Promise {
-    Candidate candidate;
-    Score score;
-    std::size_t settings = 1;
-  };
-  std::vector<Promise> shortlist(bool curves) {
-    std::vector<Promise> list;
-    tried_ = 1;
-    const auto rates = score_rates(current().job);
-    for (const double rate : rates) {
-      tell("looking for suspects");
-      const ScoreTest test = score_test(current().job, values_of(current().fit), rate, threads_);
-      tried_ = std::max(tried_, test.scores.size());
-      std::vector<Promise> taken;
-      for (const Score& score : test.scores) {
-        const Candidate& candidate = test.candidates[score.candidate];
-        constexpr double kLeastGain = 6.0;  // of a sum of squares: below is chance
-        if (candidate.unnamed != curves || score.gain < kLeastGain) continue;
-        if (taken.size() == static_cast<std::size_t>(options_.shortlist)) break;
-        // One candidate with many settings must not crowd out the others.
-        constexpr int kSettings = 2;
-        const auto same = std::ranges::count_if(
-            taken, [&](const Promise& p) { return p.candidate.strengths == candidate.strengths; });
-        if (same < kSettings) taken.push_back({candidate, score, candidate.settings.size()});
-      }
-      for (Promise& promise : taken) {
-        const bool known = std::ranges::any_of(list, [&](const Promise& p) {
-          return p.candidate.strengths == promise.candidate.strengths &&
-                 p.score.shapes == promise.score.shapes;
-        });
-        if (!known) list.push_back(std::move(promise));
-      }
-    }
-    return heat(std::move(list), rates.front());
-  }
-
-  /// Fits each with the simulation still held to the data, which is quick, and keeps those that may
-  /// yet turn out the best.
-  std::vector<Promise> heat(std::vector<Promise> list, double rate) {
-    constexpr std::size_t kKept = 3;
-    if (list.size() <= kKept) return list;
-    struct Run {
-      double cost = INFINITY;
-      std::vector<double> values;
-    };
-    std::vector<Run> runs(list.size());
-    parallel_for(list.size(), threads_, [&](std::size_t i) {
-      Promise& p = list[i];
-      const Job job = with_candidate(current().job, p.candidate, p.score.values, p.score.strengths,
-                                     p.score.shapes);
-      const ParameterSpace space(job);
-      std::vector<double> start;
-      for (const FreeParameter& free : job.free) start.push_back(free.initial);
-      SolveOptions options;
-      options.max_iterations = 8;
-      options.function_tolerance = 1e-4;
-      options.keep_to_start = true;
-      const SolveResult solved = solve(job, space, space.internal(start), rate, options);
-      if (solved.usable) runs[i] = {solved.cost, space.values(solved.u)};
-    });
-    std::vector<std::size_t> order(list.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return runs[i].cost; });
-    std::vector<Promise> kept;
-    for (const std::size_t i : order) {
-      // Behind by a lot: the free run will not make up for it.
-      if (!std::isfinite(runs[i].cost)) break;
-      if (kept.size() >= kKept && runs[i].cost > 1.05 * runs[order.front()].cost) break;
-      Promise& p = kept.emplace_back(std::move(list[i]));
-      const std::vector<double>& v = runs[i].values;
-      const auto base = static_cast<std::ptrdiff_t>(current().job.free.size());
-      const auto own = static_cast<std::ptrdiff_t>(p.candidate.strengths.size());
-      p.score.values.assign(v.begin(), v.begin() + base);
-      p.score.strengths.assign(v.begin() + base, v.begin() + base + own);
-      if (p.candidate.shapes_are_free) p.score.shapes.assign(v.begin() + base + own, v.end());
-    }
-    return kept;
-  }
-
-  static Extension extend(const Job& job, const Candidate& candidate,
-                          const std::vector<double>& values, const std::vector<double>& strengths,
-                          const std::vector<double>& shapes) {
-    Extension e;
-    e.candidate = candidate;
-    e.job = with_candidate(job, candidate, values, strengths, shapes);
-    e.fit = refit(e.job);
-    e.residuals = residual_series(e.job, e.fit);
-    return e;
   }
 
   void judge(Extension& e, const std::vector<ResidualSeries>& before) const {
@@ -274,7 +147,11 @@ class Loop {
   /// Refits a shortlist and takes the best that passes the gate. Returns whether one did.
   bool round(bool curves) {
     ++round_;
-    const std::vector<Promise> promises = shortlist(curves);
+    tell("looking for suspects");
+    const Shortlist list =
+        shortlist(current().job, values_of(current().fit), curves, options_.shortlist, threads_);
+    const std::vector<Promise>& promises = list.promises;
+    tried_ = list.tried;
     const auto before = residual_series(current().job, current().fit);
     std::vector<Extension> extensions(promises.size());
     int done = 0;
@@ -295,9 +172,8 @@ class Loop {
     // Of several settings of one candidate the best counts.
     std::vector<Extension*> contenders;
     for (Extension& e : extensions) {
-      const auto other = std::ranges::find_if(contenders, [&](const Extension* c) {
-        return c->candidate.strengths == e.candidate.strengths;
-      });
+      const auto other = std::ranges::find_if(
+          contenders, [&](const Extension* c) { return same_effect(c->candidate, e.candidate); });
       if (other == contenders.end())
         contenders.push_back(&e);
       else if (better(e, **other))
@@ -315,46 +191,21 @@ class Loop {
     for (Extension* e : contenders) note(*e, best);
     if (best == nullptr) return false;
 
-    Accepted accepted{best->candidate, {}, {}, {}};
+    Accepted accepted{best->candidate, {}};
     for (const Extension* e : contenders) {
       if (e == best || !e->fit.usable || !e->gain.comparable) continue;
       // Rivals are seen again when all else is explained.
       if (advantage(*best, *e) > kUndecided) continue;
-      accepted.rivals.push_back(e->candidate);
-      std::vector<double> strengths, shapes;
-      own_values(*e, strengths, shapes);
-      accepted.rival_strengths.push_back(strengths);
-      accepted.rival_shapes.push_back(shapes);
+      accepted.rivals.push_back({e->candidate, own_values(e->job, e->fit, e->candidate)});
     }
     accepted_.push_back(std::move(accepted));
     result_.models.push_back({best->candidate.name, std::move(best->job), std::move(best->fit)});
     return true;
   }
 
-  static void own_values(const Extension& e, std::vector<double>& strengths,
-                         std::vector<double>& shapes) {
-    const std::size_t first = e.job.free.size() - e.candidate.parameters();
-    for (std::size_t k = 0; k < e.candidate.strengths.size(); ++k)
-      strengths.push_back(e.fit.parameters[first + k].value);
-    Model<double> model = e.job.model;
-    for (std::size_t k = 0; k < e.candidate.shapes.size(); ++k)
-      shapes.push_back(e.candidate.shapes_are_free
-                           ? e.fit.parameters[first + strengths.size() + k].value
-                           : *members(model)[e.candidate.shapes[k]]);
-  }
-
   static bool better(const Extension& a, const Extension& b) {
     if (a.refusal.empty() != b.refusal.empty()) return a.refusal.empty();
     return advantage(a, b) > 0.0;
-  }
-
-  /// By how much a explains all recordings better than b, parameters counted.
-  static double advantage(const Extension& a, const Extension& b) {
-    const double of_a =
-        disadvantage(a.residuals, a.job.free.size(), b.residuals, b.job.free.size());
-    const double of_b =
-        disadvantage(b.residuals, b.job.free.size(), a.residuals, a.job.free.size());
-    return of_a > 0.0 ? of_a : -of_b;
   }
 
   void note(const Extension& e, const Extension* best) {
@@ -378,7 +229,7 @@ class Loop {
                          : fmt::format("explains less than {}", best->candidate.name);
     }
     const auto known = std::ranges::find_if(result_.effects, [&](const EffectTrial& t) {
-      return t.candidate.strengths == e.candidate.strengths;
+      return same_effect(t.candidate, e.candidate);
     });
     if (known == result_.effects.end())
       result_.effects.push_back(std::move(trial));
@@ -388,7 +239,7 @@ class Loop {
 
   EffectTrial* trial_of(const Candidate& candidate) {
     for (EffectTrial& t : result_.effects)
-      if (t.candidate.strengths == candidate.strengths) return &t;
+      if (same_effect(t.candidate, candidate)) return &t;
     return nullptr;
   }
 
@@ -401,9 +252,9 @@ class Loop {
       values.push_back(fit.parameters[i].value);
     for (std::size_t a = 0; a < accepted_.size(); ++a) {
       if (a == index) continue;
-      std::vector<double> strengths, shapes;
-      values_in(current(), accepted_[a].candidate, strengths, shapes);
-      model.job = with_candidate(model.job, accepted_[a].candidate, values, strengths, shapes);
+      const Candidate& candidate = accepted_[a].candidate;
+      const OwnValues own = own_values(current().job, current().fit, candidate);
+      model.job = with_candidate(model.job, candidate, values, own.strengths, own.shapes);
       values.clear();
       for (const FreeParameter& p : model.job.free) values.push_back(p.initial);
     }
@@ -412,15 +263,6 @@ class Loop {
   }
 
   const Job& declared_job() const { return result_.models.front().job; }
-
-  /// A candidate's strengths and shapes in a fitted model that has it.
-  static void values_in(const LoopModel& model, const Candidate& candidate,
-                        std::vector<double>& strengths, std::vector<double>& shapes) {
-    Model<double> fitted = fitted_model(model.job, model.fit);
-    const auto member = members(fitted);
-    for (const std::size_t q : candidate.strengths) strengths.push_back(*member[q]);
-    for (const std::size_t q : candidate.shapes) shapes.push_back(*member[q]);
-  }
 
   /// Takes away what is not needed any more.
   void take_away() {
@@ -457,10 +299,9 @@ class Loop {
     models.push_back(std::move(result_.models.front()));
     for (std::size_t a = 0; a + 1 < accepted_.size(); ++a) {
       const Candidate& candidate = accepted_[a].candidate;
-      std::vector<double> strengths, shapes;
-      values_in(last, candidate, strengths, shapes);
-      Extension e =
-          extend(models.back().job, candidate, values_of(models.back().fit), strengths, shapes);
+      const OwnValues own = own_values(last.job, last.fit, candidate);
+      Extension e = extend(models.back().job, candidate, values_of(models.back().fit),
+                           own.strengths, own.shapes);
       models.push_back({candidate.name, std::move(e.job), std::move(e.fit)});
     }
     if (!accepted_.empty()) {
@@ -514,8 +355,9 @@ class Loop {
       std::vector<Extension> list(std::min<std::size_t>(accepted.rivals.size(), 4));
       tell("are there rivals of " + accepted.candidate.name + "?");
       parallel_for(list.size(), threads_, [&](std::size_t i) {
-        list[i] = extend(rest.job, accepted.rivals[i], values_of(rest.fit),
-                         accepted.rival_strengths[i], accepted.rival_shapes[i]);
+        const Rival& rival = accepted.rivals[i];
+        list[i] = extend(rest.job, rival.candidate, values_of(rest.fit), rival.values.strengths,
+                         rival.values.shapes);
       });
       for (std::size_t i = 0; i < list.size(); ++i) {
         Extension& e = list[i];
@@ -523,7 +365,7 @@ class Loop {
         const double loss =
             disadvantage(best, current().job.free.size(), e.residuals, e.job.free.size());
         const bool present = std::ranges::any_of(accepted_, [&](const Accepted& other) {
-          return other.candidate.strengths == e.candidate.strengths;
+          return same_effect(other.candidate, e.candidate);
         });
         if (present) continue;
         if (only_note) {
@@ -622,12 +464,6 @@ std::string Loop::verdict() const {
 }
 
 }  // namespace
-
-std::vector<double> score_rates(const Job& job) {
-  const double first = first_coupling_rate(job);
-  if (job.options.coupling == CouplingMode::fixed || !std::isfinite(first)) return {first};
-  return {first / 30.0, first / 100.0};
-}
 
 ClosedLoop close_loop(const Job& job, const FitResult& first, const CloseLoopOptions& options,
                       const LoopProgress& progress) {

@@ -19,7 +19,6 @@ namespace axisfit {
 struct CloseLoopOptions {
   int shortlist = 6;  ///< effects that are refitted in each round
   int max_effects = 6;
-  double coupling_rate = 0.0;  ///< of the score test, 1/s; zero: from the sampling interval
 };
 
 enum class Decision {
@@ -62,8 +61,5 @@ using LoopProgress = std::function<void(const std::string& phase, int done, int 
 /// `first` is the fit of the job as declared.
 ClosedLoop close_loop(const Job& job, const FitResult& first, const CloseLoopOptions& options = {},
                       const LoopProgress& progress = {});
-
-/// The coupling rates (1/s) at which a job's residual is scored.
-std::vector<double> score_rates(const Job& job);
 
 }  // namespace axisfit

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "fit/closing/close_loop.h"
 #include "fit/closing/score.h"
 
 namespace axisfit {
@@ -23,9 +22,8 @@ Diagnosis diagnose(const Job& job, const FitResult& result) {
     const Candidate& candidate = test.candidates[score.candidate];
     const double share = score.gain / test.sum_of_squares;
     if (diagnosis.suspects.size() == kSuspects || share < kLeastShare) break;
-    const bool known = std::ranges::any_of(diagnosis.suspects, [&](const Suspect& s) {
-      return s.candidate.strengths == candidate.strengths;
-    });
+    const bool known = std::ranges::any_of(
+        diagnosis.suspects, [&](const Suspect& s) { return same_effect(s.candidate, candidate); });
     if (!known && !candidate.unnamed)
       diagnosis.suspects.push_back({candidate, score.shapes, score.strengths, share});
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fit/closing/periods.h"
+#include "fit/continuation.h"
 #include "fit/parallel.h"
 #include "fit/residual.h"
 
@@ -141,6 +142,12 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   });
   std::ranges::stable_sort(test.scores, std::greater{}, &Score::gain);
   return test;
+}
+
+std::vector<double> score_rates(const Job& job) {
+  const double first = first_coupling_rate(job);
+  if (job.options.coupling == CouplingMode::fixed || !std::isfinite(first)) return {first};
+  return {first / 30.0, first / 100.0};
 }
 
 }  // namespace axisfit

@@ -39,4 +39,7 @@ struct ScoreTest {
 ScoreTest score_test(const Job& job, const std::vector<double>& values, double coupling_rate,
                      int threads);
 
+/// The coupling rates (1/s) at which a job's residual is scored.
+std::vector<double> score_rates(const Job& job);
+
 }  // namespace axisfit
