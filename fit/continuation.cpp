@@ -146,9 +146,12 @@ ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
     // shows while it is held, so that only a start which is better there has to be followed.
     // One that cannot even be simulated costs little: there the moves go on for longer.
     // Several that end where the best did confirm it.
+    // An end that is near the noise is not the wrong one of many: something small is missing.
     constexpr int kMoves = 8, kMovesToBegin = 16, kConfirmed = 3;
+    constexpr double kNear = 5.0;
     int confirmed = 0;
-    for (int attempt = 2; attempt < job.options.attempts && !explained(); ++attempt) {
+    for (int attempt = 2; attempt < job.options.attempts; ++attempt) {
+      if (result.last.usable && result.last.reduced_cost < kNear) break;
       double known = std::numeric_limits<double>::infinity();
       if (result.last.usable) known = continuation.solve_stage(result.last.u, rate, false).cost;
       double least = 0.9 * known;

@@ -267,7 +267,7 @@ class Loop {
   /// Takes away what is not needed any more.
   void take_away() {
     if (accepted_.size() < 2) return;
-    for (std::size_t a = 0; a + 1 < accepted_.size() + 1 && accepted_.size() > 1;) {
+    for (std::size_t a = 0; a < accepted_.size() && accepted_.size() > 1;) {
       tell("is " + accepted_[a].candidate.name + " needed?");
       LoopModel rest = without(a);
       Extension with;

@@ -24,8 +24,7 @@ Diagnosis diagnose(const Job& job, const FitResult& result) {
     if (diagnosis.suspects.size() == kSuspects || share < kLeastShare) break;
     const bool known = std::ranges::any_of(
         diagnosis.suspects, [&](const Suspect& s) { return same_effect(s.candidate, candidate); });
-    if (!known && !candidate.unnamed)
-      diagnosis.suspects.push_back({candidate, score.shapes, score.strengths, share});
+    if (!known) diagnosis.suspects.push_back({candidate, score.shapes, score.strengths, share});
   }
   return diagnosis;
 }

@@ -74,7 +74,8 @@ Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::Vecto
 
 }  // namespace
 
-ScoreTest score_test(const Job& job, const std::vector<double>& values, double rate, int threads) {
+ScoreTest score_test(const Job& job, const std::vector<double>& values, double rate, int threads,
+                     bool curves) {
   ScoreTest test;
   const ParameterSpace space(job);
   SolveOptions options;
@@ -90,6 +91,7 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   const Eigen::VectorXd rest = base.residuals - basis * (basis.transpose() * base.residuals);
   test.sum_of_squares = rest.squaredNorm();
   test.candidates = catalogue(job, scales_of(job, space, held.u, rate, base, basis));
+  std::erase_if(test.candidates, [&](const Candidate& c) { return c.unnamed != curves; });
   for (std::size_t c = 0; c < test.candidates.size(); ++c)
     for (const auto& setting : test.candidates[c].settings)
       test.scores.push_back({c, setting, {}, held_values, 0.0});

@@ -9,15 +9,14 @@
 namespace axisfit {
 namespace {
 
-std::vector<Promise> best_of(const ScoreTest& test, bool curves, std::size_t length) {
+std::vector<Promise> best_of(const ScoreTest& test, std::size_t length) {
   constexpr double kLeastGain = 6.0;  // of a sum of squares: below is chance
   constexpr double kNearly = 0.9;     // of the best gain: heard even beyond the length
   constexpr int kSettings = 2;        // of one candidate: no crowding out of the others
   std::vector<Promise> taken;
   for (const Score& score : test.scores) {
     const Candidate& candidate = test.candidates[score.candidate];
-    if (candidate.unnamed != curves || score.gain < kLeastGain) continue;
-    if (taken.size() >= 2 * length) break;
+    if (score.gain < kLeastGain || taken.size() >= 2 * length) break;
     if (taken.size() >= length && score.gain < kNearly * taken.front().score.gain) break;
     const auto same = std::ranges::count_if(
         taken, [&](const Promise& p) { return same_effect(p.candidate, candidate); });
@@ -75,9 +74,9 @@ Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curv
   Shortlist result;
   const std::vector<double> rates = score_rates(job);
   for (const double rate : rates) {
-    const ScoreTest test = score_test(job, values, rate, threads);
+    const ScoreTest test = score_test(job, values, rate, threads, curves);
     result.tried = std::max(result.tried, test.scores.size());
-    for (Promise& promise : best_of(test, curves, static_cast<std::size_t>(length))) {
+    for (Promise& promise : best_of(test, static_cast<std::size_t>(length))) {
       const bool known = std::ranges::any_of(result.promises, [&](const Promise& p) {
         return same_effect(p.candidate, promise.candidate) &&
                p.score.shapes == promise.score.shapes;

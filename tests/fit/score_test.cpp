@@ -12,11 +12,10 @@
 namespace axisfit {
 namespace {
 
-/// The named scores, of every candidate only its best setting.
-std::vector<Score> best_named(const ScoreTest& test) {
+/// Of every candidate the best setting.
+std::vector<Score> best_settings(const ScoreTest& test) {
   std::vector<Score> list;
   for (const Score& score : test.scores) {
-    if (test.candidates[score.candidate].unnamed) continue;
     if (std::ranges::find(list, score.candidate, &Score::candidate) == list.end())
       list.push_back(score);
   }
@@ -35,7 +34,7 @@ TEST_P(ScoreOf, TheTrueEffectIsAmongTheTwoBest) {
   const Secret& secret = GetParam();
   const ScoreTest test = score(secret.job());
   ASSERT_TRUE(test.usable);
-  const auto list = best_named(test);
+  const auto list = best_settings(test);
   ASSERT_GE(list.size(), 2u);
   std::size_t place = 0;
   while (place < list.size() && test.candidates[list[place].candidate].name != secret.name) ++place;
@@ -63,7 +62,7 @@ TEST(ScoreTestOf, ACleanRecordingIsChance) {
                              {Signal::velocity, Signal::acceleration}, seed);
     const ScoreTest test = score(job);
     ASSERT_TRUE(test.usable);
-    const auto list = best_named(test);
+    const auto list = best_settings(test);
     std::cout << test.candidates[list[0].candidate].name << " " << list[0].gain << " of "
               << test.scores.size() << "\n";
     EXPECT_LT(list[0].gain, 25.0);
@@ -81,7 +80,7 @@ TEST(ScoreTestOf, APeriodicForceFindsItsPeriod) {
     force.period = period;
     const ScoreTest test = score(two_recordings(truth, slide(), {"M", "B_a"}));
     ASSERT_TRUE(test.usable);
-    const auto list = best_named(test);
+    const auto list = best_settings(test);
     ASSERT_EQ(test.candidates[list[0].candidate].name, "periodic_force") << period;
     std::cout << "period " << period << " found " << list[0].shapes[0] << " amplitude "
               << std::hypot(list[0].strengths[0], list[0].strengths[1]) << "\n";
