@@ -67,7 +67,8 @@ const std::vector<std::string>& secret_names() {
   return names;
 }
 
-Secret draw_secret(const std::string& name, Draw& draw) {
+/// `low` and `high`: the stroke that both motions pass, m.
+Secret draw_secret(const std::string& name, double low, double high, Draw& draw) {
   const double s = draw.sign(), phase = draw.uniform(0.0, 2.0 * std::numbers::pi);
   const double a = std::sin(phase), b = std::cos(phase);
   if (name == "coulomb_friction") return {name, {{"F_c", 1}}, {}, 5};
@@ -96,10 +97,9 @@ Secret draw_secret(const std::string& name, Draw& draw) {
   if (name == "dead_time") return {name, {{"T_d", 1}}, {}, 0.001, 0.05};
   if (name == "force_over_position") {  // outside the catalogue: a bump somewhere on the stroke
     const int k = static_cast<int>(draw.uniform(5, 12));
-    const double at = draw.uniform(-0.2, 0.6);
     return {name,
             {{fmt::format("c{}", k), s}, {fmt::format("c{}", k + 1), 0.7 * s}},
-            {{"from", at - 0.8}, {"to", at + 0.8}},
+            {{"from", low}, {"to", high}},
             20};
   }
   // Instruments: "signal.part".
@@ -238,31 +238,50 @@ Outcome run(const Case& one, const Rig& paper, std::uint64_t seed) {
   const std::vector<Motion> motions{draw_motion(kind, draw), draw_motion((kind + 1) % 4, draw)};
   const Model<double> declared = rig.model;
   std::vector<Secret> secrets;
-  for (const std::string& name : one.in) secrets.push_back(draw_secret(name, draw));
 
   Outcome outcome;
-  std::vector<double> strengths(secrets.size());
   const auto job_with = [&](const std::vector<double>& with) {
     Rig secretly = rig;
-    for (std::size_t i = 0; i < secrets.size(); ++i) put(secrets[i], with[i], secretly.model);
+    for (std::size_t i = 0; i < with.size(); ++i) put(secrets[i], with[i], secretly.model);
     Draw again(seed + 1, number);
     return job_of(secretly, declared, motions, number, again);
   };
+  double low = -INFINITY, high = INFINITY;
+  Job without = job_with({});
+  without.free.clear();
+  for (std::size_t r = 0; r < motions.size(); ++r) {
+    const auto samples = predict(without, ParameterSpace(without), r, nullptr, {}).samples;
+    const auto [least, most] = std::ranges::minmax(samples, {}, &Sample::position);
+    low = std::max(low, least.position);
+    high = std::min(high, most.position);
+  }
+  for (const std::string& name : one.in) secrets.push_back(draw_secret(name, low, high, draw));
   // The excess of chi-square grows with the square of the strength.
+  std::vector<double> strengths(secrets.size());
+  const auto factor_for = [&](double chi_square) {
+    const double excess = std::isfinite(chi_square) ? std::max(chi_square - 1.0, 0.02) : 1e4;
+    return std::clamp(std::sqrt((one.target - 1.0) / excess), 0.1, 5.0);
+  };
   for (std::size_t i = 0; i < secrets.size(); ++i) {
     strengths[i] = secrets[i].unit;
     for (int k = 0; k < 8; ++k) {
       std::vector<double> alone(secrets.size(), 0.0);
       alone[i] = strengths[i];
-      const double excess = refitted_chi_square(job_with(alone)) - 1.0;
-      const double factor =
-          std::sqrt((one.target - 1.0) / (std::isfinite(excess) ? std::max(excess, 0.02) : 100.0));
-      strengths[i] = std::min(secrets[i].most, strengths[i] * std::clamp(factor, 0.1, 5.0));
+      const double factor = factor_for(refitted_chi_square(job_with(alone)));
+      strengths[i] = std::min(secrets[i].most, strengths[i] * factor);
       if (std::abs(factor - 1.0) < 0.1) break;
     }
   }
-  const Job job = job_with(strengths);
-  const FitResult fit = estimate(job);
+  Job job = job_with(strengths);
+  FitResult fit = estimate(job);
+  // What a fit reaches by more than a small step is known when it has been made.
+  for (int k = 0; k < 4 && secrets.size() == 1; ++k) {
+    const double factor = factor_for(fit.reduced_chi_square);
+    if (std::abs(factor - 1.0) < 0.2 || strengths[0] * factor > secrets[0].most) break;
+    strengths[0] *= factor;
+    job = job_with(strengths);
+    fit = estimate(job);
+  }
   outcome.reached = fit.reduced_chi_square;
   const ClosedLoop loop = close_loop(job, fit);
   for (const EffectTrial& trial : loop.effects) {
