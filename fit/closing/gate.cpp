@@ -4,6 +4,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <numeric>
 
@@ -27,13 +28,6 @@ const ResidualSeries* partner(const std::vector<ResidualSeries>& list, const Res
   for (const ResidualSeries& series : list)
     if (same(series, of)) return &series;
   return nullptr;
-}
-
-/// Value that a chi-square variable with k degrees of freedom exceeds with the probability of a
-/// normal variable exceeding z; E. B. Wilson and M. M. Hilferty (1931).
-double chi_square_quantile(double k, double z) {
-  const double a = 2.0 / (9.0 * k);
-  return k * std::pow(1.0 - a + z * std::sqrt(a), 3.0);
 }
 
 }  // namespace
@@ -93,8 +87,9 @@ Determination determination(const Job& job, const FitResult& result, const Candi
     if (p.uncertainty.at_bound && d.at_bound.empty()) d.at_bound = p.name;
     if (i >= first + strengths && !p.uncertainty.determined && d.open.empty()) d.open = p.name;
   }
-  constexpr double kThreeInTenThousand = 3.4;  // normal quantile
-  d.required = chi_square_quantile(static_cast<double>(strengths), kThreeInTenThousand);
+  constexpr double kChance = 3e-4;
+  const boost::math::chi_squared_distribution<> by_chance(static_cast<double>(strengths));
+  d.required = quantile(complement(by_chance, kChance));
 
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values_of(result));

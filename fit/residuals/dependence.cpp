@@ -1,6 +1,7 @@
 #include "fit/residuals/dependence.h"
 
 #include <algorithm>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -44,15 +45,6 @@ std::vector<std::size_t> quantile_ranges(const std::vector<double>& x, std::size
     range.push_back(static_cast<std::size_t>(below) * ranges / x.size());
   }
   return range;
-}
-
-/// Probability that the ratio of two mean squares of a and b degrees of freedom is above f: the F
-/// distribution's tail after E. Paulson (1942).
-double f_tail(double f, double a, double b) {
-  const double of_a = 2.0 / (9.0 * a), of_b = 2.0 / (9.0 * b);
-  const double root = std::cbrt(f);
-  const double z = ((1.0 - of_b) * root - (1.0 - of_a)) / std::sqrt(of_b * root * root + of_a);
-  return 0.5 * std::erfc(z / std::numbers::sqrt2);
 }
 
 }  // namespace
@@ -99,7 +91,8 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
       if (!(freedom > 3.0 && mean_square(rest) > 0.0)) continue;
       const double worth = mean_square(rest) * n / freedom;
       const double groups = static_cast<double>(ranges.size() - 1);
-      const double p = f_tail(between / groups / worth, groups, freedom);
+      const boost::math::fisher_f_distribution<> by_chance(groups, freedom);
+      const double p = cdf(complement(by_chance, between / groups / worth));
       if (p < kSignificant)
         test.dependences.push_back({regressor.name, between / (n * test.reduced_chi_square), p});
     }
