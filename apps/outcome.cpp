@@ -90,6 +90,12 @@ std::optional<LeftOut> left_out(const Measurement& measurement) {
   return rest;
 }
 
+std::string_view verdict_name(const ParameterUncertainty& uncertainty) {
+  if (uncertainty.at_bound) return "at bound";
+  if (!uncertainty.determined) return "not determined";
+  return uncertainty.weak ? "weakly determined" : "determined";
+}
+
 const char* decision_name(Decision decision) {
   switch (decision) {
     case Decision::accepted:

@@ -68,6 +68,9 @@ struct LeftOut {
 };
 std::optional<LeftOut> left_out(const Measurement& measurement);
 
+/// "determined", "weakly determined", "not determined", "at bound"
+std::string_view verdict_name(const ParameterUncertainty& uncertainty);
+
 /// "accepted", "undecided", "refused"
 const char* decision_name(Decision decision);
 

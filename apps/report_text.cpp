@@ -65,16 +65,32 @@ std::string parameters_text(const Outcome& outcome) {
     rows.push_back({p.name, std::string(quantity.meaning),
                     open ? fmt::format("~{:.1g}", p.value) : with_digits_of(p.value, error),
                     u.determined ? fmt::format("{:.2g}", error) : "-",
-                    u.determined ? fmt::format("{} .. {}", with_digits_of(u.lower, error),
-                                               with_digits_of(u.upper, error))
-                                 : "-",
+                    u.has_interval() ? fmt::format("{} .. {}", with_digits_of(u.lower, error),
+                                                   with_digits_of(u.upper, error))
+                                     : "-",
                     other, std::string(quantity.unit),
-                    u.at_bound ? "at bound"
-                    : open     ? "not determined"
-                               : ""});
+                    verdict_name(u) == "determined" ? "" : std::string(verdict_name(u))});
   }
   return "Parameters\n" + aligned(rows, {Set::left, Set::left, Set::right, Set::right, Set::right,
                                          Set::right, Set::left, Set::left});
+}
+
+/// What the intervals rest on, and what is known instead of parameters that are not determined.
+std::string knowledge_text(const FitResult& result) {
+  const double excess = std::sqrt(result.reduced_chi_square);
+  std::string noise = excess > 1.0
+                          ? fmt::format("residuals as found, {:.3g} times the noise", excess)
+                          : "noise of the size stated below";
+  constexpr double kWhite = 1.2;
+  noise += result.colour > kWhite
+               ? fmt::format(", in which up to {:.2g} samples tell no more than one", result.colour)
+               : ", white";
+  std::string text = paragraph("Standard errors and intervals: for " + noise + ".", 2);
+  for (const WeakDirection& weak : result.identifiability.weak) text += paragraph(weak.words, 2);
+  for (const Combination& c : result.identifiability.combinations)
+    text += fmt::format("  {} = {} +- {:.2g}\n", c.name, with_digits_of(c.value, c.standard_error),
+                        c.standard_error);
+  return text;
 }
 
 std::string errors_text(const Job& job, const FitResult& result) {
@@ -114,13 +130,8 @@ std::string errors_text(const Job& job, const FitResult& result) {
 std::string report_text(const Outcome& outcome) {
   const Job& job = outcome.job();
   const FitResult& result = outcome.fit();
-  const std::string assumption =
-      result.reduced_chi_square > 1.0
-          ? fmt::format("independent residuals of the size found, {:.3g} times the noise",
-                        std::sqrt(result.reduced_chi_square))
-          : "independent noise of the size stated below";
-  std::string text = fmt::format("{}\n{}  Standard errors assume {}.\n\n{}\n", recordings_text(job),
-                                 parameters_text(outcome), assumption,
+  std::string text = fmt::format("{}\n{}{}\n{}\n", recordings_text(job), parameters_text(outcome),
+                                 knowledge_text(result),
                                  outcome.loop ? loop_text(outcome) : errors_text(job, result));
   if (outcome.diagnosis && !outcome.diagnosis->explained) {
     text += residual_text(job, *outcome.diagnosis) + "\n";

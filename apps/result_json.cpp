@@ -76,10 +76,9 @@ Json estimate_json(const ParameterResult& p) {
           {"unit", quantity.unit},
           {"meaning", quantity.meaning},
           {"value", p.value},
-          {"determined", u.determined},
+          {"verdict", verdict_name(u)},
           {"standard_error", optional(u.determined, u.standard_error)},
-          {"confidence_interval", u.determined ? Json{u.lower, u.upper} : Json(nullptr)},
-          {"at_bound", u.at_bound}};
+          {"confidence_interval", u.has_interval() ? Json{u.lower, u.upper} : Json(nullptr)}};
 }
 
 Json parameter_json(const ParameterResult& p, const FreeParameter& free) {
@@ -89,6 +88,39 @@ Json parameter_json(const ParameterResult& p, const FreeParameter& free) {
                         {"upper", free.upper},
                         {"scale", free.logarithmic ? "log" : "linear"}});
   return parameter;
+}
+
+/// What is known of the parameters together.
+Json knowledge_json(const FitResult& fit) {
+  const Identifiability& known = fit.identifiability;
+  const auto name = [&](std::size_t i) { return fit.parameters[i].name; };
+  Json correlation = Json::array();
+  for (const auto& row : fit.correlation.rowwise()) correlation.push_back(list(row, finite));
+  return {{"correlation", std::move(correlation)},
+          {"singular_values", known.singular_values},
+          {"without_influence", list(known.without_influence, name)},
+          {"weak_directions", list(known.weak,
+                                   [&](const WeakDirection& weak) {
+                                     Json parts = Json::object();
+                                     for (const WeakDirection::Part& part : weak.parts)
+                                       parts[name(part.parameter)] = part.change;
+                                     return Json{{"singular_value", weak.singular_value},
+                                                 {"direction", std::move(parts)},
+                                                 {"words", weak.words}};
+                                   })},
+          {"combinations", list(known.combinations,
+                                [](const Combination& c) {
+                                  return Json{{"name", c.name},
+                                              {"value", c.value},
+                                              {"standard_error", c.standard_error}};
+                                })},
+          {"assumptions",
+           {{"residuals",
+             "stationary, with the variance and autocorrelation found in each signal, "
+             "no less than the stated noise"},
+            {"model", "linear over the intervals"},
+            {"samples_per_independent_sample", fit.colour},
+            {"degrees_of_freedom", fit.freedom}}}};
 }
 
 Json force_json(const MissingForce& force) {
@@ -239,6 +271,7 @@ Json result_json(const Outcome& outcome) {
       {"parameters", std::move(parameters)},
       {"reduced_chi_square", finite(fit.reduced_chi_square)},
       {"residual", outcome.diagnosis ? residual_json(job, *outcome.diagnosis) : Json(nullptr)}};
+  json.update(knowledge_json(fit));
   if (outcome.loop) json.update(loop_json(*outcome.loop, outcome.scores));
   json.update(Json{{"coupling_rate", fit.coupling_rate},
                    {"stages", list(fit.stages,

@@ -200,10 +200,16 @@ FitResult estimate(const Job& job, const std::function<void(const Progress&)>& p
       static_cast<double>(at_solution.residuals.size()) - static_cast<double>(space.size());
   if (at_solution.finite && freedom > 0.0)
     result.reduced_chi_square = at_solution.residuals.squaredNorm() / freedom;
-  const auto uncertainties = uncertainty(space, solved.u, at_solution, result.reduced_chi_square);
+  Uncertainty found = uncertainty(space, solved.u, at_solution);
   const std::vector<double> values = space.values(solved.u);
   for (std::size_t i = 0; i < space.size(); ++i)
-    result.parameters.push_back({space.name(i), values[i], uncertainties[i]});
+    result.parameters.push_back({space.name(i), values[i], found.parameters[i]});
+  result.correlation = std::move(found.correlation);
+  result.freedom = found.freedom;
+  result.colour = found.colour;
+  result.identifiability =
+      identifiability(space, solved.u, at_solution,
+                      std::sqrt(found.colour * std::max(1.0, result.reduced_chi_square)));
   conclude(job, solved, result);
   return result;
 }

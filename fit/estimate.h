@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fit/continuation.h"
+#include "fit/identifiability.h"
 #include "fit/residual.h"
 #include "fit/uncertainty.h"
 
@@ -65,9 +66,13 @@ struct FitResult {
   std::vector<RecordingResult> recordings;
   /// Of what was fitted, degrees of freedom counted; not a number where nothing was.
   double reduced_chi_square = std::numeric_limits<double>::quiet_NaN();
-  double coupling_rate = 0.0;  ///< of the last stage
-  int iterations = 0;          ///< of the best start, all stages
-  std::vector<Stage> stages;   ///< of the best start
+  Eigen::MatrixXd correlation;      ///< of the estimates, see uncertainty.h
+  double freedom = 0.0;             ///< independent samples, parameters subtracted
+  double colour = 1.0;              ///< samples per independent sample, of the most coloured signal
+  Identifiability identifiability;  ///< at the solution
+  double coupling_rate = 0.0;       ///< of the last stage
+  int iterations = 0;               ///< of the best start, all stages
+  std::vector<Stage> stages;        ///< of the best start
   std::vector<StartResult> starts;
 };
 

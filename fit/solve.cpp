@@ -136,6 +136,18 @@ Linearization linearize(const Job& job, const ParameterSpace& space, const Eigen
     result.jacobian.middleRows(row, n) = block;
     row += n;
   }
+  // As RecordingCost has them: recording by recording, measurement by measurement.
+  row = 0;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    const Recording& recording = job.recordings[r];
+    for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
+      Eigen::Index n = 0;
+      for (std::size_t i = 0; i < recording.times.size(); ++i)
+        n += recording.fits(recording.measurements[m], i) ? 1 : 0;
+      if (n > 0) result.series.push_back({r, m, row, n});
+      row += n;
+    }
+  }
   return result;
 }
 

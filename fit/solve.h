@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "fit/parameters.h"
 
@@ -33,9 +34,17 @@ struct SolveResult {
 SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
                   double coupling_rate, const SolveOptions& options);
 
-/// Residuals of all fit recordings and priors at u, and their Jacobian with respect to u.
+/// Where the residuals of one measurement of one recording stand.
+struct SeriesRows {
+  std::size_t recording = 0, measurement = 0;
+  Eigen::Index first = 0, count = 0;
+};
+
+/// Residuals of all fit recordings and then of the priors at u, and their Jacobian with respect to
+/// u.
 struct Linearization {
   bool finite = false;
+  std::vector<SeriesRows> series;
   Eigen::VectorXd residuals;
   Eigen::MatrixXd jacobian;
 };

@@ -2,58 +2,176 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <numeric>
+
+#include "fit/residuals/colour.h"
 
 namespace axisfit {
+namespace {
 
-std::vector<ParameterUncertainty> uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
-                                              const Linearization& at_solution,
-                                              double reduced_chi_square) {
-  std::vector<ParameterUncertainty> result(space.size());
+/// (J'J)^-1, of columns J of any length, over what is not rounding.
+class NormalInverse {
+ public:
+  explicit NormalInverse(const Eigen::MatrixXd& j) : length_(j.colwise().norm()) {
+    // Columns of equal length: the rank must not depend on units. A column of zeros stays one.
+    Eigen::MatrixXd scaled = j;
+    for (Eigen::Index k = 0; k < j.cols(); ++k)
+      scaled.col(k) /= length_[k] > 0.0 ? length_[k] : 1.0;
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinV);
+    const Eigen::VectorXd& s = svd.singularValues();
+    const Eigen::MatrixXd& v = svd.matrixV();
+    constexpr double kRounding = 1e-9, kPart = 0.1;
+    open_.assign(static_cast<std::size_t>(j.cols()), false);
+    matrix_.setZero(j.cols(), j.cols());
+    for (Eigen::Index m = 0; m < s.size(); ++m) {
+      if (s[m] > kRounding * s[0]) matrix_ += v.col(m) * v.col(m).transpose() / (s[m] * s[m]);
+      for (Eigen::Index k = 0; k < j.cols() && s[m] <= kRounding * s[0]; ++k)
+        if (std::abs(v(k, m)) > kPart) open_[static_cast<std::size_t>(k)] = true;
+    }
+    for (Eigen::Index k = 0; k < j.cols(); ++k) {
+      if (!(length_[k] > 0.0)) open_[static_cast<std::size_t>(k)] = true;
+      const double back = length_[k] > 0.0 ? 1.0 / length_[k] : 0.0;
+      matrix_.row(k) *= back;
+      matrix_.col(k) *= back;
+    }
+  }
+  const Eigen::MatrixXd& matrix() const { return matrix_; }
+  /// Whether the k-th parameter can change with no effect, alone or together with others.
+  bool is_open(Eigen::Index k) const { return open_[static_cast<std::size_t>(k)]; }
+  bool has_open() const { return std::ranges::find(open_, true) != open_.end(); }
+
+ private:
+  Eigen::VectorXd length_;
+  Eigen::MatrixXd matrix_;
+  std::vector<bool> open_;
+};
+
+/// Autocovariances of the residuals of every series.
+struct Colours {
+  std::vector<std::vector<double>> autocovariance;
+  double independent = 0.0;  ///< samples
+  double colour = 1.0;
+};
+
+Colours colours_of(const Linearization& at, std::size_t parameters) {
+  Colours result;
+  double samples = 0.0;
+  for (const SeriesRows& rows : at.series) samples += static_cast<double>(rows.count);
+  const double spent = samples / std::max(1.0, samples - static_cast<double>(parameters));
+  for (const SeriesRows& rows : at.series) {
+    std::vector<double> g = modelled_autocovariance(
+        {at.residuals.data() + rows.first, static_cast<std::size_t>(rows.count)});
+    // Less than the stated noise is chance, or a statement that errs to the safe side.
+    const double scale = std::max(spent, g[0] > 0.0 ? 1.0 / g[0] : 0.0);
+    for (double& x : g) x *= scale;
+    if (!(g[0] > 0.0)) g[0] = 1.0;
+    const double sum = std::accumulate(g.begin() + 1, g.end(), 0.0);
+    const double colour = std::max(1.0, 1.0 + 2.0 * sum / g[0]);
+    result.colour = std::max(result.colour, colour);
+    result.independent += static_cast<double>(rows.count) / colour;
+    result.autocovariance.push_back(std::move(g));
+  }
+  return result;
+}
+
+/// J'G J; the rows after the last series are those of priors, whose variance is one.
+Eigen::MatrixXd meat(const Linearization& at, const Colours& colours, const Eigen::MatrixXd& j) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(j.cols(), j.cols());
+  Eigen::Index end = 0;
+  for (std::size_t s = 0; s < at.series.size(); ++s) {
+    const SeriesRows& rows = at.series[s];
+    const auto block = j.middleRows(rows.first, rows.count);
+    const std::vector<double>& g = colours.autocovariance[s];
+    Eigen::MatrixXd spread = g[0] * block;
+    for (std::size_t i = 1; i < g.size(); ++i) {
+      const auto lag = static_cast<Eigen::Index>(i);
+      const Eigen::Index rest = rows.count - lag;
+      spread.topRows(rest) += g[i] * block.bottomRows(rest);
+      spread.bottomRows(rest) += g[i] * block.topRows(rest);
+    }
+    sum += block.transpose() * spread;
+    end = rows.first + rows.count;
+  }
+  const auto priors = j.bottomRows(j.rows() - end);
+  return sum + priors.transpose() * priors;
+}
+
+}  // namespace
+
+Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
+                        const Linearization& at_solution) {
+  Uncertainty result;
+  result.parameters.resize(space.size());
+  const auto size = static_cast<Eigen::Index>(space.size());
+  result.correlation.setConstant(size, size, NAN);
+  const auto lower = [&](std::size_t i) { return space.internal(i, space[i].lower); };
+  const auto upper = [&](std::size_t i) { return space.internal(i, space[i].upper); };
   std::vector<Eigen::Index> inside;
   for (std::size_t i = 0; i < space.size(); ++i) {
-    const double lower = space.internal(i, space[i].lower),
-                 upper = space.internal(i, space[i].upper);
     const double here = u[static_cast<Eigen::Index>(i)];
-    const double near = 1e-6 * std::max(1.0, std::min(std::abs(here), upper - lower));
-    result[i].at_bound = here - lower < near || upper - here < near;
-    if (!result[i].at_bound) inside.push_back(static_cast<Eigen::Index>(i));
+    const double near = 1e-6 * std::max(1.0, std::min(std::abs(here), upper(i) - lower(i)));
+    result.parameters[i].at_bound = here - lower(i) < near || upper(i) - here < near;
+    if (!result.parameters[i].at_bound) inside.push_back(static_cast<Eigen::Index>(i));
   }
-  if (!at_solution.finite || inside.empty()) return result;
+  if (!at_solution.finite) return result;
 
-  // Columns of equal length: the rank must not depend on units. A column of zeros stays one.
-  Eigen::MatrixXd j = at_solution.jacobian(Eigen::all, inside);
-  Eigen::VectorXd length = j.colwise().norm();
-  for (Eigen::Index k = 0; k < j.cols(); ++k) j.col(k) /= length[k] > 0.0 ? length[k] : 1.0;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(j, Eigen::ComputeThinV);
-  const Eigen::VectorXd& s = svd.singularValues();
-  const Eigen::MatrixXd& v = svd.matrixV();
-  // Below this the exact Jacobian is rounding.
-  const double negligible = 1e-9 * s[0];
-  const double scale = std::sqrt(std::max(1.0, reduced_chi_square));
-  for (Eigen::Index k = 0; k < j.cols(); ++k) {
-    const auto i = static_cast<std::size_t>(inside[static_cast<std::size_t>(k)]);
-    double variance = 0.0;
-    bool open = !(length[k] > 0.0);
-    for (Eigen::Index m = 0; m < s.size(); ++m) {
-      if (s[m] > negligible)
-        variance += std::pow(v(k, m) / s[m], 2);
-      else if (std::abs(v(k, m)) > 0.1)
-        open = true;
+  const Colours colours = colours_of(at_solution, inside.size());
+  result.colour = colours.colour;
+  result.freedom = colours.independent - static_cast<double>(inside.size());
+  const double t = quantile(boost::math::students_t(std::max(1.0, result.freedom)), 0.975);
+
+  if (!inside.empty()) {
+    const Eigen::MatrixXd j = at_solution.jacobian(Eigen::all, inside);
+    const NormalInverse inverse(j);
+    const Eigen::MatrixXd covariance =
+        inverse.matrix() * meat(at_solution, colours, j) * inverse.matrix();
+    for (Eigen::Index k = 0; k < j.cols(); ++k) {
+      if (inverse.is_open(k)) continue;
+      const auto i = static_cast<std::size_t>(inside[static_cast<std::size_t>(k)]);
+      const double error = std::sqrt(covariance(k, k));
+      const double here = u[inside[static_cast<std::size_t>(k)]];
+      ParameterUncertainty& p = result.parameters[i];
+      // An error of more than a factor of e, or one that spans the allowed range, is no knowledge.
+      const double ratio = space[i].logarithmic ? error : 2.0 * t * error / (upper(i) - lower(i));
+      constexpr double kWeak = 0.25;
+      p.determined = ratio < 1.0;
+      if (!p.determined) continue;
+      p.weak = ratio > kWeak;
+      p.standard_error = error * space.slope(i, here);
+      p.lower = std::max(space[i].lower, space.value(i, here - t * error));
+      p.upper = std::min(space[i].upper, space.value(i, here + t * error));
     }
-    if (open) continue;
-    const double error = scale * std::sqrt(variance) / length[k];  // of u
-    const double here = u[static_cast<Eigen::Index>(i)];
-    ParameterUncertainty& p = result[i];
-    // An error of more than a factor of e, or one that spans the allowed range, is no knowledge.
-    p.determined = space[i].logarithmic
-                       ? error < 1.0
-                       : 2.0 * 1.96 * error <
-                             space.internal(i, space[i].upper) - space.internal(i, space[i].lower);
-    if (!p.determined) continue;
-    p.standard_error = error * space.slope(i, here);
-    p.lower = std::max(space[i].lower, space.value(i, here - 1.96 * error));
-    p.upper = std::min(space[i].upper, space.value(i, here + 1.96 * error));
+    for (Eigen::Index a = 0; a < j.cols(); ++a)
+      for (Eigen::Index b = 0; b < j.cols(); ++b) {
+        const Eigen::Index row = inside[static_cast<std::size_t>(a)];
+        const Eigen::Index column = inside[static_cast<std::size_t>(b)];
+        if (result.parameters[static_cast<std::size_t>(row)].determined &&
+            result.parameters[static_cast<std::size_t>(column)].determined)
+          result.correlation(row, column) =
+              covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
+      }
+  }
+
+  if (inside.size() == space.size()) return result;
+  const NormalInverse inverse(at_solution.jacobian);
+  if (inverse.has_open()) return result;
+  const Eigen::MatrixXd covariance =
+      inverse.matrix() * meat(at_solution, colours, at_solution.jacobian) * inverse.matrix();
+  // Where the minimum would be if there were no bounds.
+  const Eigen::VectorXd step =
+      -inverse.matrix() * (at_solution.jacobian.transpose() * at_solution.residuals);
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    ParameterUncertainty& p = result.parameters[i];
+    if (!p.at_bound) continue;
+    const auto k = static_cast<Eigen::Index>(i);
+    const double inwards = u[k] - lower(i) < upper(i) - u[k] ? 1.0 : -1.0;
+    const double beyond = std::max(0.0, -inwards * step[k]);
+    const double reach = std::sqrt(t * t * covariance(k, k) + beyond * beyond) - beyond;
+    const double other = space.value(i, std::clamp(u[k] + inwards * reach, lower(i), upper(i)));
+    p.lower = inwards > 0.0 ? space[i].lower : other;
+    p.upper = inwards > 0.0 ? other : space[i].upper;
   }
   return result;
 }

@@ -125,18 +125,9 @@ Determination determination(const Job& job, const FitResult& result, const Candi
     rest -= others * solver.solve(shown);
   }
   d.distinct = shown.squaredNorm() > 0.0 ? rest.squaredNorm() / shown.squaredNorm() : 0.0;
-  // In the order of linearize(): recording by recording, signal by signal.
-  Eigen::Index row = 0;
-  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
-    for (std::size_t m = 0; m < job.recordings[r].measurements.size(); ++m) {
-      Eigen::Index n = 0;
-      for (std::size_t i = 0; i < job.recordings[r].times.size(); ++i)
-        n += job.recordings[r].fits(job.recordings[r].measurements[m], i) ? 1 : 0;
-      const ResidualSeries* series = partner(residuals, {r, m, true, {}, {}});
-      if (series != nullptr) d.wald += rest.segment(row, n).squaredNorm() / worth(*series);
-      row += n;
-    }
-  }
+  for (const SeriesRows& rows : at.series)
+    if (const auto* series = partner(residuals, {rows.recording, rows.measurement, true, {}, {}}))
+      d.wald += rest.segment(rows.first, rows.count).squaredNorm() / worth(*series);
   return d;
 }
 

@@ -78,20 +78,13 @@ void allow_for_parameters(const Job& job, const FitResult& result,
   for (Eigen::Index k = 0; k < root.cols(); ++k)
     root.col(k) *= eigen.eigenvalues()[k] > 1e-6 ? 1.0 / std::sqrt(eigen.eigenvalues()[k]) : 0.0;
   const Eigen::MatrixXd shown = judged.jacobian * length.cwiseInverse().asDiagonal() * root;
-  Eigen::Index row = 0;
-  for (std::size_t r = 0; r < other.recordings.size(); ++r) {
-    const Recording& recording = other.recordings[r];
-    for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
-      Eigen::Index n = 0;
-      for (std::size_t i = 0; i < recording.times.size(); ++i)
-        n += recording.fits(recording.measurements[m], i) ? 1 : 0;
-      for (ResidualSeries& series : list)
-        if (n > 0 && series.recording == r && series.measurement == m && !series.fitted)
-          series.allowance = shown.middleRows(row, n).squaredNorm() / static_cast<double>(n) *
-                             std::max(1.0, result.reduced_chi_square);
-      row += n;
-    }
-  }
+  const double excess = std::max(1.0, result.reduced_chi_square);
+  for (const SeriesRows& rows : judged.series)
+    for (ResidualSeries& series : list)
+      if (series.recording == rows.recording && series.measurement == rows.measurement &&
+          !series.fitted)
+        series.allowance = shown.middleRows(rows.first, rows.count).squaredNorm() /
+                           static_cast<double>(rows.count) * excess;
 }
 
 bool is_explained(const ResidualSeries& series) {
