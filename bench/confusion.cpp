@@ -17,14 +17,14 @@
 #include <map>
 #include <mutex>
 #include <numbers>
-#include <random>
 #include <set>
 
 #include "apps/axis_file.h"
+#include "bench/simulated.h"
 #include "fit/closing/close_loop.h"
 #include "fit/parallel.h"
 #include "fit/rest.h"
-#include "sim/rig.h"
+#include "sim/random.h"
 
 namespace {
 
@@ -36,9 +36,7 @@ class Draw {
     std::seed_seq seeds{seed, number};
     generator_.seed(seeds);
   }
-  double uniform(double a, double b) {
-    return a + (b - a) * std::ldexp(static_cast<double>(generator_() >> 11), -53);
-  }
+  double uniform(double a, double b) { return a + (b - a) * axisfit::uniform(generator_); }
   double factor(double k) { return std::pow(k, uniform(-1.0, 1.0)); }
   double sign() { return uniform(0.0, 1.0) < 0.5 ? -1.0 : 1.0; }
 
@@ -116,13 +114,11 @@ std::size_t quantity(const Secret& secret, const std::string& symbol) {
 
 void put(const Secret& secret, double strength, Model<double>& model) {
   const auto member = members(model);
-  const Effects<double> effects{};
-  visit_effects(effects, [&](std::size_t index, const auto& effect) {
-    if (effect.name != secret.name) return;
-    model.structure.effects.set(index);
+  if (const auto effect = effect_named(secret.name)) {
+    model.structure.effects.set(*effect);
     for (const QuantityEntry& entry : quantity_list())
-      if (entry.group == effect.name) *member[entry.index] = 0.0;
-  });
+      if (entry.group == secret.name) *member[entry.index] = 0.0;
+  }
   for (const auto& [symbol, value] : secret.shapes) *member[quantity(secret, symbol)] = value;
   for (const auto& [symbol, value] : secret.strengths)
     *member[quantity(secret, symbol)] += strength * value;
@@ -183,30 +179,14 @@ Job job_of(const Rig& rig, const Model<double>& declared, const std::vector<Moti
     options.duration = 3.0;
     options.seed = seed * 2 + r;
     options.signals = {Signal::velocity, Signal::acceleration, Signal::tachometer};
-    const Table table = record(rig, motions[r], options);
-    Recording recording;
+    Recording recording = simulated(rig, motions[r], options);
     recording.name = r == 0 ? "fit" : "validate";
     recording.role = r == 0 ? Role::fit : Role::validate;
-    recording.times = table.columns[0].values;
-    recording.command = schedule_from_samples(recording.times, table.columns[1].values);
-    for (std::size_t s = 0; s < options.signals.size(); ++s)
-      recording.measurements.push_back({options.signals[s],
-                                        table.columns[2 + s].values,
-                                        rig.noise[index_of(options.signals[s])],
-                                        true,
-                                        true,
-                                        {}});
     leave_out_acceleration_at_rest(recording);
     job.recordings.push_back(std::move(recording));
   }
-  for (const char* name : {"V_L", "B_a", "b_g", "k_g", "T_p"}) {
-    FreeParameter p;
-    p.quantity = find_quantity(name)->index;
-    p.initial = *members(job.model)[p.quantity] * draw.factor(2.0);
-    p.lower = p.initial / 100.0;
-    p.upper = p.initial * 100.0;
-    job.free.push_back(p);
-  }
+  for (const char* name : {"V_L", "B_a", "b_g", "k_g", "T_p"})
+    job.free.push_back(free_parameter(job.model, name, draw.factor(2.0)));
   return job;
 }
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <random>
 
 #include "fit/residual.h"
+#include "sim/random.h"
 
 namespace axisfit {
 namespace {
@@ -29,7 +29,7 @@ Eigen::VectorXd moved(const ParameterSpace& space, Eigen::VectorXd u, int attemp
   std::mt19937_64 generator(static_cast<std::uint64_t>(attempt));
   for (std::size_t i = 0; i < space.size(); ++i) {
     if (!space[i].logarithmic) continue;  // linear ones have no factor, and converge by themselves
-    const double z = std::ldexp(static_cast<double>(generator() >> 11), -52) - 1.0;
+    const double z = 2.0 * uniform(generator) - 1.0;
     double& x = u[static_cast<Eigen::Index>(i)];
     x = std::clamp(x + z * std::log(3.0), space.internal(i, space[i].lower),
                    space.internal(i, space[i].upper));

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <mutex>
 #include <numeric>
-#include <random>
 
 #include "fit/parallel.h"
+#include "sim/random.h"
 
 namespace axisfit {
 namespace {
@@ -160,8 +160,7 @@ std::vector<double> draw_start(const Job& job, int start) {
   std::mt19937_64 generator(seeds);
   std::vector<double> values;
   for (const FreeParameter& p : job.free) {
-    // Between -1 and 1. Standard distributions differ between libraries, this does not.
-    const double z = std::ldexp(static_cast<double>(generator() >> 11), -52) - 1.0;
+    const double z = 2.0 * uniform(generator) - 1.0;
     double value = p.initial;
     if (start > 0) {
       if (p.logarithmic)

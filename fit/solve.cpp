@@ -1,5 +1,7 @@
 #include "fit/solve.h"
 
+#include <ceres/iteration_callback.h>
+#include <ceres/manifold.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 #include <glog/logging.h>
@@ -73,6 +75,26 @@ std::vector<std::unique_ptr<ceres::CostFunction>> costs(const Job& job, const Pa
   return list;
 }
 
+/// Ends a solution as soon as a step arrives at a bound at which it did not begin.
+class StopAtBound : public ceres::IterationCallback {
+ public:
+  StopAtBound(const double* u, std::vector<bool> watched, std::vector<double> lower,
+              std::vector<double> upper)
+      : u_(u), watched_(std::move(watched)), lower_(std::move(lower)), upper_(std::move(upper)) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    for (std::size_t i = 0; i < watched_.size() && summary.step_is_successful; ++i)
+      if (watched_[i] && (u_[i] <= lower_[i] || u_[i] >= upper_[i]))
+        return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    return ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const double* u_;
+  std::vector<bool> watched_;
+  std::vector<double> lower_, upper_;
+};
+
 }  // namespace
 
 SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& start,
@@ -82,36 +104,87 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
   (void)silent;
   SolveResult result;
   result.u = start;
+  result.coupling_rate = coupling_rate;
+  const std::size_t n = space.size();
   ceres::Problem problem;
   double* u = result.u.data();
   for (auto& cost : costs(job, space, coupling_rate))
     problem.AddResidualBlock(cost.release(), nullptr, u);
   if (options.keep_to_start) problem.AddResidualBlock(new KeepCost(start), nullptr, u);
-  for (std::size_t i = 0; i < space.size(); ++i) {
-    const int index = static_cast<int>(i);
-    const double lower = space.internal(i, space[i].lower);
-    const double upper = space.internal(i, space[i].upper);
-    u[i] = std::clamp(u[i], lower, upper);  // exp and log may round a start off its bound
-    problem.SetParameterLowerBound(u, index, lower);
-    problem.SetParameterUpperBound(u, index, upper);
+  std::vector<double> lower, upper;
+  for (std::size_t i = 0; i < n; ++i) {
+    lower.push_back(space.internal(i, space[i].lower));
+    upper.push_back(space.internal(i, space[i].upper));
+    u[i] = std::clamp(u[i], lower[i], upper[i]);  // exp and log may round a start off its bound
+    problem.SetParameterLowerBound(u, static_cast<int>(i), lower[i]);
+    problem.SetParameterUpperBound(u, static_cast<int>(i), upper[i]);
   }
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.num_threads = 1;
-  solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = options.function_tolerance;
   solver.parameter_tolerance = options.parameter_tolerance;
+  solver.update_state_every_iteration = true;
   solver.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
-  result.usable = summary.IsSolutionUsable();
-  result.converged = summary.termination_type == ceres::CONVERGENCE;
-  // The solver reports a negative cost where even the start could not be evaluated.
-  result.cost = result.usable ? summary.final_cost : std::numeric_limits<double>::infinity();
+
+  // The solver projects steps onto the bounds: one that leads beyond a bound moves the other
+  // parameters as if it had got there, and at a bound it gets no further. So a parameter that is
+  // pushed against its bound is held there while the others are fitted, and let go when it is not
+  // pushed any more.
+  const auto at_bound = [&](std::size_t i) { return u[i] <= lower[i] || u[i] >= upper[i]; };
+  const auto any_at_bound = [&] {
+    for (std::size_t i = 0; i < n; ++i)
+      if (at_bound(i)) return true;
+    return false;
+  };
+  std::vector<bool> held(n, false);
+  std::vector<int> changes(n, 0);
+  /// Holds or lets go what the gradient says; whether anything changed.
+  const auto review = [&] {
+    problem.SetManifold(u, nullptr);
+    std::vector<double> gradient;
+    if (!problem.Evaluate({}, nullptr, nullptr, &gradient, nullptr)) return false;
+    bool changed = false;
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool outwards = u[i] <= lower[i] ? gradient[i] > 0.0 : gradient[i] < 0.0;
+      const bool hold = at_bound(i) && outwards;
+      constexpr int kChanges = 4;  // held and let go twice
+      if (hold == held[i] || ++changes[i] > kChanges) continue;
+      held[i] = hold;
+      changed = true;
+    }
+    return changed;
+  };
+  if (any_at_bound()) review();
+  for (;;) {
+    std::vector<int> constant;
+    std::vector<bool> watched(n, false);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (held[i]) constant.push_back(static_cast<int>(i));
+      watched[i] = !at_bound(i);
+    }
+    if (constant.size() == n) {
+      result.converged = true;
+      break;
+    }
+    problem.SetManifold(
+        u, constant.empty() ? nullptr : new ceres::SubsetManifold(static_cast<int>(n), constant));
+    StopAtBound stop(u, std::move(watched), lower, upper);
+    solver.callbacks = {&stop};
+    solver.max_num_iterations = std::max(1, options.max_iterations - result.iterations);
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    result.usable = summary.IsSolutionUsable();
+    result.converged = summary.termination_type == ceres::CONVERGENCE;
+    // The solver reports a negative cost where even the start could not be evaluated.
+    result.cost = result.usable ? summary.final_cost : std::numeric_limits<double>::infinity();
+    result.iterations += static_cast<int>(summary.iterations.size());
+    result.message = summary.message;
+    if (!result.usable || !any_at_bound() || result.iterations > options.max_iterations) break;
+    const bool stopped = summary.termination_type == ceres::USER_SUCCESS;
+    if (!review() && !stopped) break;
+  }
   result.reduced_cost = 2.0 * result.cost / problem.NumResiduals();
-  result.coupling_rate = coupling_rate;
-  result.iterations = static_cast<int>(summary.iterations.size());
-  result.message = summary.message;
   return result;
 }
 

@@ -25,12 +25,8 @@ const QuantityEntry* find_quantity(std::string_view name) {
 bool is_used(const QuantityEntry& entry, const Structure& structure) {
   const bool electric = structure.drive != Drive::force_source;
   const bool backlash = structure.transmission == Transmission::backlash;
-  bool absent = false;  // its effect
-  const Effects<double> effects{};
-  visit_effects(effects, [&](std::size_t index, const auto& effect) {
-    if (entry.group == effect.name) absent = !structure.effects[index];
-  });
-  if (absent) return false;
+  const auto effect = effect_named(entry.group);
+  if (effect && !structure.effects[*effect]) return false;
   if (entry.group == "initial") {
     if (entry.quantity.symbol == "y6") return structure.drive == Drive::velocity_loop;
     if (entry.quantity.symbol == "y4" || entry.quantity.symbol == "y5") return electric;

@@ -2,10 +2,9 @@
 
 #include <cctype>
 #include <cmath>
-#include <numbers>
-#include <random>
 #include <stdexcept>
 
+#include "sim/random.h"
 #include "sim/recorder.h"
 #include "sim/simulate.h"
 
@@ -23,13 +22,9 @@ class NormalStream {
     std::seed_seq sequence(words.begin(), words.end());
     generator_.seed(sequence);
   }
-  double next() {
-    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-    return radius * std::cos(2.0 * std::numbers::pi * uniform());
-  }
+  double next() { return normal(generator_); }
 
  private:
-  double uniform() { return std::ldexp(static_cast<double>(generator_() >> 11), -53); }  // [0, 1)
   std::mt19937_64 generator_;
 };
 

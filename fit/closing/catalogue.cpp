@@ -81,15 +81,6 @@ bool is_taken(const Job& job, std::size_t quantity) {
          });
 }
 
-std::optional<std::size_t> effect_named(std::string_view name) {
-  std::optional<std::size_t> found;
-  const Effects<double> effects{};
-  visit_effects(effects, [&](std::size_t index, const auto& effect) {
-    if (effect.name == name) found = index;
-  });
-  return found;
-}
-
 double neutral(const Quantity& quantity) {
   return std::isnan(quantity.standard) ? 0.0 : quantity.standard;
 }

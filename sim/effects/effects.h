@@ -7,6 +7,8 @@
 #pragma once
 
 #include <bitset>
+#include <optional>
+#include <string_view>
 #include <tuple>
 
 #include "sim/effects/added_mass.h"
@@ -55,6 +57,16 @@ void visit_effects(EffectsOfT& effects, Visitor&& visit) {
         (visit(index++, effect), ...);
       },
       effects);
+}
+
+/// Place in the list of the effect of that name.
+inline std::optional<std::size_t> effect_named(std::string_view name) {
+  std::optional<std::size_t> found;
+  const Effects<double> effects{};
+  visit_effects(effects, [&](std::size_t index, const auto& effect) {
+    if (effect.name == name) found = index;
+  });
+  return found;
 }
 
 namespace slots {

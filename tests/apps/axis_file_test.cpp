@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/random.h"
 #include "tests/apps/files.h"
 
 namespace axisfit {
@@ -162,7 +163,7 @@ TEST_F(AxisFileTest, PartsThatAVariantLacksAreLeftOutOfItsEquations) {
 
 // A value within the limits, with digits to the last place.
 double random_value(std::mt19937_64& generator, double lower, double upper) {
-  const double z = std::ldexp(static_cast<double>(generator() >> 11), -53);
+  const double z = uniform(generator);
   if (lower > 0.0) return lower * std::pow(upper / lower, z);
   return lower + (upper - lower) * z;
 }

@@ -3,13 +3,12 @@
 
 #include <cmath>
 #include <cstdint>
-#include <numbers>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "fit/estimate.h"
+#include "sim/random.h"
 #include "sim/rig.h"
 #include "tests/sim/axes.h"
 
@@ -148,10 +147,7 @@ inline FitResult result_at_start(const Job& job) {
 class Normal {
  public:
   explicit Normal(std::uint64_t seed) : generator_(seed) {}
-  double operator()() {
-    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-    return radius * std::cos(2.0 * std::numbers::pi * uniform());
-  }
+  double operator()() { return normal(generator_); }
   std::vector<double> values(std::size_t n) {
     std::vector<double> list(n);
     for (double& x : list) x = (*this)();
@@ -159,7 +155,6 @@ class Normal {
   }
 
  private:
-  double uniform() { return std::ldexp(static_cast<double>(generator_() >> 11), -53); }
   std::mt19937_64 generator_;
 };
 

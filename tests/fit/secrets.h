@@ -32,9 +32,8 @@ struct Secret {
   void put_into(Model<double>& model) const {
     for (const auto& list : {strengths, shapes}) {
       for (const auto& [quantity, value] : list) {
-        visit_effects(model.effects, [&](std::size_t index, const auto& effect) {
-          if (find_quantity(quantity)->group == effect.name) model.structure.effects.set(index);
-        });
+        if (const auto effect = effect_named(find_quantity(quantity)->group))
+          model.structure.effects.set(*effect);
         *members(model)[find_quantity(quantity)->index] = value;
       }
     }
