@@ -150,10 +150,8 @@ std::string refusal(const Candidate& candidate, const Improvement& gain,
                        gain.validate_percent);
   if (!determined.at_bound.empty()) return determined.at_bound + " ends at its bound";
   if (!determined.open.empty()) return "the recordings do not determine " + determined.open;
-  constexpr double kAlias = 1e-6;
-  if (determined.distinct < kAlias)
-    return fmt::format("the other parameters can imitate it to {:.2f} %",
-                       100.0 * (1.0 - determined.distinct));
+  constexpr double kAlias = 1e-10;  // below is rounding
+  if (determined.distinct < kAlias) return "the other parameters imitate it wholly";
   if (determined.wald < determined.required)
     return fmt::format("its strength is not determined: {:.2g} standard errors from zero",
                        std::sqrt(determined.wald));

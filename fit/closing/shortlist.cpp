@@ -9,6 +9,15 @@
 namespace axisfit {
 namespace {
 
+/// Whether the fits of both would end in the same place.
+bool nearly_same(const Promise& a, const Promise& b) {
+  constexpr double kNearly = 0.05;
+  return same_effect(a.candidate, b.candidate) &&
+         std::ranges::equal(a.score.shapes, b.score.shapes, [](double x, double y) {
+           return std::abs(x - y) <= kNearly * std::max(std::abs(x), std::abs(y));
+         });
+}
+
 std::vector<Promise> best_of(const ScoreTest& test, std::size_t length) {
   constexpr double kLeastGain = 6.0;  // of a sum of squares: below is chance
   constexpr double kNearly = 0.9;     // of the best gain: heard even beyond the length
@@ -72,19 +81,17 @@ std::vector<Promise> preliminary(const Job& job, std::vector<Promise> list, doub
 Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curves, int length,
                     int threads) {
   Shortlist result;
-  const std::vector<double> rates = score_rates(job);
-  for (const double rate : rates) {
+  for (const double rate : score_rates(job)) {
     const ScoreTest test = score_test(job, values, rate, threads, curves);
     result.tried = std::max(result.tried, test.scores.size());
-    for (Promise& promise : best_of(test, static_cast<std::size_t>(length))) {
-      const bool known = std::ranges::any_of(result.promises, [&](const Promise& p) {
-        return same_effect(p.candidate, promise.candidate) &&
-               p.score.shapes == promise.score.shapes;
-      });
+    auto list = best_of(test, static_cast<std::size_t>(length));
+    // What a slow hold shows may be hidden under a firm one: each has its own best.
+    for (Promise& promise : preliminary(job, std::move(list), rate, threads)) {
+      const bool known = std::ranges::any_of(
+          result.promises, [&](const Promise& p) { return nearly_same(p, promise); });
       if (!known) result.promises.push_back(std::move(promise));
     }
   }
-  result.promises = preliminary(job, std::move(result.promises), rates.front(), threads);
   return result;
 }
 

@@ -231,7 +231,7 @@ TEST(RefusalTest, OfWhatIsNotDetermined) {
   d.wald = 9.0;
   EXPECT_NE(reason(d).find("3 standard errors"), std::string::npos) << reason(d);
   d = determined();
-  d.distinct = 1e-9;
+  d.distinct = 1e-12;
   EXPECT_NE(reason(d).find("imitate"), std::string::npos);
   d = determined();
   d.at_bound = "F_c";
