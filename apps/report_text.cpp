@@ -83,7 +83,7 @@ std::string knowledge_text(const FitResult& result) {
                           : "noise of the size stated below";
   constexpr double kWhite = 1.2;
   noise += result.colour > kWhite
-               ? fmt::format(", in which up to {:.2g} samples tell no more than one", result.colour)
+               ? fmt::format(", in which up to {:.3g} samples tell no more than one", result.colour)
                : ", white";
   std::string text = paragraph("Standard errors and intervals: for " + noise + ".", 2);
   for (const WeakDirection& weak : result.identifiability.weak) text += paragraph(weak.words, 2);
@@ -91,6 +91,24 @@ std::string knowledge_text(const FitResult& result) {
     text += fmt::format("  {} = {} +- {:.2g}\n", c.name, with_digits_of(c.value, c.standard_error),
                         c.standard_error);
   return text;
+}
+
+/// How many of several starts ended in the same place, and where the others did.
+std::string starts_text(const FitResult& first) {
+  const std::size_t starts = first.starts.size();
+  if (starts < 2) return "";
+  const std::vector<Minimum> minima = distinct_minima(first.starts);
+  if (minima.empty()) return "";
+  std::string text = fmt::format("{} of {} starts reach this minimum", minima[0].starts, starts);
+  constexpr std::size_t kNamed = 4;
+  std::size_t told = static_cast<std::size_t>(minima[0].starts);
+  for (std::size_t i = 1; i < std::min(minima.size(), kNamed); ++i) {
+    text += fmt::format(", {} one of reduced chi-square {:.4g}", minima[i].starts,
+                        minima[i].reduced_cost);
+    told += static_cast<std::size_t>(minima[i].starts);
+  }
+  if (told < starts) text += fmt::format(", {} end elsewhere or fail", starts - told);
+  return paragraph(text + ".", 2);
 }
 
 std::string errors_text(const Job& job, const FitResult& result) {
@@ -131,7 +149,7 @@ std::string report_text(const Outcome& outcome) {
   const Job& job = outcome.job();
   const FitResult& result = outcome.fit();
   std::string text = fmt::format("{}\n{}{}\n{}\n", recordings_text(job), parameters_text(outcome),
-                                 knowledge_text(result),
+                                 knowledge_text(result) + starts_text(outcome.first),
                                  outcome.loop ? loop_text(outcome) : errors_text(job, result));
   if (outcome.diagnosis && !outcome.diagnosis->explained) {
     text += residual_text(job, *outcome.diagnosis) + "\n";

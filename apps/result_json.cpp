@@ -288,6 +288,12 @@ Json result_json(const Outcome& outcome) {
                                                  {"usable", s.usable},
                                                  {"reduced_cost", finite(s.reduced_cost)}};
                                    })},
+                   {"minima", list(distinct_minima(outcome.first.starts),
+                                   [](const Minimum& m) {
+                                     return Json{{"reduced_cost", m.reduced_cost},
+                                                 {"starts", m.starts},
+                                                 {"values", m.values}};
+                                   })},
                    {"iterations", fit.iterations},
                    {"seed", outcome.file.job.options.seed},
                    {"wall_time_s", outcome.wall_time}});

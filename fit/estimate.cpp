@@ -213,6 +213,19 @@ FitResult estimate(const Job& job, const std::function<void(const Progress&)>& p
   return result;
 }
 
+std::vector<Minimum> distinct_minima(std::vector<StartResult> starts) {
+  std::erase_if(starts, [](const StartResult& s) { return !s.usable; });
+  std::ranges::stable_sort(starts, {}, &StartResult::reduced_cost);
+  constexpr double kSame = 1e-3;
+  std::vector<Minimum> minima;
+  for (StartResult& s : starts) {
+    if (minima.empty() || s.reduced_cost > (1.0 + kSame) * minima.back().reduced_cost)
+      minima.push_back({s.reduced_cost, 0, std::move(s.to)});
+    ++minima.back().starts;
+  }
+  return minima;
+}
+
 std::vector<double> values_of(const FitResult& result) {
   std::vector<double> values;
   for (const ParameterResult& p : result.parameters) values.push_back(p.value);

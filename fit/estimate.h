@@ -57,6 +57,16 @@ struct StartResult {
   double reduced_cost = 0.0;
 };
 
+/// Where several starts ended.
+struct Minimum {
+  double reduced_cost = 0.0;
+  int starts = 0;
+  std::vector<double> values;  ///< of the best of them
+};
+
+/// The usable ends of starts, those of equal cost (to a thousandth) taken together, best first.
+std::vector<Minimum> distinct_minima(std::vector<StartResult> starts);
+
 struct FitResult {
   Status status = Status::failed;
   bool usable = false;  ///< may be relied on for what it says: converged, and better than nothing

@@ -78,6 +78,7 @@ TEST(ResultTest, JsonHasItsDocumentedKeys) {
                                                   "coupling_rate",
                                                   "stages",
                                                   "starts",
+                                                  "minima",
                                                   "iterations",
                                                   "seed",
                                                   "wall_time_s"}));
@@ -404,6 +405,7 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
                                                   "coupling_rate",
                                                   "stages",
                                                   "starts",
+                                                  "minima",
                                                   "iterations",
                                                   "seed",
                                                   "wall_time_s"}));

@@ -135,5 +135,21 @@ TEST(Estimate, RefusesAFitThatIsNoBetterThanAConstant) {
   EXPECT_FALSE(result.usable) << result.verdict;
 }
 
+TEST(DistinctMinima, TakeEqualCostsTogether) {
+  std::vector<StartResult> starts(5);
+  const double costs[] = {1.0, 3.0, 1.0 + 1e-6, 0.0, 3.0001};
+  for (std::size_t i = 0; i < 5; ++i) {
+    starts[i].reduced_cost = costs[i];
+    starts[i].usable = i != 3;
+    starts[i].to = {double(i)};
+  }
+  const auto minima = distinct_minima(starts);
+  ASSERT_EQ(minima.size(), 2u);
+  EXPECT_EQ(minima[0].starts, 2);
+  EXPECT_EQ(minima[0].values, std::vector<double>{0.0});
+  EXPECT_EQ(minima[1].starts, 2);
+  EXPECT_EQ(minima[1].reduced_cost, 3.0);
+}
+
 }  // namespace
 }  // namespace axisfit
