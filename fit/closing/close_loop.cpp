@@ -7,6 +7,7 @@
 #include <cmath>
 #include <mutex>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "fit/closing/extension.h"
@@ -74,10 +75,15 @@ class Loop {
 
   LoopModel& current() { return result_.models.back(); }
 
-  /// Named effects as long as one passes. Where they do not suffice, once more with a curve before
-  /// them: of what is in no catalogue, named effects may have imitated a part.
+  /// Named effects as long as one passes. Where they do not suffice, once more while the simulation
+  /// is held, and then with a curve before them: of what is in no catalogue, named effects may have
+  /// imitated a part.
   void find() {
     find_named();
+    if (explained()) return;
+    Path unheld = path();
+    find_held();
+    if (!is_better(current(), unheld.models.back())) take(std::move(unheld));
     if (explained()) return;
     const Path named = path();
     while (accepted_.size() < static_cast<std::size_t>(options_.max_effects) && round(true)) {
@@ -89,11 +95,46 @@ class Loop {
     if (!round(true)) return take(appended);
     find_named();
     take_away();
-    const double loss =
-        disadvantage(residual_series(appended.models.back().job, appended.models.back().fit),
-                     appended.models.back().job.free.size(),
-                     residual_series(current().job, current().fit), current().job.free.size());
+    const double loss = loss_of(appended.models.back(), current());
     if (loss > 0.0 && (appends || loss > kUndecided)) take(appended);
+  }
+
+  /// By how much b explains the recordings worse than a, parameters counted.
+  static double loss_of(const LoopModel& a, const LoopModel& b) {
+    return disadvantage(residual_series(a.job, a.fit), a.job.free.size(),
+                        residual_series(b.job, b.fit), b.job.free.size());
+  }
+  static bool is_better(const LoopModel& a, const LoopModel& b) {
+    return a.fit.usable && loss_of(a, b) > kUndecided;
+  }
+
+  /// Several effects that are large hide each other: a simulation that runs free drifts away from
+  /// the data whatever is added, and little can be told from what is left. Held to the data it
+  /// stays near. So they are looked for, and judged, by a simulation that is held to the end, and
+  /// are let go together; what is not needed then is taken away.
+  void find_held() {
+    const LoopModel declared = result_.models.front();
+    if (declared.job.options.coupling != CouplingMode::continuation) return;
+    restart();
+    LoopModel& held = result_.models.front();
+    held.job.options.coupling = CouplingMode::fixed;
+    held.job.options.coupling_rate = score_rates(declared.job).front();
+    held.fit = refit_from(held.job, values_of(declared.fit));
+    // What else is missing counts as noise here: judged strictly when it is known.
+    chance_ = 0.05;
+    while (held_round()) {
+    }
+    chance_ = kChance;
+    LoopModel all = accepted_.empty() ? declared : with_accepted(declared.job);
+    result_.models = {declared};
+    if (accepted_.empty() || !all.fit.usable) return restart();
+    rebuild(std::move(all));
+    find_named();
+    take_away();
+  }
+  bool held_round() {
+    return current().fit.usable && !explained() &&
+           accepted_.size() < static_cast<std::size_t>(options_.max_effects) && round(false);
   }
 
   void find_named() {
@@ -138,10 +179,10 @@ class Loop {
 
   void judge(Extension& e, const std::vector<ResidualSeries>& before) const {
     e.gain = improvement(before, e.residuals);
-    e.refusal = !e.fit.usable
-                    ? "with it no usable fit is found"
-                    : refusal(e.candidate, e.gain,
-                              determination(e.job, e.fit, e.candidate, e.residuals), tried_);
+    e.refusal = !e.fit.usable ? "with it no usable fit is found"
+                              : refusal(e.candidate, e.gain,
+                                        determination(e.job, e.fit, e.candidate, e.residuals),
+                                        tried_, chance_);
   }
 
   /// Refits a shortlist and takes the best that passes the gate. Returns whether one did.
@@ -244,14 +285,17 @@ class Loop {
   }
 
   /// The model without one accepted effect, refitted.
-  LoopModel without(std::size_t index) {
-    LoopModel model{"", declared_job(), {}};
+  LoopModel without(std::size_t index) { return with_accepted(declared_job(), index); }
+
+  /// A job with the accepted effects, but for one, refitted from where they are.
+  LoopModel with_accepted(const Job& declared, std::optional<std::size_t> except = {}) {
+    LoopModel model{"", declared, {}};
     std::vector<double> values;
     const FitResult& fit = current().fit;
     for (std::size_t i = 0; i < model.job.free.size(); ++i)
       values.push_back(fit.parameters[i].value);
     for (std::size_t a = 0; a < accepted_.size(); ++a) {
-      if (a == index) continue;
+      if (a == except) continue;
       const Candidate& candidate = accepted_[a].candidate;
       const OwnValues own = own_values(current().job, current().fit, candidate);
       model.job = with_candidate(model.job, candidate, values, own.strengths, own.shapes);
@@ -278,7 +322,7 @@ class Loop {
       const double price =
           static_cast<double>(with.candidate.parameters()) * std::log(std::max(2.0, gain.samples));
       const bool needed =
-          !rest.fit.usable || (gain.comparable && gain.fit_gain > price && gain.p_value < 1e-3);
+          !rest.fit.usable || (gain.comparable && gain.fit_gain > price && gain.p_value < kChance);
       if (needed) {
         ++a;
         continue;
@@ -406,6 +450,7 @@ class Loop {
   std::vector<Accepted> accepted_;
   std::vector<Rivalry> rivalries_;
   std::size_t tried_ = 1;
+  double chance_ = kChance;  ///< how probable it may be that an effect helps by chance
   int round_ = 0;
   bool exchanged_ = false;
 };

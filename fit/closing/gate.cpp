@@ -87,9 +87,9 @@ Determination determination(const Job& job, const FitResult& result, const Candi
     if (p.uncertainty.at_bound && d.at_bound.empty()) d.at_bound = p.name;
     if (i >= first + strengths && !p.uncertainty.determined && d.open.empty()) d.open = p.name;
   }
-  constexpr double kChance = 3e-4;
+  constexpr double kByChance = 3e-4;
   const boost::math::chi_squared_distribution<> by_chance(static_cast<double>(strengths));
-  d.required = quantile(complement(by_chance, kChance));
+  d.required = quantile(complement(by_chance, kByChance));
 
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values_of(result));
@@ -132,7 +132,7 @@ Determination determination(const Job& job, const FitResult& result, const Candi
 }
 
 std::string refusal(const Candidate& candidate, const Improvement& gain,
-                    const Determination& determined, std::size_t tried) {
+                    const Determination& determined, std::size_t tried, double chance) {
   if (!gain.comparable) return "with it the simulation does not get through all recordings";
   // Schwarz's criterion, with the price of having been chosen among many.
   const double price = static_cast<double>(candidate.parameters()) * std::log(gain.samples) +
@@ -142,8 +142,8 @@ std::string refusal(const Candidate& candidate, const Improvement& gain,
         "explains no more than chance: the fit gains {:.3g} where {} of {} effects must gain "
         "{:.3g}",
         std::max(0.0, gain.fit_gain), "the best", tried, price);
-  constexpr double kChance = 1e-3, kLeastPercent = 0.5;
-  if (gain.p_value > kChance)
+  constexpr double kLeastPercent = 0.5;
+  if (gain.p_value > chance)
     return fmt::format("does not help on what was not fitted (p = {:.2g})", gain.p_value);
   if (gain.validate_percent < kLeastPercent)
     return fmt::format("hardly helps on what was not fitted: {:.2g} % less error",

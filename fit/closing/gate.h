@@ -46,9 +46,12 @@ struct Determination {
 Determination determination(const Job& job, const FitResult& result, const Candidate& candidate,
                             const std::vector<ResidualSeries>& residuals);
 
+/// How probable it may be that an effect helps by chance on what was not fitted.
+constexpr double kChance = 1e-3;
+
 /// Why the candidate must be refused; empty when it may stay.
 /// `tried` is the number of candidates and settings among which it was chosen.
 std::string refusal(const Candidate& candidate, const Improvement& gain,
-                    const Determination& determined, std::size_t tried);
+                    const Determination& determined, std::size_t tried, double chance = kChance);
 
 }  // namespace axisfit
