@@ -151,6 +151,13 @@ Candidate curve(std::string_view name, const Scales& scales) {
 
 }  // namespace
 
+std::vector<double> neutral_strengths(const Candidate& candidate) {
+  std::vector<double> values;
+  for (const std::size_t q : candidate.strengths)
+    values.push_back(neutral(quantity_list()[q].quantity));
+  return values;
+}
+
 std::vector<Candidate> catalogue(const Job& job, const Scales& scales) {
   std::vector<Candidate> list;
   const auto offer = [&](Candidate candidate) {

@@ -38,6 +38,9 @@ inline bool same_effect(const Candidate& a, const Candidate& b) {
   return a.strengths == b.strengths;
 }
 
+/// The strengths of an absent effect: zero, but for a gain, which is one.
+std::vector<double> neutral_strengths(const Candidate& candidate);
+
 /// What the recordings span: the scales on which shapes are sought.
 struct Scales {
   double position_low = 0.0, position_high = 0.0;  ///< m, of the arm

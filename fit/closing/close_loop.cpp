@@ -86,7 +86,7 @@ class Loop {
     if (!is_better(current(), unheld.models.back())) take(std::move(unheld));
     if (explained()) return;
     const Path named = path();
-    while (accepted_.size() < static_cast<std::size_t>(options_.max_effects) && round(true)) {
+    while (has_room() && round(true)) {
     }
     const Path appended = path();
     const bool appends = accepted_.size() > named.accepted.size();
@@ -121,10 +121,9 @@ class Loop {
     held.job.options.coupling_rate = score_rates(declared.job).front();
     held.fit = refit_from(held.job, values_of(declared.fit));
     // What else is missing counts as noise here: judged strictly when it is known.
-    chance_ = 0.05;
-    while (held_round()) {
+    constexpr double kForTheTimeBeing = 0.05;
+    while (current().fit.usable && has_room() && !explained() && round(false, kForTheTimeBeing)) {
     }
-    chance_ = kChance;
     LoopModel all = accepted_.empty() ? declared : with_accepted(declared.job);
     result_.models = {declared};
     if (accepted_.empty() || !all.fit.usable) return restart();
@@ -132,14 +131,13 @@ class Loop {
     find_named();
     take_away();
   }
-  bool held_round() {
-    return current().fit.usable && !explained() &&
-           accepted_.size() < static_cast<std::size_t>(options_.max_effects) && round(false);
+  bool has_room() const {
+    return accepted_.size() < static_cast<std::size_t>(options_.max_effects);
   }
 
   void find_named() {
     exchanged_ = false;
-    while (accepted_.size() < static_cast<std::size_t>(options_.max_effects) && !explained())
+    while (has_room() && !explained())
       if (!round(false) && !exchange()) break;
   }
 
@@ -177,16 +175,17 @@ class Loop {
     return !series.empty() && std::ranges::all_of(series, is_explained);
   }
 
-  void judge(Extension& e, const std::vector<ResidualSeries>& before) const {
+  void judge(Extension& e, const std::vector<ResidualSeries>& before,
+             double chance = kChance) const {
     e.gain = improvement(before, e.residuals);
     e.refusal = !e.fit.usable ? "with it no usable fit is found"
                               : refusal(e.candidate, e.gain,
                                         determination(e.job, e.fit, e.candidate, e.residuals),
-                                        tried_, chance_);
+                                        tried_, chance);
   }
 
   /// Refits a shortlist and takes the best that passes the gate. Returns whether one did.
-  bool round(bool curves) {
+  bool round(bool curves, double chance = kChance) {
     ++round_;
     tell("looking for suspects");
     const Shortlist list =
@@ -206,7 +205,7 @@ class Loop {
       Extension& e = extensions[i];
       e = extend(current().job, p.candidate, p.score.values, p.score.strengths, p.score.shapes);
       e.score = p.score.gain;
-      judge(e, before);
+      judge(e, before, chance);
       const std::lock_guard lock(mutex);
       ++done;
     });
@@ -450,7 +449,6 @@ class Loop {
   std::vector<Accepted> accepted_;
   std::vector<Rivalry> rivalries_;
   std::size_t tried_ = 1;
-  double chance_ = kChance;  ///< how probable it may be that an effect helps by chance
   int round_ = 0;
   bool exchanged_ = false;
 };

@@ -110,11 +110,9 @@ Determination determination(const Job& job, const FitResult& result, const Candi
       u.segment(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(strengths));
   // A neutral value that is not zero, as a gain of one, is not part of the strength.
   Eigen::VectorXd zero(static_cast<Eigen::Index>(strengths));
-  for (std::size_t i = 0; i < strengths; ++i) {
-    const double standard = quantity_list()[candidate.strengths[i]].quantity.standard;
-    zero[static_cast<Eigen::Index>(i)] =
-        std::isnan(standard) ? 0.0 : space.internal(first + i, standard);
-  }
+  const std::vector<double> neutral = neutral_strengths(candidate);
+  for (std::size_t i = 0; i < strengths; ++i)
+    zero[static_cast<Eigen::Index>(i)] = space.internal(first + i, neutral[i]);
   const Eigen::VectorXd shown =
       mark - at.jacobian.middleCols(static_cast<Eigen::Index>(first),
                                     static_cast<Eigen::Index>(strengths)) *

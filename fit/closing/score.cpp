@@ -102,11 +102,7 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
     Score& score = test.scores[i];
     const Candidate& candidate = test.candidates[score.candidate];
     score.strengths.assign(candidate.strengths.size(), 0.0);
-    std::vector<double> neutral;
-    for (const std::size_t q : candidate.strengths) {
-      const double standard = quantity_list()[q].quantity.standard;
-      neutral.push_back(std::isnan(standard) ? 0.0 : standard);
-    }
+    const std::vector<double> neutral = neutral_strengths(candidate);
     Candidate shaped = candidate;
     shaped.shapes_are_free = false;
     const Job extended = with_candidate(fixed, shaped, {}, neutral, score.shapes);
