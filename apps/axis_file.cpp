@@ -90,11 +90,6 @@ void read_controller(const ConfigNode& node, ControllerSettings& settings) {
   map.finish();
 }
 
-/// "0.56 ohm", with all digits.
-std::string exact(double value, std::string_view unit) {
-  return with_unit(fmt::format("{}", value), unit);
-}
-
 }  // namespace
 
 std::optional<double> read_value(const ConfigNode& node, const Quantity& quantity) {
@@ -205,11 +200,11 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
     const double value = *member[entry.index];
     const bool custom = entry.group == "initial" || signal_by_name(entry.group).has_value();
     if (!is_used(entry, structure) || (custom && value == entry.quantity.standard)) continue;
-    groups[entry.group].emplace_back(entry.quantity.symbol, exact(value, entry.quantity.unit));
+    groups[entry.group].emplace_back(entry.quantity.symbol, with_unit(value, entry.quantity.unit));
   }
   for (const SignalInfo& signal : kSignalTable)
     if (const double noise = rig.noise[index_of(signal.signal)]; noise > 0.0)
-      groups[std::string(signal.name)].emplace_back("noise", exact(noise, signal.unit));
+      groups[std::string(signal.name)].emplace_back("noise", with_unit(noise, signal.unit));
 
   const auto emit = [&](const std::string& key, const std::string& group) {
     out << YAML::Key << key << YAML::Value << YAML::BeginMap;
@@ -238,7 +233,7 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
   const ControllerSettings& c = rig.controller;
   out << YAML::Key << "controller" << YAML::Value << YAML::BeginMap;
   const auto setting = [&](const char* key, double value, std::string_view unit) {
-    out << YAML::Key << key << YAML::Value << exact(value, unit);
+    out << YAML::Key << key << YAML::Value << with_unit(value, unit);
   };
   setting("period", c.period, "s");
   setting("track_period", c.track_period, "s");
@@ -249,13 +244,7 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
   setting("limit", c.limit, "V");
   setting("counts_per_revolution", c.counts_per_revolution, "1");
   out << YAML::EndMap << YAML::EndMap;
-  std::string text;
-  for (std::size_t at = 0; at < comment.size();) {
-    const std::size_t end = std::min(comment.find('\n', at), comment.size());
-    text += "# " + comment.substr(at, end - at) + "\n";
-    at = end + 1;
-  }
-  return text + out.c_str() + "\n";
+  return with_comment(comment, out.c_str());
 }
 
 }  // namespace axisfit

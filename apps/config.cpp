@@ -522,4 +522,14 @@ void ConfigMap::finish() const {
   }
 }
 
+std::string with_comment(const std::string& comment, const std::string& yaml) {
+  std::string text;
+  for (std::size_t at = 0; at < comment.size();) {
+    const std::size_t end = std::min(comment.find('\n', at), comment.size());
+    text += "# " + comment.substr(at, end - at) + "\n";
+    at = end + 1;
+  }
+  return text + yaml + "\n";
+}
+
 }  // namespace axisfit

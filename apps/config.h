@@ -183,4 +183,7 @@ class ConfigMap {
   bool any_key_ = false;
 };
 
+/// The text of a configuration file, with the lines of a comment first.
+std::string with_comment(const std::string& comment, const std::string& yaml);
+
 }  // namespace axisfit

@@ -7,10 +7,12 @@
 #include <cstdio>
 #include <iostream>
 #include <optional>
+#include <sstream>
 
 #include "apps/axis_file.h"
 #include "apps/config.h"
 #include "apps/job_file.h"
+#include "apps/motion_file.h"
 #include "apps/output_folder.h"
 #include "apps/report_text.h"
 #include "apps/result_json.h"
@@ -23,6 +25,7 @@ using namespace axisfit;
 constexpr const char* kResultFile = "result.json";
 constexpr const char* kAxisFile = "fitted.yaml";
 constexpr const char* kResidualsFile = "residuals.csv";
+constexpr const char* kMotionFile = "next-motion.yaml";
 
 enum ExitCode { kUsable = 0, kBadInput = 2, kNoUsableFit = 3 };
 
@@ -30,7 +33,8 @@ struct Arguments {
   std::string job;
   std::string data;
   std::string output;
-  bool close_loop = false;
+  bool check = false;
+  Wishes wishes;
   bool json = false;
   bool quiet = false;
   std::optional<int> threads, starts;
@@ -40,6 +44,9 @@ struct Arguments {
 constexpr const char* kExamples = R"(Examples:
   fit-params configs/jobs/paper.yaml
   fit-params configs/jobs/close-loop.yaml --close-loop
+  fit-params configs/jobs/paper.yaml --check
+  fit-params configs/jobs/paper.yaml --profile=V_L,k_g
+  fit-params configs/jobs/paper.yaml --suggest-experiment --output results
   fit-params configs/jobs/paper.yaml --output results --starts 20 --seed 7
   fit-params configs/jobs/emps.yaml --data ~/Downloads/EMPS
   fit-params job.yaml --json | jq '.parameters[] | {name, value, standard_error}'
@@ -79,10 +86,49 @@ std::string closing_text(const std::string& phase, int done, int of) {
   return of > 0 ? fmt::format("{} ({} of {} done)", phase, done, of) : phase;
 }
 
+/// What the recordings can tell, before the fit.
+int check(const Arguments& arguments, const Job& job) {
+  std::vector<double> initial;
+  for (const FreeParameter& p : job.free) initial.push_back(p.initial);
+  const Forecast found = forecast(job, initial);
+  if (arguments.json)
+    std::cout << forecast_json(job, found).dump(2) << '\n';
+  else if (!arguments.quiet)
+    std::cout << forecast_text(job, found);
+  if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
+  return kUsable;
+}
+
+/// The files of the output folder: names and texts.
+std::vector<std::pair<std::string, std::string>> files_of(const Arguments& arguments,
+                                                          const Outcome& outcome,
+                                                          const std::string& json) {
+  Rig fitted = outcome.file.rig;
+  fitted.model = fitted_model(outcome.job(), outcome.fit());
+  const std::string origin = fmt::format("axisfit {} from {}, starting from {}", kVersion,
+                                         arguments.job, outcome.file.axis_file);
+  std::vector<std::pair<std::string, std::string>> files{
+      {kResultFile, json},
+      {kAxisFile,
+       format_axis_file(fitted, fmt::format("Fitted by {}.\n{}", origin, verdict_of(outcome)))},
+      {kResidualsFile, residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis)}};
+  if (outcome.suggestion) {
+    const Experiment& next = outcome.suggestion->experiment;
+    files.emplace_back(
+        kMotionFile, format_motion_file({next.motion, next.duration},
+                                        fmt::format("Suggested by {}:\n{}.", origin, next.words)));
+  }
+  return files;
+}
+
 int run(const Arguments& arguments) {
   JobFile file = read_job_file(arguments.job, arguments.data);
-  if (!arguments.output.empty())
-    check_folder(arguments.output, {kResultFile, kAxisFile, kResidualsFile});
+  if (arguments.check) return check(arguments, file.job);
+  if (!arguments.output.empty()) {
+    std::vector<std::string> names{kResultFile, kAxisFile, kResidualsFile};
+    if (arguments.wishes.experiment) names.emplace_back(kMotionFile);
+    check_folder(arguments.output, names);
+  }
   FitOptions& options = file.job.options;
   if (arguments.threads) options.threads = *arguments.threads;
   if (arguments.starts) options.starts = *arguments.starts;
@@ -91,8 +137,7 @@ int run(const Arguments& arguments) {
   const Outcome outcome = [&] {
     ProgressLine line(!arguments.quiet && isatty(STDERR_FILENO) != 0);
     return find_outcome(
-        std::move(file), arguments.close_loop,
-        [&](const Progress& p) { line.show(fitting_text(p)); },
+        std::move(file), arguments.wishes, [&](const Progress& p) { line.show(fitting_text(p)); },
         [&](const std::string& phase, int done, int of) {
           line.show(closing_text(phase, done, of));
         });
@@ -105,18 +150,7 @@ int run(const Arguments& arguments) {
   else if (!arguments.quiet)
     std::cout << report_text(outcome);
   if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
-  if (!arguments.output.empty()) {
-    Rig fitted = outcome.file.rig;
-    fitted.model = fitted_model(outcome.job(), outcome.fit());
-    const std::string comment =
-        fmt::format("Fitted by axisfit {} from {}, starting from {}.\n{}", kVersion, arguments.job,
-                    outcome.file.axis_file, verdict_of(outcome));
-    write_folder(
-        arguments.output,
-        {{kResultFile, json},
-         {kAxisFile, format_axis_file(fitted, comment)},
-         {kResidualsFile, residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis)}});
-  }
+  if (!arguments.output.empty()) write_folder(arguments.output, files_of(arguments, outcome, json));
   return outcome.fit().usable ? kUsable : kNoUsableFit;
 }
 
@@ -129,8 +163,19 @@ int main(int argc, char** argv) {
   app.footer(kExamples);
   app.set_version_flag("--version", std::string("axisfit ") + kVersion);
   app.add_option("JOB.yaml", arguments.job, "the job file (docs/job-file.md)")->required();
-  app.add_flag("--close-loop", arguments.close_loop,
-               "then add the effects that the model lacks, each checked by data not fitted");
+  auto* close =
+      app.add_flag("--close-loop", arguments.wishes.close_loop,
+                   "then add the effects that the model lacks, each checked by data not fitted");
+  std::string profiles;
+  auto* profile = app.add_flag("--profile{all}", profiles,
+                               "likelihood profiles: of all parameters, or --profile=NAME,NAME");
+  auto* experiment = app.add_flag("--suggest-experiment", arguments.wishes.experiment,
+                                  "say which motion to record next; next-motion.yaml in --output");
+  app.add_flag("--check", arguments.check,
+               "do not fit: say what the recordings can tell of the free parameters")
+      ->excludes(close)
+      ->excludes(profile)
+      ->excludes(experiment);
   app.add_option("--data", arguments.data, "folder of the recordings, if not the job file's");
   app.add_option("--output", arguments.output,
                  "folder for result.json, fitted.yaml and residuals.csv");
@@ -148,6 +193,8 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
+  for (std::istringstream names(profiles); std::getline(names, profiles, ',');)
+    arguments.wishes.profiles.push_back(profiles);
   try {
     return run(arguments);
   } catch (const std::exception& error) {  // ConfigError's text has a line for each mistake

@@ -8,6 +8,7 @@
 #include <limits>
 #include <ranges>
 #include <set>
+#include <tuple>
 
 #include "apps/axis_file.h"
 #include "apps/recording_file.h"
@@ -44,6 +45,7 @@ class JobReader {
       const auto recordings = map.required("recordings");
       const auto free = map.required("free");
       if (const auto fit = map.optional("fit")) read_options(*fit);
+      if (const auto limits = map.optional("limits")) read_limits(*limits);
       // What refers to the axis can only be checked with one.
       if (model && recordings) read_recordings(*recordings);
       if (model && free) read_free(*free);
@@ -123,6 +125,19 @@ class JobReader {
       options.spread = spread->as_number(1.0, 1e6).value_or(5.0);
     if (const auto step = map.optional("step"))
       options.step = step->as_quantity("s", 1e-7, 0.1).value_or(options.step);
+    map.finish();
+  }
+
+  void read_limits(const ConfigNode& node) {
+    MachineLimits& limits = result_.limits;
+    ConfigMap map(node);
+    if (const auto travel = map.optional("travel"))
+      if (const auto range = travel->as_bounds("m", -kUnlimited, kUnlimited))
+        std::tie(limits.lowest, limits.highest) = *range;
+    if (const auto speed = map.optional("speed"))
+      limits.speed = speed->as_quantity("m/s", 1e-6, 1e3);
+    if (const auto voltage = map.optional("voltage"))
+      limits.voltage = voltage->as_quantity("V", 1e-6, 1e6);
     map.finish();
   }
 
@@ -352,13 +367,17 @@ class JobReader {
     const auto values = read_column(data, map, signal.unit);
     if (const auto fit = map.optional("fit")) measurement.fitted = fit->as_bool().value_or(true);
     if (const auto sigma = map.optional("sigma")) {
-      measurement.sigma = read_sigma(*sigma, signal.unit);
-      measurement.sigma_given = true;
+      if (sigma->text() == "fit") {
+        measurement.noise = NoiseSource::fit;
+      } else {
+        measurement.sigma = read_sigma(*sigma, signal.unit);
+        measurement.noise = NoiseSource::given;
+      }
     }
     map.finish();
     if (!values || !times || !same_length(node, *values, *times)) return std::nullopt;
     measurement.values = trimmed(*values, *times, trim);
-    if (!measurement.sigma_given) {
+    if (measurement.noise != NoiseSource::given) {
       measurement.sigma = noise_from_differences(measurement.values);
       if (!(measurement.sigma > 0.0))
         node.error(

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "fit/job.h"
+#include "fit/experiment.h"
 #include "sim/rig.h"
 
 namespace axisfit {
@@ -13,6 +13,7 @@ struct JobFile {
   Job job;
   Rig rig;                ///< of the axis file, with the job's effects
   std::string axis_file;  ///< as found
+  MachineLimits limits;   ///< for experiments yet to be made
 };
 
 /// Reads a job file, its axis file and its recordings. Recordings with relative paths are looked

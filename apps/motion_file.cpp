@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "apps/config.h"
 #include "apps/recording_file.h"
+#include "apps/units.h"
 #include "sim/table.h"
 
 namespace axisfit {
@@ -139,6 +141,73 @@ MotionFile read_motion_file(const std::string& path, const Rig& rig) {
   if (const auto root = ConfigNode::load(path, diagnostics)) file = MotionReader(*root, rig).read();
   diagnostics.throw_if_any();
   return file;
+}
+
+namespace {
+
+/// Writes the keys of every type of motion.
+class MotionWriter {
+ public:
+  MotionWriter(YAML::Emitter& out, double duration) : out_(out), duration_(duration) {}
+
+  void operator()(const StepMotion& motion) {
+    begin("step");
+    set("level", motion.level, "V");
+    set("start", motion.start, "s");
+  }
+  void operator()(const LevelsMotion& motion) {
+    begin("levels");
+    out_ << YAML::Key << "levels" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+    for (const double level : motion.levels) out_ << with_unit(level, "V");
+    out_ << YAML::EndSeq;
+    set("hold", motion.hold, "s");
+  }
+  void operator()(const SineMotion& motion) {
+    const bool chirp = motion.from != motion.to;
+    begin(chirp ? "chirp" : "sine");
+    set("amplitude", motion.amplitude, "V");
+    set(chirp ? "from" : "frequency", motion.from, "Hz");
+    if (chirp) set("to", motion.to, "Hz");
+    set("offset", motion.offset, "V");
+  }
+  void operator()(const PrbsMotion& motion) {
+    begin("prbs");
+    set("amplitude", motion.amplitude, "V");
+    set("bit", motion.bit, "s");
+    set("offset", motion.offset, "V");
+    out_ << YAML::Key << "seed" << YAML::Value << motion.seed;
+  }
+  void operator()(const MoveMotion& motion) {
+    begin("move");
+    set("distance", motion.distance, "m");
+    set("speed", motion.speed, "m/s");
+    set("acceleration", motion.acceleration, "m/s^2");
+  }
+  void operator()(const RecordedMotion&) {
+    throw std::logic_error("a recorded motion cannot be written as a motion file");
+  }
+
+ private:
+  void begin(const char* type) {
+    out_ << YAML::Key << "type" << YAML::Value << type;
+    set("duration", duration_, "s");
+  }
+  void set(const char* key, double value, std::string_view unit) {
+    out_ << YAML::Key << key << YAML::Value << with_unit(value, unit);
+  }
+
+  YAML::Emitter& out_;
+  double duration_;
+};
+
+}  // namespace
+
+std::string format_motion_file(const MotionFile& file, const std::string& comment) {
+  YAML::Emitter out;
+  out << YAML::BeginMap;
+  std::visit(MotionWriter(out, file.duration), file.motion);
+  out << YAML::EndMap;
+  return with_comment(comment, out.c_str());
 }
 
 }  // namespace axisfit

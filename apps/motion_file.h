@@ -16,4 +16,8 @@ struct MotionFile {
 /// voltage beyond the rig's limit and a move for an axis without a set-velocity input.
 MotionFile read_motion_file(const std::string& path, const Rig& rig);
 
+/// A motion file that reads back as the same motion, digit for digit. A recorded motion has a file
+/// of its own and cannot be written: std::logic_error. `comment` becomes its first lines.
+std::string format_motion_file(const MotionFile& file, const std::string& comment);
+
 }  // namespace axisfit

@@ -1,8 +1,12 @@
 #include "apps/outcome.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 
 namespace axisfit {
 namespace {
@@ -21,13 +25,9 @@ std::vector<SignalScore> score_signals(const Job& job, const FitResult& fit) {
   std::vector<SignalScore> scores;
   const auto add = [&](const FitResult& result, std::optional<SignalErrors> SignalScore::*part) {
     for (const ResidualSeries& s : residual_series(job, result)) {
-      auto score = std::ranges::find_if(scores, [&](const SignalScore& known) {
-        return known.recording == s.recording && known.measurement == s.measurement &&
-               known.fitted == s.fitted;
-      });
-      if (score == scores.end())
-        score = scores.insert(scores.end(), {s.recording, s.measurement, s.fitted, {}, {}});
-      (*score).*part = errors_of(job, s);
+      SignalScore* score = find_series(scores, s);
+      if (score == nullptr) score = &scores.emplace_back(SignalScore{s, {}, {}});
+      score->*part = errors_of(job, s);
     }
   };
   if (std::ranges::none_of(fit.recordings,
@@ -42,17 +42,46 @@ std::vector<SignalScore> score_signals(const Job& job, const FitResult& fit) {
   return scores;
 }
 
+bool estimates_noise(const Job& job) {
+  return std::ranges::any_of(job.recordings, [](const Recording& r) {
+    return std::ranges::any_of(r.measurements,
+                               [](const Measurement& m) { return m.noise == NoiseSource::fit; });
+  });
+}
+
+/// The parameters that are to be profiled.
+std::vector<std::size_t> profiled(const Job& job, const std::vector<std::string>& names) {
+  const ParameterSpace space(job);
+  std::vector<std::string> known;
+  for (std::size_t i = 0; i < space.size(); ++i) known.push_back(space.name(i));
+  std::vector<std::size_t> chosen;
+  for (const std::string& name : names) {
+    const auto at = std::ranges::find(known, name);
+    if (at == known.end() && name != "all")
+      throw std::runtime_error(
+          fmt::format("--profile: {} is not fitted; fitted are {}", name, fmt::join(known, ", ")));
+    for (std::size_t i = 0; i < space.size(); ++i)
+      if ((name == "all" || name == known[i]) && std::ranges::find(chosen, i) == chosen.end())
+        chosen.push_back(i);
+  }
+  return chosen;
+}
+
 }  // namespace
 
-Outcome find_outcome(JobFile file, bool close_the_loop,
+Outcome find_outcome(JobFile file, const Wishes& wishes,
                      const std::function<void(const Progress&)>& fitting,
                      const LoopProgress& closing) {
   const auto begin = std::chrono::steady_clock::now();
   Outcome outcome;
   outcome.file = std::move(file);
-  outcome.first = estimate(outcome.file.job, fitting);
-  if (close_the_loop && outcome.first.usable)
+  outcome.wishes = wishes;
+  profiled(outcome.file.job, wishes.profiles);
+  outcome.first = estimate_with_noise(outcome.file.job, fitting);
+  if (wishes.close_loop && outcome.first.usable)
     outcome.loop = close_loop(outcome.file.job, outcome.first, {}, closing);
+  if (outcome.loop && estimates_noise(outcome.file.job) && !outcome.loop->effects.empty())
+    outcome.loop->result.fit = estimate_with_noise(outcome.loop->result.job, fitting);
   if (outcome.fit().usable) {
     if (closing) closing("looking at the residual", 0, 0);
     outcome.diagnosis = diagnose(outcome.job(), outcome.fit());
@@ -64,6 +93,17 @@ Outcome find_outcome(JobFile file, bool close_the_loop,
         score.forces.push_back(missing_force(model.job, model.fit, r));
       outcome.scores.push_back(std::move(score));
     }
+  if (outcome.fit().usable && !wishes.profiles.empty())
+    outcome.profiles = profiles(outcome.job(), outcome.fit(),
+                                profiled(outcome.job(), wishes.profiles), [&](int done, int of) {
+                                  if (closing) closing("profiles", done, of);
+                                });
+  if (wishes.experiment)
+    outcome.suggestion =
+        suggest_experiment(outcome.job(), outcome.fit(), outcome.file.rig.controller,
+                           outcome.file.limits, [&](int done, int of) {
+                             if (closing) closing("trying motions", done, of);
+                           });
   const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - begin;
   outcome.wall_time = wall_time.count();
   return outcome;

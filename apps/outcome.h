@@ -11,6 +11,8 @@
 #include "fit/closing/close_loop.h"
 #include "fit/closing/diagnosis.h"
 #include "fit/estimate.h"
+#include "fit/experiment.h"
+#include "fit/profile.h"
 
 namespace axisfit {
 
@@ -22,10 +24,7 @@ struct SignalErrors {
 
 /// The errors of one signal of one recording over the samples that were fitted, or over those that
 /// were not.
-struct SignalScore {
-  std::size_t recording = 0;
-  std::size_t measurement = 0;
-  bool fitted = false;
+struct SignalScore : SeriesKey {
   std::optional<SignalErrors> free_running;  ///< none where that did not finish
   std::optional<SignalErrors> held;          ///< at a coupling, where the fit kept one to its end
 
@@ -38,14 +37,24 @@ struct ModelScore {
   std::vector<MissingForce> forces;  ///< of every recording
 };
 
+/// What is asked for beyond a fit.
+struct Wishes {
+  bool close_loop = false;
+  std::vector<std::string> profiles{};  ///< of these parameters; "all": of all
+  bool experiment = false;              ///< suggest the next one
+};
+
 struct Outcome {
-  JobFile file;     ///< as declared
+  JobFile file;  ///< as declared
+  Wishes wishes;
   FitResult first;  ///< fit of the declared job
   /// None unless it was asked for and the first fit is usable.
   std::optional<ClosedLoop> loop;
-  std::vector<ModelScore> scores;      ///< of the loop's models
-  std::optional<Diagnosis> diagnosis;  ///< of the final model; none unless that is usable
-  double wall_time = 0.0;              ///< s
+  std::vector<ModelScore> scores;        ///< of the loop's models
+  std::optional<Diagnosis> diagnosis;    ///< of the final model; none unless that is usable
+  std::vector<Profile> profiles;         ///< of the final model, those asked for
+  std::optional<Suggestion> suggestion;  ///< of the next experiment, where it was asked for
+  double wall_time = 0.0;                ///< s
 
   /// The final model's: the result of the loop, or else the declared one.
   const Job& job() const { return loop ? loop->result.job : file.job; }
@@ -55,8 +64,9 @@ struct Outcome {
 /// Whether the fit can be used, and what a closed loop says of it.
 std::string verdict_of(const Outcome& outcome);
 
-/// Fits the job, looks for what it lacks and, where asked, adds that.
-Outcome find_outcome(JobFile file, bool close_the_loop,
+/// Fits the job, looks for what it lacks and, where asked, adds that. Throws std::runtime_error
+/// when a wish names a parameter that is not fitted.
+Outcome find_outcome(JobFile file, const Wishes& wishes,
                      const std::function<void(const Progress&)>& fitting = {},
                      const LoopProgress& closing = {});
 

@@ -51,14 +51,6 @@ std::string model_name(const LoopModel& model) {
   return model.added.empty() ? "  declared" : "  + " + model.added;
 }
 
-const SignalScore* find(const ModelScore& score, const SignalScore& like) {
-  for (const SignalScore& s : score.signals)
-    if (s.recording == like.recording && s.measurement == like.measurement &&
-        s.fitted == like.fitted)
-      return &s;
-  return nullptr;
-}
-
 std::string errors_text(const Outcome& outcome) {
   const ClosedLoop& loop = *outcome.loop;
   const bool held = std::ranges::any_of(outcome.scores.front().signals,
@@ -72,7 +64,7 @@ std::string errors_text(const Outcome& outcome) {
     rows.push_back({fmt::format("{}, {}: {}", recording.name, role_name(recording, head.fitted),
                                 info(m.signal).name)});
     for (std::size_t i = 0; i < loop.models.size(); ++i) {
-      const SignalScore* score = find(outcome.scores[i], head);
+      const SignalScore* score = find_series(outcome.scores[i].signals, head);
       std::vector<std::string> row{model_name(loop.models[i]), "-", "-", "-", ""};
       if (score != nullptr && score->judged()) {
         const SignalErrors& e = *score->judged();

@@ -75,24 +75,6 @@ std::string parameters_text(const Outcome& outcome) {
                                          Set::right, Set::left, Set::left});
 }
 
-/// What the intervals rest on, and what is known instead of parameters that are not determined.
-std::string knowledge_text(const FitResult& result) {
-  const double excess = std::sqrt(result.reduced_chi_square);
-  std::string noise = excess > 1.0
-                          ? fmt::format("residuals as found, {:.3g} times the noise", excess)
-                          : "noise of the size stated below";
-  constexpr double kWhite = 1.2;
-  noise += result.colour > kWhite
-               ? fmt::format(", in which up to {:.3g} samples tell no more than one", result.colour)
-               : ", white";
-  std::string text = paragraph("Standard errors and intervals: for " + noise + ".", 2);
-  for (const WeakDirection& weak : result.identifiability.weak) text += paragraph(weak.words, 2);
-  for (const Combination& c : result.identifiability.combinations)
-    text += fmt::format("  {} = {} +- {:.2g}\n", c.name, with_digits_of(c.value, c.standard_error),
-                        c.standard_error);
-  return text;
-}
-
 /// How many of several starts ended in the same place, and where the others did.
 std::string starts_text(const FitResult& first) {
   const std::size_t starts = first.starts.size();
@@ -111,6 +93,10 @@ std::string starts_text(const FitResult& first) {
   return paragraph(text + ".", 2);
 }
 
+const char* mark_of(NoiseSource noise) {
+  return noise == NoiseSource::given ? "" : noise == NoiseSource::differences ? "*" : "**";
+}
+
 std::string errors_text(const Job& job, const FitResult& result) {
   const bool prediction = job.options.coupling == CouplingMode::fixed;
   std::vector<std::vector<std::string>> rows{
@@ -127,7 +113,7 @@ std::string errors_text(const Job& job, const FitResult& result) {
                       std::string(info(e.signal).name),
                       finished ? fmt::format("{:.4g}", e.rmse) : "-",
                       finished ? fmt::format("{:.3g} %", e.nrmse_percent) : "-",
-                      fmt::format("{:.3g}{}", e.sigma, e.sigma_given ? "" : "*"),
+                      fmt::format("{:.3g}{}", e.sigma, mark_of(e.noise)),
                       finished ? fmt::format("{:.4g}", e.reduced_chi_square) : "-",
                       std::string(info(e.signal).unit),
                       e.prediction_rmse ? fmt::format("{:.4g}", *e.prediction_rmse) : ""});
@@ -136,10 +122,15 @@ std::string errors_text(const Job& job, const FitResult& result) {
   std::string text = "Errors of the free-running simulation\n" +
                      aligned(rows, {Set::left, Set::left, Set::left, Set::right, Set::right,
                                     Set::right, Set::right, Set::left, Set::right});
-  const bool estimated = std::ranges::any_of(job.recordings, [](const Recording& r) {
-    return std::ranges::any_of(r.measurements, [](const Measurement& m) { return !m.sigma_given; });
-  });
-  if (estimated) text += "  * estimated from differences of the samples\n";
+  const auto any = [&](NoiseSource source) {
+    return std::ranges::any_of(job.recordings, [&](const Recording& r) {
+      return std::ranges::any_of(r.measurements,
+                                 [&](const Measurement& m) { return m.noise == source; });
+    });
+  };
+  if (any(NoiseSource::differences)) text += "  * estimated from differences of the samples\n";
+  if (any(NoiseSource::fit))
+    text += "  ** estimated together with the parameters: the reduced chi-square judges nothing\n";
   return text;
 }
 
@@ -151,6 +142,8 @@ std::string report_text(const Outcome& outcome) {
   std::string text = fmt::format("{}\n{}{}\n{}\n", recordings_text(job), parameters_text(outcome),
                                  knowledge_text(result) + starts_text(outcome.first),
                                  outcome.loop ? loop_text(outcome) : errors_text(job, result));
+  if (const std::string profiles = profiles_text(outcome); !profiles.empty())
+    text += profiles + "\n";
   if (outcome.diagnosis && !outcome.diagnosis->explained) {
     text += residual_text(job, *outcome.diagnosis) + "\n";
     // A loop has told of the force, and has put the suspects to the test.
@@ -162,6 +155,7 @@ std::string report_text(const Outcome& outcome) {
     for (const std::string& hint : outcome.loop->hints) text += paragraph(hint);
   else if (outcome.diagnosis)
     text += residual_verdict(job, *outcome.diagnosis);
+  if (outcome.wishes.experiment) text += "\n" + suggestion_text(outcome);
   return text;
 }
 

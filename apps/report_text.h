@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/outcome.h"
+#include "fit/forecast.h"
 
 namespace axisfit {
 
@@ -23,6 +24,22 @@ std::string residual_verdict(const Job& job, const Diagnosis& diagnosis);
 
 /// Its part on the closed loop: effects that were tried, and the errors before and after.
 std::string loop_text(const Outcome& outcome);
+
+/// What the intervals rest on, and what is known instead of parameters that are not determined.
+std::string knowledge_text(const FitResult& result);
+
+/// What is known of the parameters together: weak directions, and the combinations that are
+/// determined.
+std::string together_text(const Identifiability& known);
+
+/// Intervals by profile beside those by standard error; empty where there are no profiles.
+std::string profiles_text(const Outcome& outcome);
+
+/// The next experiment, and what it is expected to bring.
+std::string suggestion_text(const Outcome& outcome);
+
+/// What the recordings of a job can tell of its parameters, before the fit.
+std::string forecast_text(const Job& job, const Forecast& forecast);
 
 /// Cells of one row about a missing force: name, rms, noise, per cent of the drive force, cutoff.
 std::vector<std::string> force_cells(const std::string& name, const MissingForce& force);

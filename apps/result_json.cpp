@@ -21,6 +21,18 @@ const char* text(Status status) {
   return "";
 }
 
+const char* noise_name(NoiseSource noise) {
+  switch (noise) {
+    case NoiseSource::given:
+      return "given";
+    case NoiseSource::differences:
+      return "differences";
+    case NoiseSource::fit:
+      return "fit";
+  }
+  return "";
+}
+
 /// A number, or null where there is none.
 Json optional(bool present, double value) { return present ? Json(value) : Json(nullptr); }
 Json finite(double value) { return optional(std::isfinite(value), value); }
@@ -40,7 +52,7 @@ Json signal_json(const Measurement& measurement, const SignalError& e, bool fini
               {"rmse", optional(finished, e.rmse)},
               {"nrmse_percent", optional(finished, e.nrmse_percent)},
               {"sigma", e.sigma},
-              {"sigma_source", e.sigma_given ? "given" : "differences"},
+              {"sigma_source", noise_name(e.noise)},
               {"reduced_chi_square", optional(finished, e.reduced_chi_square)}};
   if (e.prediction_rmse) {
     signal["prediction_rmse"] = *e.prediction_rmse;
@@ -68,6 +80,10 @@ Json recording_json(const Recording& recording, const RecordingResult& result) {
           {"signals", std::move(signals)}};
 }
 
+Json interval_json(const ParameterUncertainty& u) {
+  return u.has_interval() ? Json{u.lower, u.upper} : Json(nullptr);
+}
+
 /// What is said of an estimate wherever it stands.
 Json estimate_json(const ParameterResult& p) {
   const Quantity& quantity = find_quantity(p.name.substr(0, p.name.find('@')))->quantity;
@@ -78,7 +94,7 @@ Json estimate_json(const ParameterResult& p) {
           {"value", p.value},
           {"verdict", verdict_name(u)},
           {"standard_error", optional(u.determined, u.standard_error)},
-          {"confidence_interval", u.has_interval() ? Json{u.lower, u.upper} : Json(nullptr)}};
+          {"confidence_interval", interval_json(u)}};
 }
 
 Json parameter_json(const ParameterResult& p, const FreeParameter& free) {
@@ -91,36 +107,74 @@ Json parameter_json(const ParameterResult& p, const FreeParameter& free) {
 }
 
 /// What is known of the parameters together.
-Json knowledge_json(const FitResult& fit) {
-  const Identifiability& known = fit.identifiability;
-  const auto name = [&](std::size_t i) { return fit.parameters[i].name; };
-  Json correlation = Json::array();
-  for (const auto& row : fit.correlation.rowwise()) correlation.push_back(list(row, finite));
-  return {{"correlation", std::move(correlation)},
-          {"singular_values", known.singular_values},
-          {"without_influence", list(known.without_influence, name)},
-          {"weak_directions", list(known.weak,
-                                   [&](const WeakDirection& weak) {
-                                     Json parts = Json::object();
-                                     for (const WeakDirection::Part& part : weak.parts)
-                                       parts[name(part.parameter)] = part.change;
-                                     return Json{{"singular_value", weak.singular_value},
-                                                 {"direction", std::move(parts)},
-                                                 {"words", weak.words}};
-                                   })},
-          {"combinations", list(known.combinations,
-                                [](const Combination& c) {
-                                  return Json{{"name", c.name},
-                                              {"value", c.value},
-                                              {"standard_error", c.standard_error}};
-                                })},
-          {"assumptions",
-           {{"residuals",
-             "stationary, with the variance and autocorrelation found in each signal, "
-             "no less than the stated noise"},
-            {"model", "linear over the intervals"},
-            {"samples_per_independent_sample", fit.colour},
-            {"degrees_of_freedom", fit.freedom}}}};
+Json together_json(const ParameterSpace& space, const Eigen::MatrixXd& correlation,
+                   const Identifiability& known) {
+  const auto name = [&](std::size_t i) { return space.name(i); };
+  Json rows = Json::array();
+  for (const auto& row : correlation.rowwise()) rows.push_back(list(row, finite));
+  return {
+      {"correlation", std::move(rows)},
+      {"singular_values", known.singular_values},
+      {"without_influence", list(known.without_influence, name)},
+      {"weak_directions", list(known.weak,
+                               [&](const WeakDirection& weak) {
+                                 Json parts = Json::object();
+                                 for (const WeakDirection::Part& part : weak.parts)
+                                   parts[name(part.parameter)] = part.change;
+                                 return Json{{"singular_value", weak.singular_value},
+                                             {"direction", std::move(parts)},
+                                             {"words", weak.words}};
+                               })},
+      {"combinations", list(known.combinations, [](const Combination& c) {
+         return Json{{"name", c.name}, {"value", c.value}, {"standard_error", c.standard_error}};
+       })}};
+}
+
+/// What the intervals rest on.
+Json assumptions_json(const FitResult& fit) {
+  return {{"residuals",
+           "stationary, with the variance and autocorrelation found in each signal, "
+           "no less than the stated noise"},
+          {"model", "linear over the intervals"},
+          {"samples_per_independent_sample", fit.colour},
+          {"degrees_of_freedom", fit.freedom}};
+}
+
+Json profile_json(const Profile& profile, const FitResult& fit) {
+  const auto end = [](const ProfileEnd& e) {
+    return Json{{"value", optional(!e.open, e.value)}, {"open", e.open}};
+  };
+  Json json{{"name", fit.parameters[profile.parameter].name},
+            {"lower", end(profile.lower)},
+            {"upper", end(profile.upper)},
+            {"threshold", profile.threshold},
+            {"points", list(profile.points, [](const ProfilePoint& p) {
+               return Json{{"value", p.value}, {"deviance", p.deviance}};
+             })}};
+  if (profile.better)
+    json["better"] = {{"reduced_cost", profile.better->reduced_cost},
+                      {"values", profile.better->to}};
+  return json;
+}
+
+Json suggestion_json(const Suggestion& s, const FitResult& fit) {
+  Json predicted = Json::array();
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    const ParameterUncertainty& u = s.predicted.parameters[i];
+    predicted.push_back({{"name", fit.parameters[i].name},
+                         {"standard_error", optional(u.determined, u.standard_error)},
+                         {"confidence_interval", interval_json(u)}});
+  }
+  return {{"motion", s.experiment.words},
+          {"duration_s", s.experiment.duration},
+          {"for", fit.parameters[s.parameter].name},
+          {"predicted", std::move(predicted)},
+          {"limits",
+           {{"travel_m", {*s.limits.lowest, *s.limits.highest}},
+            {"speed_mps", *s.limits.speed},
+            {"voltage_v", *s.limits.voltage}}},
+          {"tried", s.tried},
+          {"allowed", s.allowed}};
 }
 
 Json force_json(const MissingForce& force) {
@@ -271,7 +325,14 @@ Json result_json(const Outcome& outcome) {
       {"parameters", std::move(parameters)},
       {"reduced_chi_square", finite(fit.reduced_chi_square)},
       {"residual", outcome.diagnosis ? residual_json(job, *outcome.diagnosis) : Json(nullptr)}};
-  json.update(knowledge_json(fit));
+  json.update(together_json(ParameterSpace(job), fit.correlation, fit.identifiability));
+  json["assumptions"] = assumptions_json(fit);
+  if (!outcome.profiles.empty())
+    json["profile"] =
+        list(outcome.profiles, [&](const Profile& p) { return profile_json(p, fit); });
+  if (outcome.wishes.experiment)
+    json["next_experiment"] =
+        outcome.suggestion ? suggestion_json(*outcome.suggestion, fit) : Json(nullptr);
   if (outcome.loop) json.update(loop_json(*outcome.loop, outcome.scores));
   json.update(Json{{"coupling_rate", fit.coupling_rate},
                    {"stages", list(fit.stages,
@@ -297,6 +358,32 @@ Json result_json(const Outcome& outcome) {
                    {"iterations", fit.iterations},
                    {"seed", outcome.file.job.options.seed},
                    {"wall_time_s", outcome.wall_time}});
+  return json;
+}
+
+nlohmann::ordered_json forecast_json(const Job& job, const Forecast& forecast) {
+  const ParameterSpace space(job);
+  Json parameters = Json::array();
+  for (std::size_t i = 0; i < space.size() && forecast.finite; ++i) {
+    const ParameterUncertainty& u = forecast.uncertainty.parameters[i];
+    Json shown = Json::array();
+    for (std::size_t s = 0; s < forecast.series.size(); ++s) {
+      const Recording& recording = job.recordings[forecast.series[s].recording];
+      const Measurement& m = recording.measurements[forecast.series[s].measurement];
+      shown.push_back({{"recording", recording.name},
+                       {"signal", info(m.signal).name},
+                       {"rms_over_noise", forecast.shown(static_cast<Eigen::Index>(i),
+                                                         static_cast<Eigen::Index>(s))}});
+    }
+    parameters.push_back({{"name", space.name(i)},
+                          {"initial", space[i].initial},
+                          {"verdict", verdict_name(u)},
+                          {"standard_error", optional(u.determined, u.standard_error)},
+                          {"shown", std::move(shown)}});
+  }
+  Json json{
+      {"version", kVersion}, {"finite", forecast.finite}, {"parameters", std::move(parameters)}};
+  json.update(together_json(space, forecast.uncertainty.correlation, forecast.together));
   return json;
 }
 

@@ -4,9 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/outcome.h"
+#include "fit/forecast.h"
 
 namespace axisfit {
 
 nlohmann::ordered_json result_json(const Outcome& outcome);
+
+/// What the recordings can tell of the parameters, before the fit.
+nlohmann::ordered_json forecast_json(const Job& job, const Forecast& forecast);
 
 }  // namespace axisfit

@@ -245,4 +245,8 @@ std::string with_unit(std::string number, std::string_view si_unit) {
   return number;
 }
 
+std::string with_unit(double value, std::string_view si_unit) {
+  return with_unit(fmt::format("{}", value), si_unit);
+}
+
 }  // namespace axisfit

@@ -40,5 +40,7 @@ bool is_dimensionless(std::string_view si_unit);
 
 /// "0.56 ohm": a number with its unit, which is left out of plain numbers.
 std::string with_unit(std::string number, std::string_view si_unit);
+/// The same, with all digits that the value needs.
+std::string with_unit(double value, std::string_view si_unit);
 
 }  // namespace axisfit

@@ -20,7 +20,7 @@ inline Recording simulated(const Rig& rig, const Motion& motion, const Recording
     m.signal = options.signals[s];
     m.values = table.columns[2 + s].values;
     m.sigma = rig.noise[index_of(m.signal)];
-    m.sigma_given = true;
+    m.noise = NoiseSource::given;
     recording.measurements.push_back(std::move(m));
   }
   return recording;

@@ -117,15 +117,17 @@ double first_coupling_rate(const Job& job) {
   return rate;
 }
 
+double last_coupling_rate(const Job& job) {
+  return job.options.coupling == CouplingMode::fixed ? first_coupling_rate(job) : 0.0;
+}
+
 ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
                                     const Eigen::VectorXd& start,
                                     const std::function<void(const Stage&)>& progress) {
   Continuation continuation(job, space, progress);
   ContinuationResult result;
   if (job.options.coupling != CouplingMode::continuation || !can_be_coupled(job)) {
-    const double rate =
-        job.options.coupling == CouplingMode::fixed ? first_coupling_rate(job) : 0.0;
-    result.last = continuation.solve_stage(start, rate, true);
+    result.last = continuation.solve_stage(start, last_coupling_rate(job), true);
     continuation.report();
   } else {
     const double rate = first_coupling_rate(job);
@@ -157,8 +159,8 @@ ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
       double least = 0.9 * known;
       std::optional<Eigen::VectorXd> from;
       for (int move = 0; move < (from || result.last.usable ? kMoves : kMovesToBegin); ++move) {
-        const SolveResult held =
-            continuation.solve_stage(moved(space, start, attempt * kMovesToBegin + move), rate, false);
+        const SolveResult held = continuation.solve_stage(
+            moved(space, start, attempt * kMovesToBegin + move), rate, false);
         continuation.report();
         if (held.usable && std::abs(held.cost - known) < 0.01 * known) ++confirmed;
         if (!from && confirmed >= kConfirmed) break;

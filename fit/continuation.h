@@ -30,6 +30,9 @@ struct ContinuationResult {
 /// allows, 1 per sample interval for a recorded velocity and 0.3 for position alone.
 double first_coupling_rate(const Job& job);
 
+/// The rate at which the fit ends: zero unless the job fixes the coupling.
+double last_coupling_rate(const Job& job);
+
 /// Fits from u, through all stages of job.options.coupling. `progress` is told of every stage.
 ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
                                     const Eigen::VectorXd& u,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <numeric>
 
@@ -74,7 +75,7 @@ RecordingResult judge(const Job& job, const ParameterSpace& space, std::size_t i
     error.signal = measurement.signal;
     error.fitted = measurement.fitted && recording.role == Role::fit;
     error.sigma = measurement.sigma;
-    error.sigma_given = measurement.sigma_given;
+    error.noise = measurement.noise;
     if (result.prediction.finished) {
       const double mean_square =
           mean_square_error(measurement, result.prediction.simulated[m], first);
@@ -103,7 +104,9 @@ std::string hopeless_signal(const Job& job, const FitResult& result) {
         return fmt::format("{} of {}", info(e.signal).name, job.recordings[r].name);
       const double rmse = e.prediction_rmse.value_or(e.rmse);
       const double chi_square = e.prediction_reduced_chi_square.value_or(e.reduced_chi_square);
-      if (chi_square > 2.0 && rmse > standard_deviation(job.recordings[r].measurements[m].values))
+      // Small beside the noise, if that is not itself taken from the residual.
+      const bool noisy = chi_square <= 2.0 && e.noise != NoiseSource::fit;
+      if (!noisy && rmse > standard_deviation(job.recordings[r].measurements[m].values))
         return fmt::format("{} of {}", info(e.signal).name, job.recordings[r].name);
     }
   }
@@ -190,11 +193,13 @@ FitResult estimate(const Job& job, const std::function<void(const Progress&)>& p
   result.message = solved.message;
   result.iterations = solved.iterations;
   result.stages = best.result.stages;
-  result.coupling_rate = solved.coupling_rate;
+  result.coupling_rate = last_coupling_rate(job);
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     result.recordings.push_back(judge(job, space, r, solved.u, result.coupling_rate));
 
-  const Linearization at_solution = linearize(job, space, solved.u, result.coupling_rate);
+  result.at_solution =
+      std::make_shared<const Linearization>(linearize(job, space, solved.u, result.coupling_rate));
+  const Linearization& at_solution = *result.at_solution;
   const double freedom =
       static_cast<double>(at_solution.residuals.size()) - static_cast<double>(space.size());
   if (at_solution.finite && freedom > 0.0)
@@ -210,6 +215,53 @@ FitResult estimate(const Job& job, const std::function<void(const Progress&)>& p
       identifiability(space, solved.u, at_solution,
                       std::sqrt(found.colour * std::max(1.0, result.reduced_chi_square)));
   conclude(job, solved, result);
+  return result;
+}
+
+FitResult estimate_with_noise(Job& job, const std::function<void(const Progress&)>& progress) {
+  FitResult result = estimate(job, progress);
+  Job again = job;
+  again.options.starts = 1;
+  // It is at the minimum already, and follows it.
+  if (again.options.coupling == CouplingMode::continuation)
+    again.options.coupling = CouplingMode::none;
+  constexpr int kTurns = 20;
+  constexpr double kStays = 1e-4;
+  for (int turn = 0; turn < kTurns && result.usable; ++turn) {
+    // Of every signal: its sum of squares and number of samples.
+    std::map<Signal, std::pair<double, double>> sums;
+    for (const SeriesRows& rows : result.at_solution->series) {
+      const Measurement& m = again.recordings[rows.recording].measurements[rows.measurement];
+      if (m.noise != NoiseSource::fit) continue;
+      const auto r = result.at_solution->residuals.segment(rows.first, rows.count);
+      sums[m.signal].first += r.squaredNorm() * m.sigma * m.sigma;
+      sums[m.signal].second += static_cast<double>(rows.count);
+    }
+    if (sums.empty()) return result;
+    const double n = static_cast<double>(result.at_solution->residuals.size());
+    const double spent = n / std::max(1.0, n - static_cast<double>(job.free.size()));
+    double change = 0.0;
+    for (Recording& recording : again.recordings)
+      for (Measurement& m : recording.measurements) {
+        const auto sum = sums.find(m.signal);
+        if (m.noise != NoiseSource::fit || sum == sums.end()) continue;
+        const double sigma = std::sqrt(spent * sum->second.first / sum->second.second);
+        if (!(sigma > 0.0)) continue;
+        change = std::max(change, std::abs(std::log(sigma / m.sigma)));
+        m.sigma = sigma;
+      }
+    if (change < kStays) break;
+    const std::vector<double> values = values_of(result);
+    for (std::size_t i = 0; i < again.free.size(); ++i) again.free[i].initial = values[i];
+    std::vector<StartResult> starts = std::move(result.starts);
+    std::vector<Stage> stages = std::move(result.stages);
+    result = estimate(again, progress);
+    result.starts = std::move(starts);
+    result.stages = std::move(stages);
+  }
+  again.free = job.free;
+  again.options = job.options;
+  job = std::move(again);
   return result;
 }
 

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +28,7 @@ struct SignalError {
   double rmse = 0.0;           ///< free-running simulation, in the signal's unit
   double nrmse_percent = 0.0;  ///< of the measured range
   double sigma = 0.0;          ///< of the noise
-  bool sigma_given = false;
+  NoiseSource noise = NoiseSource::differences;
   double reduced_chi_square = 0.0;  ///< (rmse / sigma)^2
   /// The same with the coupling at which the fit ended; only where that is not zero.
   std::optional<double> prediction_rmse, prediction_reduced_chi_square;
@@ -76,6 +77,8 @@ struct FitResult {
   std::vector<RecordingResult> recordings;
   /// Of what was fitted, degrees of freedom counted; not a number where nothing was.
   double reduced_chi_square = std::numeric_limits<double>::quiet_NaN();
+  /// Where nothing was fitted, not finite. Shared between copies, for it is large.
+  std::shared_ptr<const Linearization> at_solution;
   Eigen::MatrixXd correlation;      ///< of the estimates, see uncertainty.h
   double freedom = 0.0;             ///< independent samples, parameters subtracted
   double colour = 1.0;              ///< samples per independent sample, of the most coloured signal
@@ -103,6 +106,13 @@ std::vector<double> values_of(const FitResult& result);
 
 /// Fits a job. The result depends on the job alone, not on the number of threads.
 FitResult estimate(const Job& job, const std::function<void(const Progress&)>& progress = {});
+
+/// Fits a job, and where the noise of a measurement is to be estimated together with the
+/// parameters, goes on in turn: sigma in the job becomes the size of the residual, degrees of
+/// freedom counted, and the job is fitted again with it, until both stay. That is the maximum of
+/// the likelihood of independent normal noise. A signal has one sigma in all recordings in which it
+/// is to be estimated.
+FitResult estimate_with_noise(Job& job, const std::function<void(const Progress&)>& progress = {});
 
 /// The model with the estimates in place of the free quantities that all recordings share.
 Model<double> fitted_model(const Job& job, const FitResult& result);

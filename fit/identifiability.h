@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/solve.h"
+#include "fit/least_squares.h"
 
 namespace axisfit {
 

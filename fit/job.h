@@ -24,13 +24,20 @@ enum class InitialState {
   data,   ///< position and velocity from the first samples; the rest as given
 };
 
+/// Where the size of a measurement's noise comes from.
+enum class NoiseSource {
+  given,
+  differences,  ///< of the samples, see noise.h
+  fit,          ///< estimated together with the parameters, see estimate_with_noise
+};
+
 /// One measured signal of a recording, in SI units.
 struct Measurement {
   Signal signal = Signal::velocity;
   std::vector<double> values;  ///< one per sample
   double sigma = 0.0;          ///< standard deviation of its noise, > 0
-  bool sigma_given = false;    ///< false: estimated from the values, see noise.h
-  bool fitted = true;          ///< false: compared and reported, not part of the fit
+  NoiseSource noise = NoiseSource::differences;
+  bool fitted = true;  ///< false: compared and reported, not part of the fit
   /// Samples that are neither fitted nor judged, see rest.h; empty: none.
   std::vector<bool> left_out;
 

@@ -5,7 +5,23 @@
 
 namespace axisfit {
 
-ParameterSpace::ParameterSpace(const Job& job) : job_(job), free_(job.free) {
+namespace {
+
+std::vector<std::string> names_in(const Job& job) {
+  std::vector<std::string> names;
+  for (const FreeParameter& p : job.free) {
+    names.push_back(quantity_list()[p.quantity].name);
+    if (p.recording) names.back() += "@" + job.recordings[*p.recording].name;
+  }
+  return names;
+}
+
+}  // namespace
+
+ParameterSpace::ParameterSpace(const Job& job) : ParameterSpace(job.free, names_in(job)) {}
+
+ParameterSpace::ParameterSpace(std::span<const FreeParameter> free, std::vector<std::string> names)
+    : free_(free), names_(std::move(names)) {
   for (const FreeParameter& p : free_) {
     // Any size of the parameter's order will do; a zero start takes it from the bounds.
     double magnitude = std::abs(p.initial);
@@ -13,12 +29,6 @@ ParameterSpace::ParameterSpace(const Job& job) : job_(job), free_(job.free) {
       magnitude = 0.01 * (p.upper - p.lower);
     magnitude_.push_back(magnitude > 0.0 ? magnitude : 1.0);
   }
-}
-
-std::string ParameterSpace::name(std::size_t i) const {
-  std::string name = quantity_list()[free_[i].quantity].name;
-  if (free_[i].recording) name += "@" + job_.recordings[*free_[i].recording].name;
-  return name;
 }
 
 double ParameterSpace::value(std::size_t i, double u) const {
@@ -45,13 +55,14 @@ std::vector<double> ParameterSpace::values(const Eigen::VectorXd& u) const {
   return values;
 }
 
-Model<double> ParameterSpace::model_at(const double* u, std::size_t recording) const {
-  Model<double> model = job_.model;
+Model<double> model_at(const Job& job, const ParameterSpace& space, const double* u,
+                       std::size_t recording) {
+  Model<double> model = job.model;
   const std::vector<double*> member = members(model);
-  for (const auto& [quantity, value] : job_.recordings[recording].overrides)
+  for (const auto& [quantity, value] : job.recordings[recording].overrides)
     *member[quantity] = value;
-  for (std::size_t i = 0; i < size(); ++i)
-    if (applies(i, recording)) *member[free_[i].quantity] = value(i, u[i]);
+  for (std::size_t i = 0; i < space.size(); ++i)
+    if (space.applies(i, recording)) *member[space[i].quantity] = space.value(i, u[i]);
   return model;
 }
 

@@ -10,17 +10,19 @@
 
 namespace axisfit {
 
-/// Maps a job's free parameters to the vector u that the solver works on: the logarithm of a
-/// logarithmic parameter, and a linear one divided by its magnitude.
+/// Maps free parameters to the vector u that the solver works on: the logarithm of a logarithmic
+/// parameter, and a linear one divided by its magnitude.
 class ParameterSpace {
  public:
-  /// The job must outlive the space.
+  /// The parameters must outlive the space.
+  ParameterSpace(std::span<const FreeParameter> free, std::vector<std::string> names);
+  /// Of a job, which must outlive the space. Named by their quantities, with "@recording" where one
+  /// belongs to one recording only.
   explicit ParameterSpace(const Job& job);
 
   std::size_t size() const { return free_.size(); }
   const FreeParameter& operator[](std::size_t i) const { return free_[i]; }
-  /// Name of the i-th parameter; with "@recording" when it belongs to one recording only.
-  std::string name(std::size_t i) const;
+  const std::string& name(std::size_t i) const { return names_[i]; }
 
   double value(std::size_t i, double u) const;
   /// d value / d u
@@ -35,13 +37,14 @@ class ParameterSpace {
     return !free_[i].recording || *free_[i].recording == recording;
   }
 
-  /// The model of one recording at u, with the recording's overrides and initial state.
-  Model<double> model_at(const double* u, std::size_t recording) const;
-
  private:
-  const Job& job_;
   std::span<const FreeParameter> free_;
+  std::vector<std::string> names_;
   std::vector<double> magnitude_;
 };
+
+/// The model of one recording of a job at u, with the recording's overrides and initial state.
+Model<double> model_at(const Job& job, const ParameterSpace& space, const double* u,
+                       std::size_t recording);
 
 }  // namespace axisfit

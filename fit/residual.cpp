@@ -56,7 +56,7 @@ Prediction predict(const Job& job, const ParameterSpace& space, std::size_t inde
   const Recording& recording = job.recordings[index];
   std::vector<Signal> signals;
   for (const Measurement& m : recording.measurements) signals.push_back(m.signal);
-  const Model<double> model = space.model_at(u, index);
+  const Model<double> model = model_at(job, space, u, index);
   Recorder<double> recorder(model.instruments, signals, recording.times);
   Prediction prediction;
   const SimulationOutcome outcome =
@@ -101,7 +101,7 @@ template <class T>
 bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobian,
                              std::span<const std::size_t> columns) const {
   const Recording& recording = job_.recordings[recording_];
-  Model<T> model = convert<T>(space_.model_at(u, recording_));
+  Model<T> model = convert<T>(model_at(job_, space_, u, recording_));
   if constexpr (!std::is_same_v<T, double>) {
     const std::vector<T*> member = members(model);
     for (std::size_t k = 0; k < columns.size(); ++k)

@@ -53,6 +53,7 @@ struct Colours {
   std::vector<std::vector<double>> autocovariance;
   double independent = 0.0;  ///< samples
   double colour = 1.0;
+  double inflation = 1.0;  ///< of what white noise of the stated size contributes, at most
 };
 
 Colours colours_of(const Linearization& at, std::size_t parameters) {
@@ -70,6 +71,7 @@ Colours colours_of(const Linearization& at, std::size_t parameters) {
     const double sum = std::accumulate(g.begin() + 1, g.end(), 0.0);
     const double colour = std::max(1.0, 1.0 + 2.0 * sum / g[0]);
     result.colour = std::max(result.colour, colour);
+    result.inflation = std::max(result.inflation, std::sqrt(g[0] * colour));
     result.independent += static_cast<double>(rows.count) / colour;
     result.autocovariance.push_back(std::move(g));
   }
@@ -100,6 +102,10 @@ Eigen::MatrixXd meat(const Linearization& at, const Colours& colours, const Eige
 
 }  // namespace
 
+double student_95(double freedom) {
+  return quantile(boost::math::students_t(std::max(1.0, freedom)), 0.975);
+}
+
 Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
                         const Linearization& at_solution) {
   Uncertainty result;
@@ -120,7 +126,8 @@ Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
   const Colours colours = colours_of(at_solution, inside.size());
   result.colour = colours.colour;
   result.freedom = colours.independent - static_cast<double>(inside.size());
-  const double t = quantile(boost::math::students_t(std::max(1.0, result.freedom)), 0.975);
+  for (ParameterUncertainty& p : result.parameters) p.inflation = colours.inflation;
+  const double t = student_95(result.freedom);
 
   if (!inside.empty()) {
     const Eigen::MatrixXd j = at_solution.jacobian(Eigen::all, inside);
@@ -133,6 +140,7 @@ Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
       const double error = std::sqrt(covariance(k, k));
       const double here = u[inside[static_cast<std::size_t>(k)]];
       ParameterUncertainty& p = result.parameters[i];
+      p.inflation = error / std::sqrt(inverse.matrix()(k, k));
       // An error of more than a factor of e, or one that spans the allowed range, is no knowledge.
       const double ratio = space[i].logarithmic ? error : 2.0 * t * error / (upper(i) - lower(i));
       constexpr double kWeak = 0.25;
@@ -166,6 +174,7 @@ Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
     ParameterUncertainty& p = result.parameters[i];
     if (!p.at_bound) continue;
     const auto k = static_cast<Eigen::Index>(i);
+    p.inflation = std::sqrt(covariance(k, k) / inverse.matrix()(k, k));
     const double inwards = u[k] - lower(i) < upper(i) - u[k] ? 1.0 : -1.0;
     const double beyond = std::max(0.0, -inwards * step[k]);
     const double reach = std::sqrt(t * t * covariance(k, k) + beyond * beyond) - beyond;

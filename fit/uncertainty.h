@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "fit/solve.h"
+#include "fit/least_squares.h"
 
 namespace axisfit {
 
@@ -14,6 +14,9 @@ struct ParameterUncertainty {
   bool determined = false;      ///< false: the data leave it open, alone or together with others
   bool weak = false;            ///< determined, but to no more than its order of magnitude
   double standard_error = 0.0;  ///< in the quantity's unit; 0 unless determined
+  /// Standard error over that of white noise of the stated size; where there is none, the most
+  /// that it could be.
+  double inflation = 1.0;
   /// 95 % interval, in the quantity's unit: on a logarithmic scale not symmetric; at a bound
   /// one-sided. Both zero where there is none.
   double lower = 0.0, upper = 0.0;
@@ -28,6 +31,10 @@ struct Uncertainty {
   double freedom = 0.0;  ///< independent samples, parameters subtracted
   double colour = 1.0;   ///< samples per independent sample, of the most coloured signal
 };
+
+/// The factor of a standard error that makes half of a 95 % interval, for so many degrees of
+/// freedom (at least one is assumed): Student's quantile.
+double student_95(double freedom);
 
 /// Assumes a model that is linear over the intervals, and residuals that are, signal by signal,
 /// stationary with the variance and the autocorrelation that they show, never less than the stated

@@ -20,16 +20,6 @@ double sum_of_squares(const ResidualSeries& series) {
   return mean_square(series.values) * static_cast<double>(series.values.size());
 }
 
-bool same(const ResidualSeries& a, const ResidualSeries& b) {
-  return a.recording == b.recording && a.measurement == b.measurement && a.fitted == b.fitted;
-}
-
-const ResidualSeries* partner(const std::vector<ResidualSeries>& list, const ResidualSeries& of) {
-  for (const ResidualSeries& series : list)
-    if (same(series, of)) return &series;
-  return nullptr;
-}
-
 }  // namespace
 
 Improvement improvement(const std::vector<ResidualSeries>& before,
@@ -37,7 +27,7 @@ Improvement improvement(const std::vector<ResidualSeries>& before,
   Improvement result;
   double gain = 0.0, variance = 0.0, square_before = 0.0, square_after = 0.0;
   for (const ResidualSeries& old : before) {
-    const ResidualSeries* now = partner(after, old);
+    const ResidualSeries* now = find_series(after, old);
     if (now == nullptr) return result;
     const double unit = worth(*now);
     if (old.fitted) {
@@ -67,7 +57,7 @@ double disadvantage(const std::vector<ResidualSeries>& best, std::size_t best_pa
                     const std::vector<ResidualSeries>& other, std::size_t other_parameters) {
   double loss = 0.0, samples = 0.0;
   for (const ResidualSeries& series : best) {
-    const ResidualSeries* rival = partner(other, series);
+    const ResidualSeries* rival = find_series(other, series);
     if (rival == nullptr) return INFINITY;
     loss += (sum_of_squares(*rival) - sum_of_squares(series)) / worth(series);
     samples += static_cast<double>(series.values.size()) / autocorrelation_time(series.values);
@@ -93,7 +83,7 @@ Determination determination(const Job& job, const FitResult& result, const Candi
 
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values_of(result));
-  const Linearization at = linearize(job, space, u, result.coupling_rate);
+  const Linearization& at = *result.at_solution;
   if (!at.finite) return d;
   Eigen::MatrixXd others(at.jacobian.rows(),
                          static_cast<Eigen::Index>(job.free.size() - strengths));
@@ -124,7 +114,7 @@ Determination determination(const Job& job, const FitResult& result, const Candi
   }
   d.distinct = shown.squaredNorm() > 0.0 ? rest.squaredNorm() / shown.squaredNorm() : 0.0;
   for (const SeriesRows& rows : at.series)
-    if (const auto* series = partner(residuals, {rows.recording, rows.measurement, true, {}, {}}))
+    if (const auto* series = find_series(residuals, {rows.recording, rows.measurement, true}))
       d.wald += rest.segment(rows.first, rows.count).squaredNorm() / worth(*series);
   return d;
 }

@@ -8,8 +8,8 @@ namespace axisfit {
 
 /// Autocovariances of a series about zero, from lag zero to where they have died away: those of
 /// the autoregressive process that fits it, of the order that Schwarz's criterion chooses (zero for
-/// white noise), by the recursion of Levinson and Durbin. Smooth where those of the samples
-/// scatter, and never those of an impossible process.
+/// white noise, and below 50 samples), by the recursion of Levinson and Durbin. Smooth where those
+/// of the samples scatter, and never those of an impossible process.
 ///
 /// Literature: P. J. Brockwell and R. A. Davis, Time Series: Theory and Methods, Springer 1991,
 /// sections 8.2 and 9.3.

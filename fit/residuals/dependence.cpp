@@ -8,6 +8,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "fit/noise.h"
+
 namespace axisfit {
 namespace {
 
@@ -61,8 +63,9 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
     test.reduced_chi_square = mean_square(series.values);
     test.autocorrelation_time = autocorrelation_time(series.values);
     test.explained = is_explained(series);
+    const double noise = series.noise_known ? 1.0 : noise_from_differences(series.values);
     test.unexplained_percent =
-        100.0 * std::sqrt(std::max(0.0, 1.0 - 1.0 / std::max(1.0, test.reduced_chi_square)));
+        100.0 * std::sqrt(std::max(0.0, 1.0 - noise * noise / test.reduced_chi_square));
     const auto& samples = result.recordings[series.recording].judged().samples;
     const auto& times = job.recordings[series.recording].times;
     for (const Regressor& regressor : regressors()) {

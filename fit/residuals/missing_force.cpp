@@ -84,7 +84,7 @@ MissingForce missing_force(const Job& job, const FitResult& result, std::size_t 
     return missing;
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values_of(result));
-  const Model<double> model = space.model_at(u.data(), index);
+  const Model<double> model = model_at(job, space, u.data(), index);
   const double mass = Equations<double>(model).moving_mass();
   const double interval = (recording.times.back() - recording.times.front()) /
                           static_cast<double>(recording.times.size() - 1);

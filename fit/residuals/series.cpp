@@ -16,7 +16,10 @@ std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& res
     for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
       const Measurement& measurement = recording.measurements[m];
       if (!measurement.fitted) continue;
-      ResidualSeries fitted{r, m, true, {}, {}}, judged{r, m, false, {}, {}};
+      ResidualSeries fitted, judged;
+      static_cast<SeriesKey&>(fitted) = {r, m, true};
+      static_cast<SeriesKey&>(judged) = {r, m, false};
+      fitted.noise_known = measurement.noise != NoiseSource::fit;
       const std::size_t first = recording.score_initial_samples ? 0 : recording.initial_samples;
       for (std::size_t i = first; i < recording.times.size(); ++i) {
         if (!measurement.counts(i)) continue;
@@ -64,10 +67,10 @@ void allow_for_parameters(const Job& job, const FitResult& result,
   // The recordings to validate, as if they were to be fitted.
   Job other = job;
   for (Recording& r : other.recordings) r.role = r.role == Role::fit ? Role::validate : Role::fit;
-  const ParameterSpace space(job), others(other);
-  const Eigen::VectorXd u = space.internal(values_of(result));
-  const Linearization fitted = linearize(job, space, u, result.coupling_rate);
-  const Linearization judged = linearize(other, others, u, result.coupling_rate);
+  const ParameterSpace space(other);
+  const Linearization& fitted = *result.at_solution;
+  const Linearization judged =
+      linearize(other, space, space.internal(values_of(result)), result.coupling_rate);
   if (!fitted.finite || !judged.finite || judged.jacobian.rows() == 0) return;
   // Columns of equal length, and what is not determined to one part in a thousand left out: an
   // undetermined parameter must not excuse everything.
@@ -80,16 +83,16 @@ void allow_for_parameters(const Job& job, const FitResult& result,
   const Eigen::MatrixXd shown = judged.jacobian * length.cwiseInverse().asDiagonal() * root;
   const double excess = std::max(1.0, result.reduced_chi_square);
   for (const SeriesRows& rows : judged.series)
-    for (ResidualSeries& series : list)
-      if (series.recording == rows.recording && series.measurement == rows.measurement &&
-          !series.fitted)
-        series.allowance = shown.middleRows(rows.first, rows.count).squaredNorm() /
-                           static_cast<double>(rows.count) * excess;
+    if (ResidualSeries* series = find_series(list, {rows.recording, rows.measurement, false}))
+      series->allowance = shown.middleRows(rows.first, rows.count).squaredNorm() /
+                          static_cast<double>(rows.count) * excess;
 }
 
 bool is_explained(const ResidualSeries& series) {
   const double n = static_cast<double>(series.values.size());
-  const double scatter = 4.0 * std::sqrt(2.0 * autocorrelation_time(series.values) / n);
+  const double time = autocorrelation_time(series.values);
+  if (!series.noise_known) return time < 1.0 + std::max(0.25, 8.0 / std::sqrt(n));
+  const double scatter = 4.0 * std::sqrt(2.0 * time / n);
   return mean_square(series.values) < 1.0 + std::max(0.05, scatter) + 4.0 * series.allowance;
 }
 

@@ -1,6 +1,7 @@
 // Residuals of one signal of one recording, and what is asked of every such series.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -8,10 +9,24 @@
 
 namespace axisfit {
 
-struct ResidualSeries {
+/// Which samples a series holds.
+struct SeriesKey {
   std::size_t recording = 0;
-  std::size_t measurement = 0;       ///< of the recording
-  bool fitted = false;               ///< whether the fit minimised it
+  std::size_t measurement = 0;  ///< of the recording
+  bool fitted = false;          ///< whether the fit minimised them
+
+  bool operator==(const SeriesKey&) const = default;
+};
+
+/// What belongs to a key in a list of things derived from SeriesKey; null where there is none.
+template <class List>
+auto* find_series(List& list, const SeriesKey& key) {
+  const auto at = std::ranges::find_if(list, [&](const SeriesKey& k) { return k == key; });
+  return at == list.end() ? nullptr : &*at;
+}
+
+struct ResidualSeries : SeriesKey {
+  bool noise_known = true;           ///< false: estimated with the parameters, from this series
   std::vector<std::size_t> samples;  ///< that count, in order
   std::vector<double> values;        ///< (measured - simulated) / sigma at those
   /// What the uncertainty of the estimates alone adds to the mean square, on average; zero where
@@ -38,7 +53,8 @@ void allow_for_parameters(const Job& job, const FitResult& result,
                           std::vector<ResidualSeries>& list);
 
 /// Whether a series shows no more than its noise: a mean square within 5 % of one, or within four
-/// standard errors for as many independent samples as it has, the allowance four times.
+/// standard errors for as many independent samples as it has, the allowance four times. Where the
+/// noise was estimated from the series itself, its size tells nothing: then, whether it is white.
 bool is_explained(const ResidualSeries& series);
 
 }  // namespace axisfit

@@ -208,6 +208,55 @@ TEST_F(CommandLineTest, NoLoopIsClosedAroundAnUnusableFit) {
   EXPECT_FALSE(json.contains("closed_loop"));
 }
 
+TEST_F(CommandLineTest, WhatCanBeDeterminedIsToldBeforeTheFit) {
+  const Outcome text = fit({job(), "--check"});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_TRUE(text.out.starts_with("What these recordings can tell")) << text.out;
+  EXPECT_EQ(text.out.find("chi-square"), std::string::npos);
+  const Json json = Json::parse(fit({job(), "--check", "--json"}).out);
+  ASSERT_FALSE(json.at("parameters").empty());
+  for (const Json& parameter : json.at("parameters")) {
+    EXPECT_EQ(parameter.at("verdict"), "determined");
+    EXPECT_GT(parameter.at("standard_error"), 0.0);
+    for (const Json& shown : parameter.at("shown")) EXPECT_GT(shown.at("rms_over_noise"), 0.0);
+  }
+  EXPECT_EQ(fit({job(), "--check", "--profile"}).exit_code, 2);
+}
+
+TEST_F(CommandLineTest, ProfilesAreOfParametersThatAreFitted) {
+  const std::string name =
+      Json::parse(fit({job(), "--json"}).out).at("parameters")[0].at("name").get<std::string>();
+  const Outcome one = fit({job(), "--json", "--profile=" + name});
+  EXPECT_EQ(one.exit_code, 0);
+  const Json profiles = Json::parse(one.out).at("profile");
+  ASSERT_EQ(profiles.size(), 1u);
+  EXPECT_EQ(profiles[0].at("name"), name);
+  EXPECT_LT(profiles[0].at("lower").at("value"), profiles[0].at("upper").at("value"));
+  EXPECT_GE(profiles[0].at("points").size(), 5u);
+  EXPECT_NE(fit({job(), "--profile"}).out.find("\n95 % intervals\n"), std::string::npos);
+
+  const Outcome none = fit({job(), "--profile=nonsense", "--output", outputs_.path("results")});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_EQ(none.out, "");
+  EXPECT_TRUE(none.err.starts_with("--profile: nonsense is not fitted; fitted are " + name));
+  EXPECT_FALSE(std::filesystem::exists(outputs_.path("results")));
+}
+
+TEST_F(CommandLineTest, TheNextExperimentCanBeRun) {
+  const std::string results = outputs_.path("results");
+  const Outcome suggested = fit({job(), "--suggest-experiment", "--output", results});
+  EXPECT_EQ(suggested.exit_code, 0) << suggested.err;
+  EXPECT_NE(suggested.out.find("\nNext experiment\n"), std::string::npos);
+  const Json next = Json::parse(outputs_.read("results/result.json")).at("next_experiment");
+  EXPECT_GT(next.at("allowed"), 0);
+  const Outcome run = simulate({results + "/fitted.yaml", results + "/next-motion.yaml"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  for (const double x : recorded(run.out).columns[2].values) {
+    EXPECT_GE(x, next.at("limits").at("travel_m")[0].get<double>() - 1e-3);
+    EXPECT_LE(x, next.at("limits").at("travel_m")[1].get<double>() + 1e-3);
+  }
+}
+
 TEST_F(CommandLineTest, ResultsServeBothPrograms) {
   const std::string results = folder_.path("results");
   const Outcome first = fit({job(), "--output", results, "--json"});

@@ -174,7 +174,7 @@ TEST_F(JobFileTest, ReadsTheShippedPaperJob) {
   EXPECT_DOUBLE_EQ(step.measurements[1].sigma, 0.05);
   for (const Measurement& m : step.measurements) {
     EXPECT_EQ(m.values.size(), 2501u);
-    EXPECT_TRUE(m.sigma_given);
+    EXPECT_EQ(m.noise, NoiseSource::given);
     EXPECT_TRUE(m.fitted);
   }
   // The arm rests at the end.
@@ -261,15 +261,29 @@ TEST_F(JobFileTest, TrimLeavesOutWhatComesAfter) {
             "job.yaml:4:21: unknown key 'until'; known keys: from, to");
 }
 
+TEST_F(JobFileTest, LimitsOfTheMachineAreRead) {
+  EXPECT_FALSE(read(kJob).limits.speed);
+  const JobFile file =
+      read(std::string(kJob) + "limits: {travel: [-1 cm, 1.2 m], speed: 90 cm/s}\n");
+  EXPECT_DOUBLE_EQ(file.limits.lowest.value(), -0.01);
+  EXPECT_DOUBLE_EQ(file.limits.highest.value(), 1.2);
+  EXPECT_DOUBLE_EQ(file.limits.speed.value(), 0.9);
+  EXPECT_FALSE(file.limits.voltage);
+}
+
 TEST_F(JobFileTest, NoiseIsEstimatedFromTheSamplesThatAreKept) {
   Data data;
   for (std::size_t i = 0; i < kRows; ++i) data.v[i] = i % 2 == 0 ? 0.5 : -0.5;
   write_data("data.csv", data.columns());
   const JobFile file = read(replaced(kJob, ", sigma: 1 mm/s", ""));
   const Measurement& velocity = file.job.recordings.front().measurements.front();
-  EXPECT_FALSE(velocity.sigma_given);
+  EXPECT_EQ(velocity.noise, NoiseSource::differences);
   EXPECT_EQ(velocity.sigma, noise_from_differences(velocity.values));
   EXPECT_GT(velocity.sigma, 0.0);
+  const JobFile fit = read(replaced(kJob, "sigma: 1 mm/s", "sigma: fit"));
+  const Measurement& same = fit.job.recordings.front().measurements.front();
+  EXPECT_EQ(same.noise, NoiseSource::fit);
+  EXPECT_EQ(same.sigma, velocity.sigma);
 
   for (double& v : data.v) v = 1.0;
   write_data("data.csv", data.columns());
@@ -595,7 +609,8 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
            {"free:\n  M: {}\n", "", "1:1: key 'free' is missing in the file"},
            {"free:\n", "fre: {}\nfree:\n", "8:1: unknown key 'fre'; did you mean 'free'?"},
            {"free:\n", "starts: 3\nfree:\n",
-            "8:1: unknown key 'starts'; known keys: axis, effects, recordings, free, fit"},
+            "8:1: unknown key 'starts'; known keys: axis, effects, recordings, free, fit, "
+            "limits"},
            // Recordings.
            {"  - file: data.csv\n    time: {column: t_ms, unit: ms}\n", "  - file: data.csv\n",
             "3:5: key 'time' is missing in entry 1 of recordings"},
@@ -748,7 +763,8 @@ colour: red
       "job.yaml:14:3: K_t has no part in this axis: its drive or transmission leaves "
       "it out\n"
       "job.yaml:15:13: loss must be one of squares, huber, not 'cubes'; did you mean 'huber'?\n"
-      "job.yaml:16:1: unknown key 'colour'; known keys: axis, effects, recordings, free, fit");
+      "job.yaml:16:1: unknown key 'colour'; known keys: axis, effects, recordings, free, fit, "
+      "limits");
 }
 
 }  // namespace

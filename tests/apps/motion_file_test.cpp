@@ -146,6 +146,26 @@ TEST_F(MotionFileTest, AMoveNeedsASetVelocityInput) {
   EXPECT_EQ(errors("type: step\nlevel: 1 V\nduration: 1 s\n"), "");
 }
 
+TEST_F(MotionFileTest, WritesWhatReadsBackTheSame) {
+  const std::vector<Motion> motions{
+      StepMotion{1.0 / 3.0, 0.1},     LevelsMotion{{8.0, -1.0 / 7.0, 0.0}, 0.15},
+      SineMotion{0.3, 2.0, 2.0, 0.1}, SineMotion{-5.0, 0.5, 60.0, 0.0},
+      PrbsMotion{4.0, 0.01, 0.5, 7},  MoveMotion{-0.9, 0.8, 1.0 / 3.0}};
+  for (const Motion& motion : motions) {
+    const std::string text = format_motion_file({motion, 2.5}, "made by hand\nfor a test");
+    SCOPED_TRACE(text);
+    EXPECT_TRUE(text.starts_with("# made by hand\n# for a test\ntype: "));
+    const MotionFile file = read(text);
+    EXPECT_EQ(file.duration, 2.5);
+    EXPECT_EQ(file.motion.index(), motion.index());
+    EXPECT_EQ(format_motion_file(file, "made by hand\nfor a test"), text);
+    const Schedule a = schedule_of(motion, 2.5, 5e-3), b = schedule_of(file.motion, 2.5, 5e-3);
+    EXPECT_EQ(a.times, b.times);
+    EXPECT_EQ(a.values, b.values);
+  }
+  EXPECT_THROW(format_motion_file({RecordedMotion{}, 1.0}, ""), std::logic_error);
+}
+
 TEST_F(MotionFileTest, AMoveNeedsACommandThatActsWithinAPeriod) {
   rig_.model.axis.T_d = rig_.controller.period;
   EXPECT_EQ(errors(kMove),

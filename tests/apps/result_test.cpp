@@ -37,7 +37,8 @@ struct Found {
     const TempFolder folder;
     write_recordings(folder);
     write_rubbing_mass(folder);
-    outcome = find_outcome(read_job_file(folder.write("job.yaml", job)), close_the_loop);
+    outcome =
+        find_outcome(read_job_file(folder.write("job.yaml", job)), {.close_loop = close_the_loop});
     json = result_json(outcome);
     text = report_text(outcome);
   }
@@ -278,7 +279,7 @@ TEST(ResultTest, ARecordingThatCannotBeSimulatedHasNoErrors) {
   write_recordings(folder);
   JobFile file = read_job_file(folder.write("job.yaml", fit_job("{max_iterations: 1}")));
   file.job.model.axis.J_m = 0.0;
-  const Outcome outcome = find_outcome(std::move(file), true);
+  const Outcome outcome = find_outcome(std::move(file), {.close_loop = true});
   EXPECT_EQ(outcome.first.status, Status::failed);
   EXPECT_FALSE(outcome.first.usable);
   EXPECT_FALSE(outcome.loop.has_value());
@@ -370,8 +371,10 @@ TEST(ResultTest, SamplesAtRestAreCounted) {
   EXPECT_GT(acceleration.at("left_out"), 80);
   EXPECT_NEAR(acceleration.at("mean_left_out"), 0.0, 0.03);
   EXPECT_FALSE(fit.json.at("recordings")[0].at("signals")[0].contains("left_out"));
-  const Measurement biased{Signal::acceleration, {1.0, 0.2, 0.2}, 0.05, true, true,
-                           {false, true, true}};
+  Measurement biased;
+  biased.values = {1.0, 0.2, 0.2};
+  biased.sigma = 0.05;
+  biased.left_out = {false, true, true};
   ASSERT_TRUE(left_out(biased).has_value());
   EXPECT_EQ(left_out(biased)->samples, 2u);
   EXPECT_DOUBLE_EQ(left_out(biased)->mean, 0.2);

@@ -151,5 +151,45 @@ TEST(DistinctMinima, TakeEqualCostsTogether) {
   EXPECT_EQ(minima[1].reduced_cost, 3.0);
 }
 
+/// A slide whose instruments are of unknown quality: the first guesses of their noise are far off.
+Job job_of_unknown_noise() {
+  Job job = two_recordings(slide(), slide(), {"M", "B_a"});
+  for (Recording& r : job.recordings)
+    for (Measurement& m : r.measurements) {
+      m.noise = NoiseSource::fit;
+      m.sigma *= m.signal == Signal::velocity ? 20.0 : 0.3;
+    }
+  return job;
+}
+
+TEST(EstimateWithNoise, FindsTheNoiseOfEverySignal) {
+  Job job = job_of_unknown_noise();
+  const std::vector<FreeParameter> declared = job.free;
+  const FitResult result = estimate_with_noise(job);
+  ASSERT_TRUE(result.usable) << result.verdict;
+  EXPECT_NEAR(result.reduced_chi_square, 1.0, 1e-3);
+  for (const Recording& r : job.recordings)
+    for (const Measurement& m : r.measurements)
+      EXPECT_NEAR(m.sigma, usual_noise(m.signal), 0.05 * usual_noise(m.signal));
+  EXPECT_EQ(job.free[0].initial, declared[0].initial);
+  // As if the noise had been known.
+  const FitResult known = estimate(two_recordings(slide(), slide(), {"M", "B_a"}));
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double error = known.parameters[i].uncertainty.standard_error;
+    EXPECT_NEAR(result.parameters[i].uncertainty.standard_error, error, 0.05 * error);
+    EXPECT_NEAR(result.parameters[i].value, known.parameters[i].value, 0.1 * error);
+  }
+}
+
+TEST(EstimateWithNoise, LeavesNoiseThatIsKnownAlone) {
+  Job job = job_of_unknown_noise();
+  job.recordings[0].measurements[0].noise = NoiseSource::given;
+  const double given = job.recordings[0].measurements[0].sigma;
+  estimate_with_noise(job);
+  EXPECT_EQ(job.recordings[0].measurements[0].sigma, given);
+  EXPECT_NEAR(job.recordings[0].measurements[1].sigma, usual_noise(Signal::acceleration),
+              0.05 * usual_noise(Signal::acceleration));
+}
+
 }  // namespace
 }  // namespace axisfit

@@ -54,7 +54,7 @@ inline Recording recorded(const Model<double>& truth, const Motion& motion, doub
     m.signal = signals[s];
     m.values = table.columns[2 + s].values;
     m.sigma = usual_noise(signals[s]);
-    m.sigma_given = true;
+    m.noise = NoiseSource::given;
   }
   return recording;
 }
@@ -140,6 +140,7 @@ inline FitResult result_at_start(const Job& job) {
     result.recordings.emplace_back();
     result.recordings.back().prediction = predict(job, space, r, u.data(), {});
   }
+  result.at_solution = std::make_shared<const Linearization>(linearize(job, space, u, 0.0));
   return result;
 }
 

@@ -139,9 +139,10 @@ TEST(RecordingCost, HuberCountsOutliersLinearly) {
 TEST(CouplingFor, TakesVelocityThenPosition) {
   Recording recording;
   EXPECT_FALSE(coupling_for(recording, 100.0).active());
-  recording.measurements.push_back({Signal::position, {}, 1.0, true, true, {}});
+  const auto add = [&](Signal signal) { recording.measurements.emplace_back().signal = signal; };
+  add(Signal::position);
   EXPECT_EQ(coupling_for(recording, 100.0).acceleration, 1e4);
-  recording.measurements.push_back({Signal::velocity, {}, 1.0, true, true, {}});
+  add(Signal::velocity);
   EXPECT_EQ(coupling_for(recording, 100.0).velocity, 100.0);
   EXPECT_EQ(coupling_for(recording, 100.0).position, 100.0);
   EXPECT_FALSE(coupling_for(recording, 0.0).active());

@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "apps/report_text.h"
+#include "apps/text_table.h"
+#include "apps/units.h"
+
+namespace axisfit {
+namespace {
+
+std::string_view unit_of(const Job& job, std::size_t parameter) {
+  return quantity_list()[job.free[parameter].quantity].quantity.unit;
+}
+
+/// "12.3 .. 14.2", or what stands for an interval that there is not.
+std::string interval_text(const ParameterUncertainty& u) {
+  if (!u.has_interval()) return "-";
+  const double digits = u.determined ? u.standard_error : 0.0;
+  return with_digits_of(u.lower, digits) + " .. " + with_digits_of(u.upper, digits);
+}
+
+}  // namespace
+
+std::string knowledge_text(const FitResult& result) {
+  const double excess = std::sqrt(result.reduced_chi_square);
+  std::string noise = excess > 1.0
+                          ? fmt::format("residuals as found, {:.3g} times the noise", excess)
+                          : "noise of the size stated below";
+  constexpr double kWhite = 1.2;
+  noise += result.colour > kWhite
+               ? fmt::format(", in which up to {:.3g} samples tell no more than one", result.colour)
+               : ", white";
+  return paragraph("Standard errors and intervals: for " + noise + ".", 2) +
+         together_text(result.identifiability);
+}
+
+std::string together_text(const Identifiability& known) {
+  std::string text;
+  for (const WeakDirection& weak : known.weak) text += paragraph(weak.words, 2);
+  for (const Combination& c : known.combinations)
+    text += fmt::format("  {} = {} +- {:.2g}\n", c.name, with_digits_of(c.value, c.standard_error),
+                        c.standard_error);
+  return text;
+}
+
+std::string profiles_text(const Outcome& outcome) {
+  if (outcome.profiles.empty()) return "";
+  const FitResult& fit = outcome.fit();
+  std::vector<std::vector<std::string>> rows{
+      {"", "value", "by profile", "by standard error", "unit"}};
+  std::string better;
+  for (const Profile& profile : outcome.profiles) {
+    const ParameterResult& p = fit.parameters[profile.parameter];
+    const ParameterUncertainty& u = p.uncertainty;
+    const double digits = u.determined ? u.standard_error : 0.0;
+    const auto end = [&](const ProfileEnd& e) {
+      return e.open ? std::string("open") : with_digits_of(e.value, digits);
+    };
+    rows.push_back({p.name, with_digits_of(p.value, digits),
+                    end(profile.lower) + " .. " + end(profile.upper), interval_text(u),
+                    std::string(unit_of(outcome.job(), profile.parameter))});
+    if (profile.better)
+      better += paragraph(
+          fmt::format(
+              "The profile of {} met a better fit, of reduced chi-square {:.4g}: the result "
+              "is not the best minimum. Try --starts 20.",
+              p.name, profile.better->reduced_cost),
+          2);
+  }
+  return "95 % intervals\n" +
+         aligned(rows, {Set::left, Set::right, Set::right, Set::right, Set::left}) + better;
+}
+
+std::string suggestion_text(const Outcome& outcome) {
+  if (!outcome.suggestion)
+    return paragraph("Next experiment: none of the motions that were tried keeps to the limits.");
+  const Suggestion& s = *outcome.suggestion;
+  const FitResult& fit = outcome.fit();
+  std::string text =
+      "Next experiment\n" +
+      paragraph(fmt::format("{}, for {:.3g} s, would tell most of {}, which is known least. Of {} "
+                            "motions, {} stay within {:.4g} .. {:.4g} m, {:.3g} m/s and {:.3g} V.",
+                            s.experiment.words, s.experiment.duration,
+                            fit.parameters[s.parameter].name, s.tried, s.allowed, *s.limits.lowest,
+                            *s.limits.highest, *s.limits.speed, *s.limits.voltage),
+                2);
+  std::vector<std::vector<std::string>> rows{{"", "95 % interval now", "predicted", "unit"}};
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i)
+    rows.push_back({fit.parameters[i].name, interval_text(s.now.parameters[i]),
+                    interval_text(s.predicted.parameters[i]),
+                    std::string(unit_of(outcome.job(), i))});
+  return text + aligned(rows, {Set::left, Set::right, Set::right, Set::left});
+}
+
+std::string forecast_text(const Job& job, const Forecast& forecast) {
+  if (!forecast.finite)
+    return paragraph(
+        "What can be determined is not known: with the initial values the simulation does not get "
+        "through the recordings.");
+  std::vector<std::vector<std::string>> rows{{"", "", "expected error", "seen best in", ""}};
+  const ParameterSpace space(job);
+  std::string needs;
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    const ParameterUncertainty& u = forecast.uncertainty.parameters[i];
+    const std::string_view unit = unit_of(job, i);
+    Eigen::Index best = 0;
+    const double most = forecast.shown.row(static_cast<Eigen::Index>(i)).maxCoeff(&best);
+    const SeriesRows& series = forecast.series[static_cast<std::size_t>(best)];
+    const Recording& recording = job.recordings[series.recording];
+    rows.push_back(
+        {space.name(i), std::string(quantity_list()[space[i].quantity].quantity.meaning),
+         u.determined ? with_unit(fmt::format("{:.2g}", u.standard_error), unit) : "-",
+         most > 0.0
+             ? fmt::format("{} of {}", info(recording.measurements[series.measurement].signal).name,
+                           recording.name)
+             : "no signal",
+         verdict_name(u) == "determined" ? "" : std::string(verdict_name(u))});
+    const std::string_view need = excitation_needed(quantity_list()[space[i].quantity].name);
+    if ((!u.determined || u.weak) && !u.at_bound && !need.empty())
+      needs += paragraph(fmt::format("{} needs {}.", space.name(i), need), 2);
+  }
+  return "What these recordings can tell, if the initial values are about right\n" +
+         aligned(rows, {Set::left, Set::left, Set::right, Set::left, Set::left}) +
+         together_text(forecast.together) + needs;
+}
+
+}  // namespace axisfit

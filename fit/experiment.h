@@ -1,0 +1,57 @@
+// The next recording: which motion would tell most of what the recordings so far leave open.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fit/estimate.h"
+#include "sim/controller.h"
+#include "sim/motion.h"
+
+namespace axisfit {
+
+/// What the machine may be asked for. What is not given is taken to be what the recordings covered,
+/// since the machine bore that; the voltage of an electric drive to be its controller's limit.
+struct MachineLimits {
+  std::optional<double> lowest, highest;  ///< m, position of the arm
+  std::optional<double> speed;            ///< m/s of the arm, either way
+  std::optional<double> voltage;          ///< V of the command, either way
+};
+
+/// A motion from rest, and for how long.
+struct Experiment {
+  Motion motion;
+  double duration = 0.0;  ///< s
+  std::string words;      ///< "a step of 10 V"
+};
+
+/// Steps, levels, sines, chirps, pseudo-random sequences, each at several amplitudes up to the
+/// voltage and either way, and moves of up to the travel (m) at up to the speed; no moves where
+/// that is zero.
+std::vector<Experiment> experiment_family(double voltage, double speed, double travel,
+                                          double duration);
+
+struct Suggestion {
+  Experiment experiment;
+  std::size_t parameter = 0;  ///< the one whose interval is the widest now
+  Uncertainty now;            ///< of the estimates
+  Uncertainty predicted;      ///< after one more recording, of that motion
+  MachineLimits limits;       ///< as they were taken, all given
+  int tried = 0;              ///< motions of the family
+  int allowed = 0;            ///< those that kept to the limits
+};
+
+/// Of all motions that keep to the limits in simulation, the one after which the least determined
+/// of the parameters is determined best: the largest standard error, relative to the parameter's
+/// size, is smallest (E. Walter and L. Pronzato, Identification of Parametric Models, Springer
+/// 1997, chapter 6). Assumes that the new recording has the signals, the sampling and the noise of
+/// the first one that was fitted, starts where that started, from rest, and leaves residuals of the
+/// size and colour that the fit has left; that the estimates are right; and that the model is
+/// linear over their errors. None when the fit is not usable or no motion keeps to the limits.
+std::optional<Suggestion> suggest_experiment(
+    const Job& job, const FitResult& fit, const ControllerSettings& controller,
+    const MachineLimits& limits, const std::function<void(int done, int of)>& progress = {});
+
+}  // namespace axisfit
