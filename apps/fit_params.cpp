@@ -112,11 +112,10 @@ std::vector<std::pair<std::string, std::string>> files_of(const Arguments& argum
       {kAxisFile,
        format_axis_file(fitted, fmt::format("Fitted by {}.\n{}", origin, verdict_of(outcome)))},
       {kResidualsFile, residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis)}};
-  if (outcome.suggestion) {
-    const Experiment& next = outcome.suggestion->experiment;
+  if (const Experiment* next = next_experiment(outcome)) {
     files.emplace_back(
-        kMotionFile, format_motion_file({next.motion, next.duration},
-                                        fmt::format("Suggested by {}:\n{}.", origin, next.words)));
+        kMotionFile, format_motion_file({next->motion, next->duration},
+                                        fmt::format("Suggested by {}:\n{}.", origin, next->words)));
   }
   return files;
 }

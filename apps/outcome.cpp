@@ -98,15 +98,29 @@ Outcome find_outcome(JobFile file, const Wishes& wishes,
                                 profiled(outcome.job(), wishes.profiles), [&](int done, int of) {
                                   if (closing) closing("profiles", done, of);
                                 });
+  const ControllerSettings& controller = outcome.file.rig.controller;
+  if (outcome.loop)
+    for (const Rivals& rivals : outcome.loop->rivals) {
+      if (closing)
+        closing("what tells " + rivals.chosen + " and " + rivals.rival + " apart?", 0, 0);
+      outcome.separations.push_back(
+          what_separates(*outcome.loop, rivals, controller, outcome.file.limits));
+    }
   if (wishes.experiment)
-    outcome.suggestion =
-        suggest_experiment(outcome.job(), outcome.fit(), outcome.file.rig.controller,
-                           outcome.file.limits, [&](int done, int of) {
-                             if (closing) closing("trying motions", done, of);
-                           });
+    outcome.suggestion = suggest_experiment(outcome.job(), outcome.fit(), controller,
+                                            outcome.file.limits, [&](int done, int of) {
+                                              if (closing) closing("trying motions", done, of);
+                                            });
   const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - begin;
   outcome.wall_time = wall_time.count();
   return outcome;
+}
+
+const Experiment* next_experiment(const Outcome& outcome) {
+  if (!outcome.wishes.experiment) return nullptr;
+  for (const Separation& s : outcome.separations)
+    if (s.experiment) return &*s.experiment;
+  return outcome.suggestion ? &outcome.suggestion->experiment : nullptr;
 }
 
 std::string verdict_of(const Outcome& outcome) {

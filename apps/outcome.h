@@ -10,6 +10,7 @@
 #include "apps/job_file.h"
 #include "fit/closing/close_loop.h"
 #include "fit/closing/diagnosis.h"
+#include "fit/closing/separation.h"
 #include "fit/estimate.h"
 #include "fit/experiment.h"
 #include "fit/profile.h"
@@ -53,6 +54,7 @@ struct Outcome {
   std::vector<ModelScore> scores;        ///< of the loop's models
   std::optional<Diagnosis> diagnosis;    ///< of the final model; none unless that is usable
   std::vector<Profile> profiles;         ///< of the final model, those asked for
+  std::vector<Separation> separations;   ///< of the loop's undecided effects, pair by pair
   std::optional<Suggestion> suggestion;  ///< of the next experiment, where it was asked for
   double wall_time = 0.0;                ///< s
 
@@ -60,6 +62,10 @@ struct Outcome {
   const Job& job() const { return loop ? loop->result.job : file.job; }
   const FitResult& fit() const { return loop ? loop->result.fit : first; }
 };
+
+/// The experiment to make next, where it was asked for and there is one: that which tells undecided
+/// effects apart, or else that which determines the parameters.
+const Experiment* next_experiment(const Outcome& outcome);
 
 /// Whether the fit can be used, and what a closed loop says of it.
 std::string verdict_of(const Outcome& outcome);

@@ -74,18 +74,34 @@ std::string profiles_text(const Outcome& outcome) {
 }
 
 std::string suggestion_text(const Outcome& outcome) {
+  for (const Separation& separation : outcome.separations)
+    if (separation.experiment)
+      return "Next experiment\n" +
+             paragraph(fmt::format("Record {}, for {:.3g} s, with the {}: it tells the undecided "
+                                   "effects apart.",
+                                   separation.experiment->words, separation.experiment->duration,
+                                   info(*separation.signal).name),
+                       2);
   if (!outcome.suggestion)
     return paragraph("Next experiment: none of the motions that were tried keeps to the limits.");
   const Suggestion& s = *outcome.suggestion;
   const FitResult& fit = outcome.fit();
-  std::string text =
-      "Next experiment\n" +
-      paragraph(fmt::format("{}, for {:.3g} s, would tell most of {}, which is known least. Of {} "
-                            "motions, {} stay within {:.4g} .. {:.4g} m, {:.3g} m/s and {:.3g} V.",
-                            s.experiment.words, s.experiment.duration,
-                            fit.parameters[s.parameter].name, s.tried, s.allowed, *s.limits.lowest,
-                            *s.limits.highest, *s.limits.speed, *s.limits.voltage),
-                2);
+  const std::string& name = fit.parameters[s.parameter].name;
+  std::string text = fmt::format(
+      "Record {}, for {:.3g} s: it does most for {}, which is known least. Of {} "
+      "motions, {} stay within {:.4g} .. {:.4g} m, {:.3g} m/s and {:.3g} V.",
+      s.experiment.words, s.experiment.duration, name, s.tried, s.allowed, *s.limits.lowest,
+      *s.limits.highest, *s.limits.speed, *s.limits.voltage);
+  const MachineLimits& given = outcome.file.limits;
+  if (!given.lowest || !given.speed)
+    text += " So far the recordings went; 'limits' in the job says how far the machine may go.";
+  if (!s.predicted.parameters[s.parameter].determined) {
+    const std::size_t quantity = outcome.job().free[s.parameter].quantity;
+    const std::string_view need = excitation_needed(quantity_list()[quantity].name);
+    text +=
+        fmt::format(" Even then {} stays open{}{}.", name, need.empty() ? "" : ": it needs ", need);
+  }
+  text = "Next experiment\n" + paragraph(text, 2);
   std::vector<std::vector<std::string>> rows{{"", "95 % interval now", "predicted", "unit"}};
   for (std::size_t i = 0; i < fit.parameters.size(); ++i)
     rows.push_back({fit.parameters[i].name, interval_text(s.now.parameters[i]),

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "apps/report_text.h"
@@ -66,6 +67,35 @@ std::string residual_text(const Job& job, const Diagnosis& diagnosis) {
   }
   return "Residual beyond the noise, of the root mean square\n" +
          aligned(rows, {Set::left, Set::left, Set::left, Set::right, Set::wrapped});
+}
+
+std::string instruments_text(const Job& job, const Diagnosis& diagnosis) {
+  std::string text;
+  for (const SeriesTest& test : diagnosis.tests) {
+    const Recording& recording = job.recordings[test.series.recording];
+    const Measurement& m = recording.measurements[test.series.measurement];
+    const std::string_view unit = info(m.signal).unit;
+    const std::string name = name_of(job, test.series);
+    const auto tell = [&](const std::string& what) {
+      text += paragraph(fmt::format("The {} {}.", name, what), 2);
+    };
+    const auto value = [&](double x) { return with_unit(fmt::format("{:.3g}", x), unit); };
+    // Beside noise that hides it, rounding is none of the reader's concern.
+    if (test.grid > m.sigma) tell(fmt::format("is rounded to steps of {}", value(test.grid)));
+    // Significant, and worth a word: from end to end a tenth of the noise or more.
+    if (test.drift.p_value < 1e-3 && std::abs(test.drift.span) > 0.1)
+      tell(fmt::format("drifts: its residual changes by {} per second, {} in all",
+                       value(test.drift.per_second * m.sigma), value(test.drift.span * m.sigma)));
+    if (!test.outliers.empty()) {
+      const auto size = [&](std::size_t i) { return std::abs(test.series.values[i]); };
+      const std::size_t worst = *std::ranges::max_element(test.outliers, {}, size);
+      const std::size_t n = test.outliers.size();
+      tell(fmt::format("has {} outlier{}, the farthest {:.3g} times the noise off at {:.6g} s", n,
+                       n == 1 ? "" : "s", size(worst),
+                       recording.times[test.series.samples[worst]]));
+    }
+  }
+  return text;
 }
 
 std::string suspects_text(const Job& job, const Diagnosis& diagnosis) {

@@ -150,11 +150,12 @@ std::string report_text(const Outcome& outcome) {
     const std::string suspects = outcome.loop ? "" : suspects_text(job, *outcome.diagnosis);
     if (!suspects.empty()) text += suspects + "\n";
   }
+  if (outcome.diagnosis)
+    if (const std::string faults = instruments_text(job, *outcome.diagnosis); !faults.empty())
+      text += "Instruments\n" + faults + "\n";
   text += outcome.loop ? paragraph(verdict_of(outcome)) : verdict_of(outcome) + "\n";
-  if (outcome.loop)
-    for (const std::string& hint : outcome.loop->hints) text += paragraph(hint);
-  else if (outcome.diagnosis)
-    text += residual_verdict(job, *outcome.diagnosis);
+  for (const Separation& s : outcome.separations) text += paragraph(s.words);
+  if (!outcome.loop && outcome.diagnosis) text += residual_verdict(job, *outcome.diagnosis);
   if (outcome.wishes.experiment) text += "\n" + suggestion_text(outcome);
   return text;
 }

@@ -16,6 +16,9 @@ std::string report_text(const Outcome& outcome);
 /// Its part on a residual that is not explained: how much that is, and what it depends on.
 std::string residual_text(const Job& job, const Diagnosis& diagnosis);
 
+/// Faults of the instruments that the residual shows; empty where there are none.
+std::string instruments_text(const Job& job, const Diagnosis& diagnosis);
+
 /// What the residual may come from: the missing force and the suspects.
 std::string suspects_text(const Job& job, const Diagnosis& diagnosis);
 

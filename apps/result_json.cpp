@@ -187,16 +187,28 @@ Json force_json(const MissingForce& force) {
 
 Json test_json(const Job& job, const SeriesTest& test) {
   const Recording& recording = job.recordings[test.series.recording];
-  return {{"recording", recording.name},
-          {"signal", info(recording.measurements[test.series.measurement].signal).name},
-          {"role", role_name(recording, test.series.fitted)},
-          {"reduced_chi_square", test.reduced_chi_square},
-          {"autocorrelation_time", test.autocorrelation_time},
-          {"unexplained_percent", test.unexplained_percent},
-          {"explained", test.explained},
-          {"dependences", list(test.dependences, [](const Dependence& d) {
-             return Json{{"on", d.on}, {"share", d.share}, {"p_value", d.p_value}};
-           })}};
+  return {
+      {"recording", recording.name},
+      {"signal", info(recording.measurements[test.series.measurement].signal).name},
+      {"role", role_name(recording, test.series.fitted)},
+      {"reduced_chi_square", test.reduced_chi_square},
+      {"autocorrelation_time", test.autocorrelation_time},
+      {"unexplained_percent", test.unexplained_percent},
+      {"explained", test.explained},
+      {"dependences", list(test.dependences,
+                           [](const Dependence& d) {
+                             return Json{{"on", d.on}, {"share", d.share}, {"p_value", d.p_value}};
+                           })},
+      {"outliers", list(test.outliers,
+                        [&](std::size_t i) {
+                          return Json{{"time_s", recording.times[test.series.samples[i]]},
+                                      {"residual_over_sigma", test.series.values[i]}};
+                        })},
+      {"drift",
+       {{"over_sigma_per_second", test.drift.per_second},
+        {"standard_error", test.drift.standard_error},
+        {"p_value", test.drift.p_value}}},
+      {"grid", test.grid}};
 }
 
 Json quantities_json(const std::vector<std::size_t>& quantities,
@@ -284,7 +296,9 @@ Json model_json(const LoopModel& model, const ModelScore& score) {
 }
 
 /// What only a closed loop has.
-Json loop_json(const ClosedLoop& loop, const std::vector<ModelScore>& scores) {
+Json loop_json(const Outcome& outcome) {
+  const ClosedLoop& loop = *outcome.loop;
+  const std::vector<ModelScore>& scores = outcome.scores;
   Json models = Json::array();
   for (std::size_t i = 0; i < loop.models.size(); ++i)
     models.push_back(model_json(loop.models[i], scores[i]));
@@ -293,10 +307,11 @@ Json loop_json(const ClosedLoop& loop, const std::vector<ModelScore>& scores) {
             {"after", models.back()}};
   models.erase(0);
   json["models"] = std::move(models);
-  json["closed_loop"] = {{"verdict", loop.verdict},
-                         {"explained", loop.explained},
-                         {"held_out_blocks", loop.held_out_blocks},
-                         {"hints", loop.hints}};
+  json["closed_loop"] = {
+      {"verdict", loop.verdict},
+      {"explained", loop.explained},
+      {"held_out_blocks", loop.held_out_blocks},
+      {"hints", list(outcome.separations, [](const Separation& s) { return s.words; })}};
   return json;
 }
 
@@ -333,7 +348,7 @@ Json result_json(const Outcome& outcome) {
   if (outcome.wishes.experiment)
     json["next_experiment"] =
         outcome.suggestion ? suggestion_json(*outcome.suggestion, fit) : Json(nullptr);
-  if (outcome.loop) json.update(loop_json(*outcome.loop, outcome.scores));
+  if (outcome.loop) json.update(loop_json(outcome));
   json.update(Json{{"coupling_rate", fit.coupling_rate},
                    {"stages", list(fit.stages,
                                    [](const Stage& s) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,23 +16,40 @@ namespace axisfit {
 /// What the machine may be asked for. What is not given is taken to be what the recordings covered,
 /// since the machine bore that; the voltage of an electric drive to be its controller's limit.
 struct MachineLimits {
-  std::optional<double> lowest, highest;  ///< m, position of the arm
-  std::optional<double> speed;            ///< m/s of the arm, either way
-  std::optional<double> voltage;          ///< V of the command, either way
+  std::optional<double> lowest{}, highest{};  ///< m, position of the arm
+  std::optional<double> speed{};              ///< m/s of the arm, either way
+  std::optional<double> voltage{};            ///< V of the command, either way
 };
+
+/// Limits all of which are given.
+MachineLimits completed_limits(MachineLimits limits, const Job& job, const FitResult& fit,
+                               const ControllerSettings& controller);
+
+/// Whether a place (m) and a speed (m/s) of the arm are within complete limits.
+bool is_within(const MachineLimits& limits, double position, double velocity);
 
 /// A motion from rest, and for how long.
 struct Experiment {
   Motion motion;
   double duration = 0.0;  ///< s
-  std::string words;      ///< "a step of 10 V"
+  std::string words{};    ///< "a step of 10 V"
 };
 
 /// Steps, levels, sines, chirps, pseudo-random sequences, each at several amplitudes up to the
-/// voltage and either way, and moves of up to the travel (m) at up to the speed; no moves where
-/// that is zero.
-std::vector<Experiment> experiment_family(double voltage, double speed, double travel,
+/// voltage and either way, and moves up to the travel and the speed where the axis has a
+/// set-velocity input. Limits are complete; whether a motion keeps to them is for its simulation to
+/// say.
+std::vector<Experiment> experiment_family(const Structure& structure, const MachineLimits& limits,
                                           double duration);
+
+/// The commands of an experiment over the times (s) from zero; those of a move as the controller
+/// writes them to the axis.
+Schedule commands_of(const Experiment& experiment, const Model<double>& model,
+                     const ControllerSettings& controller, std::span<const double> times);
+
+/// The sampling times (s) of one more recording: those of the first one that is fitted, from zero
+/// and for at most 10 s.
+std::vector<double> sampling_of_next(const Job& job);
 
 struct Suggestion {
   Experiment experiment;

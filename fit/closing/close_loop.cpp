@@ -11,7 +11,6 @@
 #include <set>
 
 #include "fit/closing/extension.h"
-#include "fit/closing/separation.h"
 #include "fit/closing/shortlist.h"
 #include "fit/parallel.h"
 
@@ -377,9 +376,8 @@ class Loop {
       };
       undecide(chosen, r.rival);
       undecide(r.rival, chosen);
-      result_.hints.push_back(fmt::format(
-          "{} and {} explain these recordings equally well; {}.", chosen.name, r.rival.name,
-          what_separates(declared_job(), fitted_model(current().job, current().fit), r.model)));
+      result_.rivals.push_back(
+          {chosen.name, r.rival.name, fitted_model(current().job, current().fit), r.model});
       places.insert(r.place);
     }
     for (const std::size_t place : places) {

@@ -45,6 +45,12 @@ struct LoopModel {
   FitResult fit;
 };
 
+/// Two effects that explain the recordings equally well.
+struct Rivals {
+  std::string chosen, rival;
+  Model<double> with_chosen, with_rival;  ///< fitted
+};
+
 struct ClosedLoop {
   std::vector<LoopModel> models;     ///< the declared one first, then one for each accepted effect
   LoopModel result;                  ///< the last of them, fitted to all samples
@@ -52,7 +58,7 @@ struct ClosedLoop {
   bool held_out_blocks = false;      ///< no recording to validate: blocks of the fitted were kept
   bool explained = false;            ///< nothing but noise is left
   std::string verdict;               ///< a few sentences for the user
-  std::vector<std::string> hints;    ///< what would tell undecided effects apart
+  std::vector<Rivals> rivals;        ///< the effects that stay undecided
 };
 
 /// Tells what is being done: a phase in words, and how much of it is done.

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "fit/noise.h"
+#include "fit/residuals/outliers.h"
 
 namespace axisfit {
 namespace {
@@ -67,7 +68,13 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
     test.unexplained_percent =
         100.0 * std::sqrt(std::max(0.0, 1.0 - noise * noise / test.reduced_chi_square));
     const auto& samples = result.recordings[series.recording].judged().samples;
-    const auto& times = job.recordings[series.recording].times;
+    const Recording& recording = job.recordings[series.recording];
+    const auto& times = recording.times;
+    std::vector<double> instants;
+    for (const std::size_t i : series.samples) instants.push_back(times[i]);
+    test.outliers = outliers(series.values);
+    test.drift = drift(instants, series.values);
+    test.grid = quantum(recording.measurements[series.measurement].values);
     for (const Regressor& regressor : regressors()) {
       std::vector<double> x;
       for (const std::size_t i : series.samples)

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "fit/residuals/drift.h"
 #include "fit/residuals/series.h"
 
 namespace axisfit {
@@ -28,6 +29,9 @@ struct SeriesTest {
   double unexplained_percent = 0.0;     ///< of the root mean square residual, beyond the noise
   bool explained = false;               ///< shows no more than its noise
   std::vector<Dependence> dependences;  ///< significant ones (p < 0.001), strongest first
+  std::vector<std::size_t> outliers;    ///< places in the series
+  Drift drift;                          ///< of the residual over sigma
+  double grid = 0.0;                    ///< step between recorded values; zero: none
 };
 
 /// Tests every series of a fit. The p-values count one independent sample for each autocorrelation

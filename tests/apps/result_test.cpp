@@ -95,7 +95,7 @@ TEST(ResultTest, JsonHasItsDocumentedKeys) {
     EXPECT_EQ(keys(test),
               (std::vector<std::string>{"recording", "signal", "role", "reduced_chi_square",
                                         "autocorrelation_time", "unexplained_percent", "explained",
-                                        "dependences"}));
+                                        "dependences", "outliers", "drift", "grid"}));
   ASSERT_EQ(json.at("residual").at("missing_force").size(), 2u);
   for (const Json& force : json.at("residual").at("missing_force"))
     EXPECT_EQ(keys(force), (std::vector<std::string>{"recording", "rms_n", "noise_n", "cutoff_hz",

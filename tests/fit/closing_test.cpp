@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "fit/closing/separation.h"
 namespace axisfit {
 namespace {
 
@@ -41,9 +42,14 @@ TEST_P(AnEffectWithATwin, IsLeftUndecided) {
   EXPECT_EQ(undecided(loop), (Names{secret.name, secret.twin})) << loop.verdict;
   EXPECT_EQ(accepted(loop), Names{});
   EXPECT_FALSE(loop.explained);
-  ASSERT_EQ(loop.hints.size(), 1u);
-  EXPECT_NE(loop.hints[0].find(secret.name), std::string::npos);
-  EXPECT_NE(loop.hints[0].find(secret.twin), std::string::npos);
+  ASSERT_EQ(loop.rivals.size(), 1u);
+  EXPECT_EQ((Names{loop.rivals[0].chosen, loop.rivals[0].rival}),
+            (Names{secret.name, secret.twin}));
+  const MachineLimits limits{-0.5, 0.5, 1.0, 10.0};
+  const Separation advice = what_separates(loop, loop.rivals[0], ControllerSettings(), limits);
+  EXPECT_NE(advice.words.find(secret.name), std::string::npos);
+  EXPECT_NE(advice.words.find(secret.twin), std::string::npos);
+  EXPECT_EQ(advice.signal.has_value(), advice.size >= 0.1) << advice.words;
   // Neither is added: the result is the model as declared.
   ASSERT_EQ(loop.models.size(), 1u);
   EXPECT_EQ(loop.result.job.free.size(), secret.free.size());
@@ -132,7 +138,7 @@ TEST(CloseLoop, IsTheSameForAnyNumberOfThreads) {
   job.options.threads = 2;
   const ClosedLoop two = close_loop(job, fit);
   EXPECT_EQ(one.verdict, two.verdict);
-  EXPECT_EQ(one.hints, two.hints);
+  EXPECT_EQ(one.rivals.size(), two.rivals.size());
   ASSERT_EQ(one.effects.size(), two.effects.size());
   for (std::size_t i = 0; i < one.effects.size(); ++i) {
     const EffectTrial &a = one.effects[i], &b = two.effects[i];

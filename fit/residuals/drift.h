@@ -1,0 +1,31 @@
+// The drift of a residual: the bias of a gauge that warms up, a gear that runs in.
+#pragma once
+
+#include <cmath>
+#include <span>
+
+namespace axisfit {
+
+struct Drift {
+  double per_second = 0.0;           ///< in the unit of the values
+  double standard_error = INFINITY;  ///< of that
+  double p_value = 1.0;              ///< of that trend or more, either way, were there none
+  double span = 0.0;                 ///< of the trend, from the first time to the last
+};
+
+/// The linear trend of a residual series, by least squares. Its standard error allows for the
+/// colour of what is left when the trend is taken off, as those of parameters do (uncertainty.h).
+/// The p-value is Student's, with one independent sample for each autocorrelation time; with fewer
+/// than fifteen of them it is too small.
+///
+/// This is what a drift would be, not evidence of one: a step, a bend and a slow wave of less than
+/// a period have a significant trend too.
+///
+/// Times, one for each value, increase, if not evenly; noise is taken to be correlated from sample
+/// to sample, whatever the time between them. With fewer than three values, or too few independent
+/// ones, the standard error stays infinite and p one.
+///
+/// Literature: H. White, Econometrica 48 (1980) 817-838 (the sandwich of the variance).
+Drift drift(std::span<const double> times, std::span<const double> values);
+
+}  // namespace axisfit

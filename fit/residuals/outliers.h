@@ -1,0 +1,29 @@
+// Single bad samples of a residual: spikes and dropouts of a sensor or of its transmission.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace axisfit {
+
+/// Which samples of a series stand alone: far from the median of their ten neighbours on either
+/// side, by the scatter of the whole series and by that of the fifty samples before and after,
+/// farther than Gaussian noise, white or coloured, goes in 99 % of all series, however long. Up to
+/// three in a row may be bad.
+///
+/// What a wrong model leaves is no outlier. Steps, slow errors and oscillations have neighbours
+/// that go along, or out to the other side; a sample is one only where its own neighbours stay
+/// within a third of its deviation. What is over within three samples cannot be told from bad ones.
+///
+/// Values are finite and evenly spaced in time. The series has its own scale: nothing is found in
+/// fewer than 30 samples, nor among the first two and the last two, where a spike is not seen to
+/// return, nor in a series that is constant but for single steps of a grid.
+///
+/// Literature: F. R. Hampel, Journal of the American Statistical Association 69 (1974) 383-393
+/// (median and median absolute deviation); R. K. Pearson, Outliers in process modeling and
+/// identification, IEEE Transactions on Control Systems Technology 10 (2002) 55-63 (moving over a
+/// signal).
+std::vector<std::size_t> outliers(std::span<const double> residuals);
+
+}  // namespace axisfit
