@@ -274,6 +274,7 @@ class JobReader {
       return;
     }
     check_samples(signals_node, any_named, recording);
+    take_noise_from_rest(signals_node, recording);
     if (recording.initial_state == InitialState::data) initial_state_from_data(recording);
     if (!recording.acceleration_at_rest) leave_out_acceleration_at_rest(recording);
   }
@@ -369,6 +370,8 @@ class JobReader {
     if (const auto sigma = map.optional("sigma")) {
       if (sigma->text() == "fit") {
         measurement.noise = NoiseSource::fit;
+      } else if (sigma->text() == "rest") {
+        measurement.noise = NoiseSource::rest;
       } else {
         measurement.sigma = read_sigma(*sigma, signal.unit);
         measurement.noise = NoiseSource::given;
@@ -405,6 +408,19 @@ class JobReader {
       signals_node.error("a fixed coupling needs a recorded position or velocity");
     if (recording.initial_state == InitialState::data && !held)
       signals_node.error("initial_state: data needs a recorded position or velocity");
+  }
+
+  static void take_noise_from_rest(const ConfigNode& signals_node, Recording& recording) {
+    for (Measurement& m : recording.measurements) {
+      if (m.noise != NoiseSource::rest) continue;
+      if (const double noise = noise_at_rest(recording, m); noise > 0.0)
+        m.sigma = noise;
+      else
+        signals_node.error(fmt::format(
+            "the arm does not rest for 50 samples in this recording, or no velocity or position "
+            "shows it: give the sigma of {}, or leave it out",
+            info(m.signal).name));
+    }
   }
 
   static bool same_length(const ConfigNode& node, const std::vector<double>& values,

@@ -21,6 +21,20 @@ std::string interval_text(const ParameterUncertainty& u) {
   return with_digits_of(u.lower, digits) + " .. " + with_digits_of(u.upper, digits);
 }
 
+/// Estimates that hang together: neither is known without the other.
+std::string correlation_text(const FitResult& result) {
+  constexpr double kStrong = 0.95;
+  std::vector<std::string> pairs;
+  for (Eigen::Index i = 0; i < result.correlation.rows(); ++i)
+    for (Eigen::Index k = 0; k < i; ++k)
+      if (const double c = result.correlation(i, k); std::abs(c) > kStrong)
+        pairs.push_back(fmt::format("{} and {} by {:.3g}",
+                                    result.parameters[static_cast<std::size_t>(k)].name,
+                                    result.parameters[static_cast<std::size_t>(i)].name, c));
+  if (pairs.empty()) return "";
+  return paragraph(fmt::format("Strongly correlated: {}.", fmt::join(pairs, ", ")), 2);
+}
+
 }  // namespace
 
 std::string knowledge_text(const FitResult& result) {
@@ -33,7 +47,7 @@ std::string knowledge_text(const FitResult& result) {
                ? fmt::format(", in which up to {:.3g} samples tell no more than one", result.colour)
                : ", white";
   return paragraph("Standard errors and intervals: for " + noise + ".", 2) +
-         together_text(result.identifiability);
+         correlation_text(result) + together_text(result.identifiability);
 }
 
 std::string together_text(const Identifiability& known) {

@@ -90,9 +90,10 @@ std::string instruments_text(const Job& job, const Diagnosis& diagnosis) {
       const auto size = [&](std::size_t i) { return std::abs(test.series.values[i]); };
       const std::size_t worst = *std::ranges::max_element(test.outliers, {}, size);
       const std::size_t n = test.outliers.size();
-      tell(fmt::format("has {} outlier{}, the farthest {:.3g} times the noise off at {:.6g} s", n,
-                       n == 1 ? "" : "s", size(worst),
-                       recording.times[test.series.samples[worst]]));
+      tell(fmt::format(
+          "has {} outlier{}, the farthest {:.3g} times the noise off at {:.6g} s: "
+          "bad readings, or an event that comes a sample early or late",
+          n, n == 1 ? "" : "s", size(worst), recording.times[test.series.samples[worst]]));
     }
   }
   return text;

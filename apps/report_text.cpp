@@ -94,7 +94,17 @@ std::string starts_text(const FitResult& first) {
 }
 
 const char* mark_of(NoiseSource noise) {
-  return noise == NoiseSource::given ? "" : noise == NoiseSource::differences ? "*" : "**";
+  switch (noise) {
+    case NoiseSource::given:
+      return "";
+    case NoiseSource::differences:
+      return "*";
+    case NoiseSource::fit:
+      return "**";
+    case NoiseSource::rest:
+      return "***";
+  }
+  return "";
 }
 
 std::string errors_text(const Job& job, const FitResult& result) {
@@ -129,6 +139,7 @@ std::string errors_text(const Job& job, const FitResult& result) {
     });
   };
   if (any(NoiseSource::differences)) text += "  * estimated from differences of the samples\n";
+  if (any(NoiseSource::rest)) text += "  *** what the instrument shows at rest\n";
   if (any(NoiseSource::fit))
     text += "  ** estimated together with the parameters: the reduced chi-square judges nothing\n";
   return text;

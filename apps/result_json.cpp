@@ -27,6 +27,8 @@ const char* noise_name(NoiseSource noise) {
       return "given";
     case NoiseSource::differences:
       return "differences";
+    case NoiseSource::rest:
+      return "rest";
     case NoiseSource::fit:
       return "fit";
   }

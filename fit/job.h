@@ -28,6 +28,7 @@ enum class InitialState {
 enum class NoiseSource {
   given,
   differences,  ///< of the samples, see noise.h
+  rest,         ///< what the instrument shows at rest, see rest.h
   fit,          ///< estimated together with the parameters, see estimate_with_noise
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 
 namespace axisfit {
@@ -42,6 +43,23 @@ std::vector<bool> resting(const Recording& recording) {
     begin = end;
   }
   return still;
+}
+
+double noise_at_rest(const Recording& recording, const Measurement& measurement) {
+  const std::vector<bool> rest = resting(recording);
+  double sum = 0.0, freedom = 0.0;
+  for (auto begin = std::ranges::find(rest, true); begin != rest.end();) {
+    const auto end = std::find(begin, rest.end(), false);
+    const std::span values = std::span(measurement.values)
+                                 .subspan(static_cast<std::size_t>(begin - rest.begin()),
+                                          static_cast<std::size_t>(end - begin));
+    const double n = static_cast<double>(values.size());
+    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+    for (const double x : values) sum += (x - mean) * (x - mean);
+    freedom += n - 1.0;
+    begin = std::find(end, rest.end(), true);
+  }
+  return freedom > 0.0 ? std::sqrt(sum / freedom) : 0.0;
 }
 
 void leave_out_acceleration_at_rest(Recording& recording) {

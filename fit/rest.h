@@ -12,6 +12,10 @@ namespace axisfit {
 /// at least twice as long. Empty when neither was recorded.
 std::vector<bool> resting(const Recording& recording);
 
+/// Standard deviation of what a signal shows at rest, each rest about its own mean; zero where the
+/// recording has no rest.
+double noise_at_rest(const Recording& recording, const Measurement& measurement);
+
 /// Leaves the acceleration out where the arm rests. An arm at rest has no acceleration whatever its
 /// parameters are, so nothing is lost but what the accelerometer itself has there: a bias, which it
 /// shows in motion too, or an artefact.

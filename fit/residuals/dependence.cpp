@@ -73,6 +73,10 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
     std::vector<double> instants;
     for (const std::size_t i : series.samples) instants.push_back(times[i]);
     test.outliers = outliers(series.values);
+    // Beside its neighbours alone, the last count of an encoder stands out.
+    constexpr double kNoise = 4.0;
+    std::erase_if(test.outliers,
+                  [&](std::size_t i) { return std::abs(series.values[i]) < kNoise; });
     test.drift = drift(instants, series.values);
     test.grid = quantum(recording.measurements[series.measurement].values);
     for (const Regressor& regressor : regressors()) {

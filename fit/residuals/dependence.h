@@ -29,7 +29,7 @@ struct SeriesTest {
   double unexplained_percent = 0.0;     ///< of the root mean square residual, beyond the noise
   bool explained = false;               ///< shows no more than its noise
   std::vector<Dependence> dependences;  ///< significant ones (p < 0.001), strongest first
-  std::vector<std::size_t> outliers;    ///< places in the series
+  std::vector<std::size_t> outliers;    ///< places in the series, beyond four sigma
   Drift drift;                          ///< of the residual over sigma
   double grid = 0.0;                    ///< step between recorded values; zero: none
 };

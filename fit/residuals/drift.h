@@ -16,7 +16,8 @@ struct Drift {
 /// The linear trend of a residual series, by least squares. Its standard error allows for the
 /// colour of what is left when the trend is taken off, as those of parameters do (uncertainty.h).
 /// The p-value is Student's, with one independent sample for each autocorrelation time; with fewer
-/// than fifteen of them it is too small.
+/// than some fifteen of them it errs to the small side, and so it does where slow noise hides
+/// beneath as much white noise.
 ///
 /// This is what a drift would be, not evidence of one: a step, a bend and a slow wave of less than
 /// a period have a significant trend too.
@@ -24,8 +25,6 @@ struct Drift {
 /// Times, one for each value, increase, if not evenly; noise is taken to be correlated from sample
 /// to sample, whatever the time between them. With fewer than three values, or too few independent
 /// ones, the standard error stays infinite and p one.
-///
-/// Literature: H. White, Econometrica 48 (1980) 817-838 (the sandwich of the variance).
 Drift drift(std::span<const double> times, std::span<const double> values);
 
 }  // namespace axisfit

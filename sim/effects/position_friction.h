@@ -4,8 +4,8 @@
 
 namespace axisfit {
 
-/// Friction that changes along the stroke, as on a guide that is bent or tightened unevenly: the dry
-/// friction by G_c y0 + G_q y0^2, the viscous coefficient by G_b y0.
+/// Friction that changes along the stroke, as on a guide that is bent or tightened unevenly: the
+/// dry friction by G_c y0 + G_q y0^2, the viscous coefficient by G_b y0.
 template <class T>
 struct PositionFriction {
   static constexpr std::string_view name = "position_friction";

@@ -381,6 +381,41 @@ TEST(ResultTest, SamplesAtRestAreCounted) {
   EXPECT_FALSE(left_out(biased)->is_noise);
 }
 
+TEST(ResultTest, FaultsOfInstrumentsAreTold) {
+  const TempFolder folder;
+  write_recordings(folder);
+  const Table good = read_csv(folder.path("short.csv"));
+  const auto told = [&](auto&& spoil) {
+    Table table = good;
+    spoil(table.columns[0].values, table.columns[2].values);
+    folder.write("short.csv", table, 12);
+    const Outcome outcome = find_outcome(read_job_file(folder.write("job.yaml", fit_job())), {});
+    return std::pair{report_text(outcome), result_json(outcome)["residual"]["tests"]};
+  };
+  using Values = std::vector<double>;
+  EXPECT_EQ(told([](const Values&, Values&) {}).first.find("Instruments"), std::string::npos);
+
+  const auto [outlier, outlier_test] = told([](const Values&, Values& v) { v[100] += 0.1; });
+  EXPECT_NE(outlier.find("The velocity of short has 1 outlier, "), std::string::npos) << outlier;
+  ASSERT_EQ(outlier_test[0].at("outliers").size(), 1u);
+  EXPECT_DOUBLE_EQ(outlier_test[0].at("outliers")[0].at("time_s"), good.columns[0].values[100]);
+  EXPECT_NEAR(outlier_test[0].at("outliers")[0].at("residual_over_sigma"), 50.0, 5.0);
+
+  const auto [drift, drift_test] = told([](const Values& t, Values& v) {
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] += 0.02 * (t[i] - 0.15);
+  });
+  // The fit takes what it can of it: what it was not fitted to drifts.
+  EXPECT_NE(drift.find("The velocity of judge drifts: "), std::string::npos) << drift;
+  EXPECT_LT(drift_test[1].at("drift").at("p_value"), 1e-3);
+
+  const auto [grid, grid_test] = told([](const Values&, Values& v) {
+    for (double& x : v) x = 0.01 * std::round(x / 0.01);
+  });
+  EXPECT_NE(grid.find("The velocity of short is rounded to steps of 0.01 m/s."), std::string::npos)
+      << grid;
+  EXPECT_NEAR(grid_test[0].at("grid"), 0.01, 1e-9);
+}
+
 TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
   const Found found(rubbing_job(), true);
   const Json& json = found.json;

@@ -64,7 +64,7 @@ TEST(Drift, IsAsRareInWhiteNoiseAsItsPValueSays) {
   EXPECT_NEAR(r.error_ratio, 1.0, 0.07);
 }
 
-// Sixteen independent samples; without their colour every third series would drift.
+// Sixteen independent samples. As white noise, four in nine of these series would drift.
 TEST(Drift, IsRareInColouredNoise) {
   constexpr int kTrials = 1500;
   const Rates r = rates(kTrials, 300, 0.9, 2);

@@ -66,8 +66,8 @@ TEST(SuggestExperiment, IsFollowedWithTheSuccessPredicted) {
   EXPECT_GT(relative(suggestion->now, worst), relative(suggestion->now, 1 - worst));
   EXPECT_LT(relative(suggestion->predicted, worst), 0.5 * relative(suggestion->now, worst));
 
-  job.recordings.push_back(recorded(slide(), suggestion->experiment.motion,
-                                    suggestion->experiment.duration, 6));
+  job.recordings.push_back(
+      recorded(slide(), suggestion->experiment.motion, suggestion->experiment.duration, 6));
   job.recordings.back().name = "next";
   const FitResult after = estimate(job);
   ASSERT_TRUE(after.usable);

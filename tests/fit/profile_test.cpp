@@ -116,8 +116,8 @@ TEST(Profile, TellsOfABetterFit) {
   std::vector<double> beside = values_of(fit);
   beside[0] *= 1.02;
   fit.parameters[0].value = beside[0];
-  fit.at_solution = std::make_shared<const Linearization>(
-      linearize(job, space, space.internal(beside), 0.0));
+  fit.at_solution =
+      std::make_shared<const Linearization>(linearize(job, space, space.internal(beside), 0.0));
   const std::vector<Profile> found = all_profiles(job, fit);
   ASSERT_TRUE(found[1].better);
   EXPECT_LT(found[1].better->reduced_cost, 1.1);

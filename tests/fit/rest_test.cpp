@@ -164,5 +164,17 @@ TEST(Rest, OfTheCleanRecordingComesAfterItsStep) {
   }
 }
 
+TEST(NoiseAtRest, IsWhatTheInstrumentsShowThere) {
+  Recording recording = recorded(0.1, {{0.3, 0.9}, {1.4, 2.0}});
+  // An offset that differs between rests is no noise, nor is motion.
+  for (std::size_t k = 1000; k < kSamples; ++k) recording.measurements[2].values[k] += 3.0;
+  for (std::size_t k = 0; k < 250; ++k) recording.measurements[2].values[k] *= 10.0;
+  EXPECT_NEAR(noise_at_rest(recording, recording.measurements[2]), 0.05, 0.05 * 0.1);
+  EXPECT_NEAR(noise_at_rest(recording, recording.measurements[0]), kVelocityNoise,
+              0.1 * kVelocityNoise);
+  const Recording moving = recorded(0.1, {});
+  EXPECT_EQ(noise_at_rest(moving, moving.measurements[2]), 0.0);
+}
+
 }  // namespace
 }  // namespace axisfit
