@@ -3,20 +3,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
 #include <optional>
 #include <sstream>
 
 #include "apps/axis_file.h"
+#include "apps/command_line.h"
 #include "apps/config.h"
 #include "apps/job_file.h"
 #include "apps/motion_file.h"
 #include "apps/output_folder.h"
 #include "apps/report_text.h"
 #include "apps/result_json.h"
-#include "apps/version.h"
 
 namespace {
 
@@ -27,7 +26,7 @@ constexpr const char* kAxisFile = "fitted.yaml";
 constexpr const char* kResidualsFile = "residuals.csv";
 constexpr const char* kMotionFile = "next-motion.yaml";
 
-enum ExitCode { kUsable = 0, kBadInput = 2, kNoUsableFit = 3 };
+enum ExitCode { kUsable = 0, kNoUsableFit = 3 };  // besides kBadInput
 
 struct Arguments {
   std::string job;
@@ -105,7 +104,7 @@ std::vector<std::pair<std::string, std::string>> files_of(const Arguments& argum
                                                           const std::string& json) {
   Rig fitted = outcome.file.rig;
   fitted.model = fitted_model(outcome.job(), outcome.fit());
-  const std::string origin = fmt::format("axisfit {} from {}, starting from {}", kVersion,
+  const std::string origin = fmt::format("axisfit {} from {}, starting from {}", version(),
                                          arguments.job, outcome.file.axis_file);
   std::vector<std::pair<std::string, std::string>> files{
       {kResultFile, json},
@@ -160,7 +159,6 @@ int main(int argc, char** argv) {
   CLI::App app{"Fits the model of a robot axis to recordings of it, as a job file describes.",
                "fit-params"};
   app.footer(kExamples);
-  app.set_version_flag("--version", std::string("axisfit ") + kVersion);
   app.add_option("JOB.yaml", arguments.job, "the job file (docs/job-file.md)")->required();
   auto* close =
       app.add_flag("--close-loop", arguments.wishes.close_loop,
@@ -187,17 +185,9 @@ int main(int argc, char** argv) {
   app.add_option("--starts", arguments.starts,
                  "number of starts, the first from the initial values; default: the job's")
       ->check(CLI::Range(1, 1000000));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
-  }
-  for (std::istringstream names(profiles); std::getline(names, profiles, ',');)
-    arguments.wishes.profiles.push_back(profiles);
-  try {
+  return run_program(app, argc, argv, [&] {
+    for (std::istringstream names(profiles); std::getline(names, profiles, ',');)
+      arguments.wishes.profiles.push_back(profiles);
     return run(arguments);
-  } catch (const std::exception& error) {  // ConfigError's text has a line for each mistake
-    std::cerr << error.what() << '\n';
-    return kBadInput;
-  }
+  });
 }

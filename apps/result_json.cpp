@@ -332,7 +332,7 @@ Json result_json(const Outcome& outcome) {
         parameter_json(fit.parameters[i], i < declared.size() ? declared[i] : job.free[i]));
   }
   Json json{
-      {"version", kVersion},
+      {"version", version()},
       {"status", text(fit.status)},
       {"usable", fit.usable},
       {"verdict", fit.verdict},
@@ -399,7 +399,7 @@ nlohmann::ordered_json forecast_json(const Job& job, const Forecast& forecast) {
                           {"shown", std::move(shown)}});
   }
   Json json{
-      {"version", kVersion}, {"finite", forecast.finite}, {"parameters", std::move(parameters)}};
+      {"version", version()}, {"finite", forecast.finite}, {"parameters", std::move(parameters)}};
   json.update(together_json(space, forecast.uncertainty.correlation, forecast.together));
   return json;
 }

@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <sstream>
 
 #include "apps/axis_file.h"
+#include "apps/command_line.h"
 #include "apps/motion_file.h"
 #include "apps/output_folder.h"
-#include "apps/version.h"
 #include "sim/rig.h"
 
 namespace {
@@ -99,7 +98,6 @@ int main(int argc, char** argv) {
       "encoder counts, sensor bias and gain.",
       "simulate-axis"};
   app.footer(kExamples);
-  app.set_version_flag("--version", std::string("axisfit ") + kVersion);
   app.add_option("AXIS.yaml", arguments.axis, "the axis (docs/axis-file.md)")->required();
   app.add_option("MOTION.yaml", arguments.motion, "the motion (docs/motion-file.md)")->required();
   app.add_option("-o,--output", arguments.output, "CSV file; default: standard output");
@@ -116,17 +114,9 @@ int main(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_flag("--exact", arguments.exact, "no noise, encoder not quantised, all digits");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  arguments.signals_given = chosen->count() > 0;
-  try {
+  return run_program(app, argc, argv, [&] {
+    arguments.signals_given = chosen->count() > 0;
     run(std::move(arguments));
     return 0;
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << '\n';
-    return 2;
-  }
+  });
 }

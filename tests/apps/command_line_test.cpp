@@ -8,7 +8,10 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -97,6 +100,33 @@ TEST_F(CommandLineTest, HelpHasExamples) {
   }
 }
 
+/// The contents of a file below packaging/, without the backslashes of a manual page's hyphens.
+std::string packaged(const std::string& file) {
+  std::ifstream in(AXISFIT_CONFIGS "/../packaging/" + file);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::erase(text, '\\');
+  return text;
+}
+
+TEST_F(CommandLineTest, EveryOptionIsInTheManualAndTheCompletions) {
+  for (const std::string program : {"fit-params", "simulate-axis"}) {
+    const std::string help = run(program, {"--help"}).out;
+    const std::regex option("\n  (?:-., ?)?(?:-.,)?--([a-z-]+)");
+    int options = 0;
+    for (std::sregex_iterator it(help.begin(), help.end(), option), end; it != end; ++it) {
+      const std::string name = (*it)[1];
+      SCOPED_TRACE(program + " --" + name);
+      EXPECT_NE(packaged("man/" + program + ".1").find("--" + name), std::string::npos);
+      EXPECT_NE(packaged("completions/" + program).find("--" + name), std::string::npos);
+      EXPECT_NE(packaged("completions/_" + program).find("--" + name), std::string::npos);
+      EXPECT_NE(packaged("completions/" + program + ".fish").find("-l " + name + " "),
+                std::string::npos);
+      ++options;
+    }
+    EXPECT_GE(options, 8) << program;
+  }
+}
+
 TEST_F(CommandLineTest, WrongArgumentsAreBadInput) {
   const std::string good = job();
   for (const std::vector<std::string>& arguments :
@@ -114,6 +144,15 @@ TEST_F(CommandLineTest, WrongArgumentsAreBadInput) {
     EXPECT_EQ(outcome.out, "");
     EXPECT_NE(outcome.err, "");
   }
+}
+
+TEST_F(CommandLineTest, MisspeltOptionsGetASuggestion) {
+  EXPECT_NE(fit({job(), "--close-lop"}).err.find("Did you mean --close-loop?\n"),
+            std::string::npos);
+  EXPECT_NE(fit({"--chekc"}).err.find("Did you mean --check?\n"), std::string::npos);
+  EXPECT_EQ(fit({job(), "--bogus"}).err.find("Did you mean"), std::string::npos);
+  EXPECT_NE(simulate({kXAxis, motion(), "--sginals", "velocity"}).err.find("mean --signals?"),
+            std::string::npos);
 }
 
 TEST_F(CommandLineTest, AUsableFitIsReported) {

@@ -122,7 +122,7 @@ TEST(ResultTest, JsonSaysWhatTheFitFound) {
   EXPECT_EQ(json.at("usable"), true);
   EXPECT_EQ(json.at("verdict"), fit.outcome.first.verdict);
   EXPECT_EQ(json.at("axis"), "x axis of the Automatix AID 600");
-  EXPECT_EQ(json.at("version"), kVersion);
+  EXPECT_EQ(json.at("version"), version());
   EXPECT_EQ(json.at("seed"), 5);
   EXPECT_EQ(json.at("wall_time_s"), fit.outcome.wall_time);
   EXPECT_GT(fit.outcome.wall_time, 0.0);
