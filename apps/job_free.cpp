@@ -1,0 +1,116 @@
+#include "apps/job_free.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/axis_file.h"
+#include "apps/job_recording.h"
+#include "apps/units.h"
+
+namespace axisfit {
+namespace {
+
+/// "0.56 ohm", for messages.
+std::string rounded(double value, std::string_view unit) {
+  return with_unit(fmt::format("{:g}", value), unit);
+}
+
+void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job& job) {
+  const Quantity& quantity = entry.quantity;
+  FreeParameter parameter;
+  parameter.quantity = entry.index;
+  parameter.initial = *members(job.model)[entry.index];
+  std::optional<std::pair<double, double>> bounds;
+  std::optional<std::size_t> scale;
+  bool per_recording = false, initial_given = false;
+  // "M:" alone is as good as "M: {}".
+  Diagnostics none;
+  ConfigMap map(node.is_null() ? *ConfigNode::parse("{}", node.file(), none) : node);
+  if (const auto initial = map.optional("initial")) {
+    initial_given = true;
+    parameter.initial = read_value(*initial, quantity).value_or(parameter.initial);
+  }
+  if (const auto given = map.optional("bounds"))
+    bounds = given->as_bounds(quantity.unit, quantity.lower, quantity.upper);
+  if (const auto given = map.optional("scale")) {
+    static const std::vector<std::string> scales{"log", "linear"};
+    scale = given->as_choice(scales);
+  }
+  if (const auto given = map.optional("per_recording"))
+    per_recording = given->as_bool().value_or(false);
+  if (const auto given = map.optional("prior")) {
+    ConfigMap prior(*given);
+    parameter.prior.emplace();
+    if (const auto mean = prior.required("mean"))
+      parameter.prior->mean = read_value(*mean, quantity).value_or(0.0);
+    if (const auto sigma = prior.required("sigma"))
+      parameter.prior->sigma = read_sigma(*sigma, quantity.unit);
+    prior.finish();
+  }
+  map.finish();
+
+  // What has no zero in its range, or is part of every axis, is estimated by its order of
+  // magnitude; frictions, biases, delays and initial states may be zero and are not.
+  const bool positive = entry.group.empty() && quantity.standard != 0.0 && quantity.lower >= 0.0;
+  parameter.logarithmic =
+      scale ? *scale == 0 : (bounds ? bounds->first > 0.0 : positive && parameter.initial > 0.0);
+  const auto add = [&](double initial, std::optional<std::size_t> recording) {
+    FreeParameter p = parameter;
+    p.initial = initial;
+    p.recording = recording;
+    p.lower = bounds ? bounds->first : quantity.lower;
+    p.upper = bounds ? bounds->second : quantity.upper;
+    if (!bounds && p.logarithmic) {
+      p.lower = std::max(p.lower, initial / 100.0);
+      p.upper = std::min(p.upper, initial * 100.0);
+    }
+    if (p.logarithmic && !(p.lower > 0.0 && p.initial > 0.0))
+      node.error(
+          fmt::format("{} on a logarithmic scale needs an initial value and a lower bound "
+                      "above zero",
+                      entry.name));
+    else if (p.initial < p.lower || p.initial > p.upper)
+      node.error(fmt::format("the initial value {} of {} lies outside its bounds, {} to {}",
+                             rounded(p.initial, quantity.unit), entry.name,
+                             rounded(p.lower, quantity.unit), rounded(p.upper, quantity.unit)));
+    for (const Recording& r : job.recordings)
+      for (const auto& [index, value] : r.overrides)
+        if (!p.recording && index == p.quantity && entry.group != "initial")
+          node.error(entry.name == "K_f"
+                         ? fmt::format("K_f cannot be fitted to '{}', whose drive_force is in "
+                                       "newtons already",
+                                       r.name)
+                         : fmt::format("{} is fitted for all recordings but set for '{}': remove "
+                                       "one, or say per_recording: true",
+                                       entry.name, r.name));
+    job.free.push_back(p);
+  };
+  if (!per_recording) {
+    add(parameter.initial, std::nullopt);
+    return;
+  }
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    const Recording& recording = job.recordings[r];
+    if (recording.role != Role::fit) continue;
+    double initial = parameter.initial;
+    if (!initial_given)
+      for (const auto& [index, value] : recording.overrides)
+        if (index == entry.index) initial = value;
+    add(initial, r);
+  }
+}
+
+}  // namespace
+
+void read_free(const ConfigNode& node, Job& job) {
+  ConfigMap map(node);
+  for (const auto& [key, value] : map.entries())
+    if (const QuantityEntry* entry = quantity_named(key, job.model.structure))
+      read_free_parameter(value, *entry, job);
+  map.finish();
+  if (node.is_map() && map.entries().empty())
+    node.error("nothing is free: name at least one quantity to fit");
+}
+
+}  // namespace axisfit

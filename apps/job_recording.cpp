@@ -1,0 +1,328 @@
+#include "apps/job_recording.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <ranges>
+
+#include "apps/axis_file.h"
+#include "apps/recording_file.h"
+#include "apps/units.h"
+#include "fit/initial_state.h"
+#include "fit/noise.h"
+#include "fit/rest.h"
+#include "sim/table.h"
+
+namespace axisfit {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+class RecordingReader {
+ public:
+  RecordingReader(const Rig& rig, CouplingMode coupling, const std::string& data_directory)
+      : rig_(rig), coupling_(coupling), data_directory_(data_directory) {}
+
+  Recording read(const ConfigNode& node) {
+    Recording recording;
+    ConfigMap map(node);
+    const auto file = map.required("file");
+    std::optional<std::string> path;
+    if (file) path = file->as_string();
+    if (path) {
+      recording.file = *path;
+      recording.name = fs::path(*path).stem().string();
+    }
+    if (const auto name = map.optional("name"))
+      recording.name = name->as_string().value_or(recording.name);
+    if (const auto role = map.optional("role")) {
+      static const std::vector<std::string> roles{"fit", "validate"};
+      recording.role = static_cast<Role>(role->as_choice(roles).value_or(0));
+    }
+    if (const auto state = map.optional("initial_state")) {
+      static const std::vector<std::string> states{"given", "data"};
+      recording.initial_state = static_cast<InitialState>(state->as_choice(states).value_or(0));
+    }
+    const auto initial_samples = map.optional("initial_samples");
+    if (const auto& n = initial_samples)
+      recording.initial_samples = static_cast<std::size_t>(n->as_integer(4, 1000000).value_or(20));
+    if (const auto rest = map.optional("acceleration_at_rest")) {
+      static const std::vector<std::string> choices{"leave_out", "keep"};
+      recording.acceleration_at_rest = rest->as_choice(choices).value_or(0) == 1;
+    }
+    if (const auto score = map.optional("score_initial_samples"))
+      recording.score_initial_samples = score->as_bool().value_or(true);
+    if (const auto set = map.optional("set")) read_overrides(*set, recording);
+    const auto time = map.required("time");
+    const auto signals = map.required("signals");
+    const auto trim = map.optional("trim");
+    std::optional<RecordingFile> data;
+    if (path) {
+      try {
+        data.emplace(resolved(*file, *path, data_directory_));
+      } catch (const RecordingError& error) {
+        file->error(error.what());
+      }
+    }
+    if (data && time && signals) read_samples(*data, *time, *signals, trim, recording);
+    if (!recording.score_initial_samples && recording.times.size() >= 10 &&
+        recording.initial_samples >= recording.times.size())
+      initial_samples.value_or(node).error(
+          fmt::format("{} initial samples that are not scored leave nothing of {} to score",
+                      recording.initial_samples, recording.times.size()));
+    map.finish();
+    return recording;
+  }
+
+ private:
+  void read_overrides(const ConfigNode& node, Recording& recording) {
+    ConfigMap map(node);
+    for (const auto& [key, value] : map.entries())
+      if (const QuantityEntry* entry = quantity_named(key, rig_.model.structure))
+        if (const auto given = read_value(value, entry->quantity))
+          recording.overrides.emplace_back(entry->index, *given);
+    map.finish();
+    Model<double> model = rig_.model;
+    for (const auto& [index, value] : recording.overrides) *members(model)[index] = value;
+    if (const std::string reason = refusal(model); !reason.empty()) node.error(reason);
+  }
+
+  using Values = std::vector<double>;
+
+  /// The part of a recording that is kept, in recorded time, s.
+  struct Trim {
+    double from = -kUnlimited, to = kUnlimited;
+    bool keeps(double time) const { return time >= from && time <= to; }
+  };
+
+  static Trim read_trim(const ConfigNode& node) {
+    Trim trim;
+    ConfigMap map(node);
+    if (const auto t = map.optional("from"))
+      trim.from = t->as_quantity("s", -kUnlimited, kUnlimited).value_or(trim.from);
+    if (const auto t = map.optional("to"))
+      trim.to = t->as_quantity("s", -kUnlimited, kUnlimited).value_or(trim.to);
+    map.finish();
+    return trim;
+  }
+
+  static Values trimmed(const Values& values, const Values& times, const Trim& trim) {
+    Values kept;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (trim.keeps(times[i])) kept.push_back(values[i]);
+    return kept;
+  }
+
+  void read_samples(const RecordingFile& data, const ConfigNode& time_node,
+                    const ConfigNode& signals_node, const std::optional<ConfigNode>& trim_node,
+                    Recording& recording) {
+    const auto times = read_times(data, time_node);
+    const Trim trim = trim_node ? read_trim(*trim_node) : Trim();
+    ConfigMap signals(signals_node);
+    const auto input = read_input(data, signals_node, signals, times, recording);
+    const bool any_named = read_measurements(data, signals, times, trim, recording);
+    signals.finish();
+    if (!times || !input) return;
+    // Commands from before the first sample kept still act on it.
+    Values command_times, commands;
+    for (std::size_t i = 0; i < times->size() && (*times)[i] <= trim.to; ++i) {
+      command_times.push_back((*times)[i]);
+      commands.push_back((*input)[i]);
+    }
+    recording.command = schedule_from_samples(command_times, commands);
+    recording.times = trimmed(*times, *times, trim);
+    if (recording.times.size() < 10) {
+      trim_node.value_or(time_node).error(
+          fmt::format("{} samples are too few: at least 10 must be left", recording.times.size()));
+      recording.times = {0.0, 1.0};
+      return;
+    }
+    check_samples(signals_node, any_named, recording);
+    take_noise_from_rest(signals_node, recording);
+    if (recording.initial_state == InitialState::data) initial_state_from_data(recording);
+    if (!recording.acceleration_at_rest) leave_out_acceleration_at_rest(recording);
+  }
+
+  /// What drives the axis: a command in volts, for a force source also a recorded force, or a
+  /// position reference. Nothing, with diagnostics, unless it fits the times.
+  std::optional<Values> read_input(const RecordingFile& data, const ConfigNode& signals_node,
+                                   ConfigMap& signals, const std::optional<Values>& times,
+                                   Recording& recording) {
+    const bool force_source = rig_.model.structure.drive == Drive::force_source;
+    const auto command = signals.optional("command");
+    const auto force = force_source ? signals.optional("drive_force") : std::nullopt;
+    const auto reference = force_source ? std::nullopt : signals.optional("position_reference");
+    if (command && force)
+      force->error("give either the command or the drive force, not both: each drives the axis");
+    if (command && reference)
+      reference->error("the command is recorded and drives the axis: remove the reference");
+    if (!command && !force && !reference)
+      signals_node.error(force_source
+                             ? "the axis is driven by a command or a drive_force: name one "
+                               "of them"
+                             : "the axis is driven by the command: name its column, or that of the "
+                               "position_reference, from which the slave control unit makes it");
+    if (command && force) return std::nullopt;
+    if (reference && !command) return read_reference(data, *reference, signals, times);
+    std::optional<Values> input;
+    if (force) {
+      input = read_column(data, *force, "N");
+      // The source turns U into K_f U newtons; a force in newtons needs no gain.
+      const std::size_t gain = find_quantity("K_f")->index;
+      if (std::ranges::any_of(recording.overrides, [&](const auto& o) { return o.first == gain; }))
+        force->error("a drive_force is in newtons already: remove K_f from 'set'");
+      recording.overrides.emplace_back(gain, 1.0);
+    } else if (command) {
+      input = read_column(data, *command, "V");
+    }
+    if (input && times && !same_length(force ? *force : *command, *input, *times)) input.reset();
+    return input;
+  }
+
+  /// The command that the axis file's slave control unit makes of a recorded position reference.
+  std::optional<Values> read_reference(const RecordingFile& data, const ConfigNode& node,
+                                       ConfigMap& signals,
+                                       const std::optional<Values>& times) const {
+    const auto reference = read_column(data, node, "m");
+    const auto position_node = signals.optional("position");
+    if (!position_node) {
+      node.error(
+          "a position_reference drives the slave control unit, which reads the encoder: name "
+          "the column of the position too");
+      return std::nullopt;
+    }
+    ConfigMap map(*position_node);
+    const auto position = read_column(data, map, "m");
+    if (!reference || !position || !times) return std::nullopt;
+    if (!same_length(node, *reference, *times) || !same_length(*position_node, *position, *times))
+      return std::nullopt;
+    return command_from_reference(rig_.controller, *times, *reference, *position);
+  }
+
+  /// All signals but the input. Returns whether any was named, rightly or wrongly.
+  bool read_measurements(const RecordingFile& data, ConfigMap& signals,
+                         const std::optional<Values>& times, const Trim& trim,
+                         Recording& recording) {
+    const Structure& structure = rig_.model.structure;
+    bool any_named = false;
+    for (const SignalInfo& signal : kSignalTable) {
+      const bool is_input =
+          signal.signal == Signal::drive_force && structure.drive == Drive::force_source;
+      const auto given = is_input ? std::nullopt : signals.optional(signal.name);
+      if (!given) continue;
+      any_named = true;
+      if (!has_signal(signal.signal, structure)) {
+        given->error(fmt::format("the drive of this axis has no {}: remove it", signal.name));
+        continue;
+      }
+      auto measurement = read_measurement(data, *given, signal, times, trim);
+      if (measurement) recording.measurements.push_back(std::move(*measurement));
+    }
+    return any_named;
+  }
+
+  static std::optional<Measurement> read_measurement(const RecordingFile& data,
+                                                     const ConfigNode& node,
+                                                     const SignalInfo& signal,
+                                                     const std::optional<Values>& times,
+                                                     const Trim& trim) {
+    ConfigMap map(node);
+    Measurement measurement;
+    measurement.signal = signal.signal;
+    const auto values = read_column(data, map, signal.unit);
+    if (const auto fit = map.optional("fit")) measurement.fitted = fit->as_bool().value_or(true);
+    if (const auto sigma = map.optional("sigma")) {
+      if (sigma->text() == "fit") {
+        measurement.noise = NoiseSource::fit;
+      } else if (sigma->text() == "rest") {
+        measurement.noise = NoiseSource::rest;
+      } else {
+        measurement.sigma = read_sigma(*sigma, signal.unit);
+        measurement.noise = NoiseSource::given;
+      }
+    }
+    map.finish();
+    if (!values || !times || !same_length(node, *values, *times)) return std::nullopt;
+    measurement.values = trimmed(*values, *times, trim);
+    if (measurement.noise != NoiseSource::given) {
+      measurement.sigma = noise_from_differences(measurement.values);
+      if (!(measurement.sigma > 0.0))
+        node.error(
+            fmt::format("the noise of {} cannot be estimated from these samples: give its "
+                        "sigma, for example 'sigma: {}'",
+                        signal.name, with_unit("0.01", signal.unit)));
+    }
+    return measurement;
+  }
+
+  /// Whether the recording has what its role and the options of the fit need.
+  void check_samples(const ConfigNode& signals_node, bool any_named,
+                     const Recording& recording) const {
+    const bool held = recording.find(Signal::position) || recording.find(Signal::velocity);
+    if (!any_named)
+      signals_node.error(
+          fmt::format("nothing to compare with: name at least one of {}",
+                      fmt::join(kSignalTable | std::views::transform(&SignalInfo::name), ", ")));
+    else if (recording.role == Role::fit && !recording.measurements.empty() &&
+             std::ranges::none_of(recording.measurements, &Measurement::fitted))
+      signals_node.error(
+          "nothing to fit: every signal says fit: false; drop that from one, or give "
+          "the recording the role validate");
+    if (coupling_ == CouplingMode::fixed && !held)
+      signals_node.error("a fixed coupling needs a recorded position or velocity");
+    if (recording.initial_state == InitialState::data && !held)
+      signals_node.error("initial_state: data needs a recorded position or velocity");
+  }
+
+  static void take_noise_from_rest(const ConfigNode& signals_node, Recording& recording) {
+    for (Measurement& m : recording.measurements) {
+      if (m.noise != NoiseSource::rest) continue;
+      if (const double noise = noise_at_rest(recording, m); noise > 0.0)
+        m.sigma = noise;
+      else
+        signals_node.error(fmt::format(
+            "the arm does not rest for 50 samples in this recording, or no velocity or position "
+            "shows it: give the sigma of {}, or leave it out",
+            info(m.signal).name));
+    }
+  }
+
+  static bool same_length(const ConfigNode& node, const std::vector<double>& values,
+                          const std::vector<double>& times) {
+    if (values.size() == times.size()) return true;
+    node.error(fmt::format("{} has {} values but the time has {}", node.name(), values.size(),
+                           times.size()));
+    return false;
+  }
+
+  const Rig& rig_;
+  const CouplingMode coupling_;
+  const std::string& data_directory_;
+};
+
+}  // namespace
+
+Recording read_recording(const ConfigNode& node, const Rig& rig, CouplingMode coupling,
+                         const std::string& data_directory) {
+  return RecordingReader(rig, coupling, data_directory).read(node);
+}
+
+std::string resolved(const ConfigNode& node, const std::string& file, const std::string& base) {
+  const fs::path given(file);
+  if (given.is_absolute()) return file;
+  return (base.empty() ? node.directory() / given : fs::path(base) / given)
+      .lexically_normal()
+      .string();
+}
+
+double read_sigma(const ConfigNode& node, std::string_view unit) {
+  const auto sigma = node.as_quantity(unit, 0.0, kUnlimited);
+  if (sigma == 0.0) node.error("sigma must be above zero: residuals are divided by it");
+  return sigma.value_or(1.0);
+}
+
+}  // namespace axisfit

@@ -1,0 +1,25 @@
+// One entry of a job file's `recordings`.
+#pragma once
+
+#include <string>
+
+#include "apps/config.h"
+#include "fit/job.h"
+#include "sim/rig.h"
+
+namespace axisfit {
+
+/// Reads a recording and its file, for an axis and the coupling of the fit. With diagnostics where
+/// anything is wrong; what is returned then is not to be used. Files with relative paths are looked
+/// for below `data_directory`, or next to the job file where that is empty.
+Recording read_recording(const ConfigNode& node, const Rig& rig, CouplingMode coupling,
+                         const std::string& data_directory);
+
+/// The path of a file named in a configuration file: relative to `base`, or else to the folder of
+/// that file.
+std::string resolved(const ConfigNode& node, const std::string& file, const std::string& base);
+
+/// A standard deviation, above zero.
+double read_sigma(const ConfigNode& node, std::string_view unit);
+
+}  // namespace axisfit
