@@ -1,6 +1,7 @@
 // fit-params JOB.yaml: fits the model of an axis to recordings of it.
 
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -26,7 +27,18 @@ constexpr const char* kAxisFile = "fitted.yaml";
 constexpr const char* kResidualsFile = "residuals.csv";
 constexpr const char* kMotionFile = "next-motion.yaml";
 
-enum ExitCode { kUsable = 0, kNoUsableFit = 3 };  // besides kBadInput
+enum ExitCode { kUsable = 0, kNoUsableFit = 3, kInterrupted = 130 };  // besides kBadInput
+
+// The first signal ends the work, a second one the program.
+StopFlag stop_flag = false;
+static_assert(StopFlag::is_always_lock_free);
+
+void stop_on_signals() {
+  struct sigaction action = {};
+  action.sa_handler = [](int) { stop_flag = true; };
+  action.sa_flags = SA_RESETHAND;
+  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+}
 
 struct Arguments {
   std::string job;
@@ -50,7 +62,7 @@ constexpr const char* kExamples = R"(Examples:
   fit-params configs/jobs/emps.yaml --data ~/Downloads/EMPS
   fit-params job.yaml --json | jq '.parameters[] | {name, value, standard_error}'
 
-Exit codes: 0 usable fit, 2 bad input, 3 no usable fit.)";
+Exit codes: 0 usable fit, 2 bad input, 3 no usable fit, 130 stopped by Ctrl-C.)";
 
 /// Progress on one line of a terminal, removed at the end.
 class ProgressLine {
@@ -149,6 +161,7 @@ int run(const Arguments& arguments) {
     std::cout << report_text(outcome);
   if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
   if (!arguments.output.empty()) write_folder(arguments.output, files_of(arguments, outcome, json));
+  if (outcome.interrupted) return kInterrupted;
   return outcome.fit().usable ? kUsable : kNoUsableFit;
 }
 
@@ -188,6 +201,13 @@ int main(int argc, char** argv) {
   return run_program(app, argc, argv, [&] {
     for (std::istringstream names(profiles); std::getline(names, profiles, ',');)
       arguments.wishes.profiles.push_back(profiles);
-    return run(arguments);
+    arguments.wishes.stop = &stop_flag;
+    stop_on_signals();
+    try {
+      return run(arguments);
+    } catch (const Interrupted&) {
+      std::cerr << "Stopped before a fit was finished: nothing is written.\n";
+      return static_cast<int>(kInterrupted);
+    }
   });
 }

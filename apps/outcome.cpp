@@ -67,6 +67,39 @@ std::vector<std::size_t> profiled(const Job& job, const std::vector<std::string>
   return chosen;
 }
 
+/// All that follows the first fit.
+void pursue(Outcome& outcome, const std::function<void(const Progress&)>& fitting,
+            const LoopProgress& closing) {
+  if (outcome.wishes.close_loop && outcome.first.usable)
+    outcome.loop = close_loop(outcome.file.job, outcome.first, {}, closing);
+  if (outcome.loop && outcome.loop->interrupted) throw Interrupted();
+  if (outcome.loop && estimates_noise(outcome.file.job) && !outcome.loop->effects.empty())
+    outcome.loop->result.fit = estimate_with_noise(outcome.loop->result.job, fitting);
+  if (outcome.fit().usable) {
+    if (closing) closing("looking at the residual", 0, 0);
+    outcome.diagnosis = diagnose(outcome.job(), outcome.fit());
+  }
+  if (outcome.fit().usable && !outcome.wishes.profiles.empty())
+    outcome.profiles =
+        profiles(outcome.job(), outcome.fit(), profiled(outcome.job(), outcome.wishes.profiles),
+                 [&](int done, int of) {
+                   if (closing) closing("profiles", done, of);
+                 });
+  const ControllerSettings& controller = outcome.file.rig.controller;
+  if (outcome.loop)
+    for (const Rivals& rivals : outcome.loop->rivals) {
+      if (closing)
+        closing("what tells " + rivals.chosen + " and " + rivals.rival + " apart?", 0, 0);
+      outcome.separations.push_back(
+          what_separates(*outcome.loop, rivals, controller, outcome.file.limits));
+    }
+  if (outcome.wishes.experiment)
+    outcome.suggestion = suggest_experiment(outcome.job(), outcome.fit(), controller,
+                                            outcome.file.limits, [&](int done, int of) {
+                                              if (closing) closing("trying motions", done, of);
+                                            });
+}
+
 }  // namespace
 
 Outcome find_outcome(JobFile file, const Wishes& wishes,
@@ -76,15 +109,14 @@ Outcome find_outcome(JobFile file, const Wishes& wishes,
   Outcome outcome;
   outcome.file = std::move(file);
   outcome.wishes = wishes;
+  outcome.file.job.options.stop = wishes.stop;
   profiled(outcome.file.job, wishes.profiles);
   outcome.first = estimate_with_noise(outcome.file.job, fitting);
-  if (wishes.close_loop && outcome.first.usable)
-    outcome.loop = close_loop(outcome.file.job, outcome.first, {}, closing);
-  if (outcome.loop && estimates_noise(outcome.file.job) && !outcome.loop->effects.empty())
-    outcome.loop->result.fit = estimate_with_noise(outcome.loop->result.job, fitting);
-  if (outcome.fit().usable) {
-    if (closing) closing("looking at the residual", 0, 0);
-    outcome.diagnosis = diagnose(outcome.job(), outcome.fit());
+  outcome.interrupted = outcome.first.interrupted;
+  try {
+    if (!outcome.interrupted) pursue(outcome, fitting, closing);
+  } catch (const Interrupted&) {
+    outcome.interrupted = true;
   }
   if (outcome.loop)
     for (const LoopModel& model : outcome.loop->models) {
@@ -93,24 +125,6 @@ Outcome find_outcome(JobFile file, const Wishes& wishes,
         score.forces.push_back(missing_force(model.job, model.fit, r));
       outcome.scores.push_back(std::move(score));
     }
-  if (outcome.fit().usable && !wishes.profiles.empty())
-    outcome.profiles = profiles(outcome.job(), outcome.fit(),
-                                profiled(outcome.job(), wishes.profiles), [&](int done, int of) {
-                                  if (closing) closing("profiles", done, of);
-                                });
-  const ControllerSettings& controller = outcome.file.rig.controller;
-  if (outcome.loop)
-    for (const Rivals& rivals : outcome.loop->rivals) {
-      if (closing)
-        closing("what tells " + rivals.chosen + " and " + rivals.rival + " apart?", 0, 0);
-      outcome.separations.push_back(
-          what_separates(*outcome.loop, rivals, controller, outcome.file.limits));
-    }
-  if (wishes.experiment)
-    outcome.suggestion = suggest_experiment(outcome.job(), outcome.fit(), controller,
-                                            outcome.file.limits, [&](int done, int of) {
-                                              if (closing) closing("trying motions", done, of);
-                                            });
   const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - begin;
   outcome.wall_time = wall_time.count();
   return outcome;

@@ -43,6 +43,7 @@ struct Wishes {
   bool close_loop = false;
   std::vector<std::string> profiles{};  ///< of these parameters; "all": of all
   bool experiment = false;              ///< suggest the next one
+  const StopFlag* stop = nullptr;       ///< ends early, with what is finished
 };
 
 struct Outcome {
@@ -56,6 +57,7 @@ struct Outcome {
   std::vector<Profile> profiles;         ///< of the final model, those asked for
   std::vector<Separation> separations;   ///< of the loop's undecided effects, pair by pair
   std::optional<Suggestion> suggestion;  ///< of the next experiment, where it was asked for
+  bool interrupted = false;              ///< not all that was asked for was finished
   double wall_time = 0.0;                ///< s
 
   /// The final model's: the result of the loop, or else the declared one.
@@ -71,7 +73,8 @@ const Experiment* next_experiment(const Outcome& outcome);
 std::string verdict_of(const Outcome& outcome);
 
 /// Fits the job, looks for what it lacks and, where asked, adds that. Throws std::runtime_error
-/// when a wish names a parameter that is not fitted.
+/// when a wish names a parameter that is not fitted, and Interrupted when it is stopped before one
+/// start of the fit is finished.
 Outcome find_outcome(JobFile file, const Wishes& wishes,
                      const std::function<void(const Progress&)>& fitting = {},
                      const LoopProgress& closing = {});

@@ -335,6 +335,7 @@ Json result_json(const Outcome& outcome) {
       {"version", version()},
       {"status", text(fit.status)},
       {"usable", fit.usable},
+      {"interrupted", outcome.interrupted},
       {"verdict", fit.verdict},
       {"message", fit.message},
       {"axis", outcome.file.rig.name},

@@ -16,6 +16,7 @@ namespace {
 
 struct Trial {
   std::vector<double> from;
+  bool interrupted = false;
   ContinuationResult result;
 };
 
@@ -30,11 +31,16 @@ std::vector<Trial> run_starts(const Job& job, const ParameterSpace& space,
     const int start = static_cast<int>(i);
     Trial& trial = trials[i];
     trial.from = draw_start(job, start);
-    trial.result =
-        continue_to_free(job, space, space.internal(trial.from), [&](const Stage& stage) {
-          const std::lock_guard lock(mutex);
-          if (progress) progress({done, starts, start, stage});
-        });
+    try {
+      trial.result =
+          continue_to_free(job, space, space.internal(trial.from), [&](const Stage& stage) {
+            const std::lock_guard lock(mutex);
+            if (progress) progress({done, starts, start, stage});
+          });
+    } catch (const Interrupted&) {
+      trial.interrupted = true;
+      return;
+    }
     const std::lock_guard lock(mutex);
     ++done;
   });
@@ -178,7 +184,9 @@ std::vector<double> draw_start(const Job& job, int start) {
 
 FitResult estimate(const Job& job, const std::function<void(const Progress&)>& progress) {
   const ParameterSpace space(job);
-  const std::vector<Trial> trials = run_starts(job, space, progress);
+  std::vector<Trial> trials = run_starts(job, space, progress);
+  const bool interrupted = std::erase_if(trials, [](const Trial& t) { return t.interrupted; }) > 0;
+  if (trials.empty()) throw Interrupted();
   const auto better = [](const Trial& a, const Trial& b) {
     if (a.result.last.usable != b.result.last.usable) return a.result.last.usable;
     return a.result.last.cost < b.result.last.cost;
@@ -187,6 +195,7 @@ FitResult estimate(const Job& job, const std::function<void(const Progress&)>& p
   const SolveResult& solved = best.result.last;
 
   FitResult result;
+  result.interrupted = interrupted;
   for (const Trial& trial : trials)
     result.starts.push_back({trial.from, space.values(trial.result.last.u),
                              trial.result.last.usable, trial.result.last.reduced_cost});
@@ -253,11 +262,16 @@ FitResult estimate_with_noise(Job& job, const std::function<void(const Progress&
     if (change < kStays) break;
     const std::vector<double> values = values_of(result);
     for (std::size_t i = 0; i < again.free.size(); ++i) again.free[i].initial = values[i];
-    std::vector<StartResult> starts = std::move(result.starts);
-    std::vector<Stage> stages = std::move(result.stages);
-    result = estimate(again, progress);
-    result.starts = std::move(starts);
-    result.stages = std::move(stages);
+    FitResult next;
+    try {
+      next = estimate(again, progress);
+    } catch (const Interrupted&) {
+      result.interrupted = true;
+      return result;  // of the job as it was given
+    }
+    next.starts = std::move(result.starts);
+    next.stages = std::move(result.stages);
+    result = std::move(next);
   }
   again.free = job.free;
   again.options = job.options;

@@ -73,6 +73,7 @@ struct FitResult {
   bool usable = false;  ///< may be relied on for what it says: converged, and better than nothing
   std::string verdict;  ///< one sentence for the user
   std::string message;  ///< the solver's reason to stop
+  bool interrupted = false;  ///< not all starts were finished
   std::vector<ParameterResult> parameters;
   std::vector<RecordingResult> recordings;
   /// Of what was fitted, degrees of freedom counted; not a number where nothing was.
@@ -104,7 +105,8 @@ std::vector<double> draw_start(const Job& job, int start);
 /// The values of the free parameters.
 std::vector<double> values_of(const FitResult& result);
 
-/// Fits a job. The result depends on the job alone, not on the number of threads.
+/// Fits a job. The result depends on the job alone, not on the number of threads. When the job's
+/// stop flag is set, it is that of the starts that were finished; Interrupted where there is none.
 FitResult estimate(const Job& job, const std::function<void(const Progress&)>& progress = {});
 
 /// Fits a job, and where the noise of a measurement is to be estimated together with the

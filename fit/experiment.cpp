@@ -66,6 +66,7 @@ std::vector<Linearization> shown_by(const std::vector<Experiment>& family, const
   std::mutex mutex;
   int done = 0;
   parallel_for(family.size(), thread_count(next.options.threads), [&](std::size_t i) {
+    if (is_set(next.options.stop)) throw Interrupted();
     Job trial = next;
     Recording& recording = trial.recordings[added];
     recording.command = commands_of(family[i], model, controller, recording.times);

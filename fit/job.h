@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "fit/interrupt.h"
 #include "sim/command.h"
 #include "sim/model.h"
 
@@ -115,8 +116,9 @@ struct FitOptions {
   int starts = 1;            ///< the first from the initial values, the others drawn around them
   double spread = 5.0;       ///< starts are drawn within this factor, either way
   std::uint64_t seed = 1;
-  int threads = 0;       ///< 0: as many as the machine has
-  double step = 0.5e-3;  ///< s, of the integrator
+  int threads = 0;                 ///< 0: as many as the machine has
+  double step = 0.5e-3;            ///< s, of the integrator
+  const StopFlag* stop = nullptr;  ///< must outlive all that is done with the job; null: none
 };
 
 struct Job {

@@ -132,14 +132,17 @@ class BoundedPoint {
   std::vector<int> changes_;
 };
 
-/// Ends a solution as soon as a step arrives at a bound at which it did not begin.
-class StopAtBound : public ceres::IterationCallback {
+/// Ends a solution as soon as a step arrives at a bound at which it did not begin, or it is to
+/// stop.
+class EarlyEnd : public ceres::IterationCallback {
  public:
-  StopAtBound(const BoundedPoint& point, std::size_t size) : point_(point) {
+  EarlyEnd(const BoundedPoint& point, std::size_t size, const StopFlag* stop)
+      : point_(point), stop_(stop) {
     for (std::size_t i = 0; i < size; ++i) began_there_.push_back(point.at_bound(i));
   }
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (is_set(stop_)) return ceres::SOLVER_ABORT;
     for (std::size_t i = 0; i < began_there_.size() && summary.step_is_successful; ++i)
       if (!began_there_[i] && point_.at_bound(i)) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     return ceres::SOLVER_CONTINUE;
@@ -147,6 +150,7 @@ class StopAtBound : public ceres::IterationCallback {
 
  private:
   const BoundedPoint& point_;
+  const StopFlag* stop_;
   std::vector<bool> began_there_;
 };
 
@@ -184,8 +188,8 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
           problem.Evaluate({}, &result.cost, nullptr, nullptr, nullptr);
       break;
     }
-    StopAtBound stop(point, space.size());
-    solver.callbacks = {&stop};
+    EarlyEnd end(point, space.size(), options.stop);
+    solver.callbacks = {&end};
     solver.max_num_iterations = std::max(1, options.max_iterations - result.iterations);
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);

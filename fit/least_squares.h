@@ -23,6 +23,7 @@ struct SolveOptions {
   /// the data do not show then stays where it is instead of running off to a bound.
   bool keep_to_start = false;
   std::vector<std::size_t> fixed;  ///< parameters that stay as they are
+  const StopFlag* stop = nullptr;  ///< ends the solution, which is not usable then
 };
 
 struct SolveResult {

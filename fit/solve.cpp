@@ -17,8 +17,12 @@ Costs recording_costs(const Job& job, const ParameterSpace& space, double coupli
 }  // namespace
 
 SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
-                  double coupling_rate, const SolveOptions& options) {
-  return minimize(space, recording_costs(job, space, coupling_rate), u, options);
+                  double coupling_rate, SolveOptions options) {
+  options.stop = job.options.stop;
+  if (is_set(options.stop)) throw Interrupted();
+  SolveResult result = minimize(space, recording_costs(job, space, coupling_rate), u, options);
+  if (is_set(options.stop)) throw Interrupted();
+  return result;
 }
 
 Linearization linearize(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,

@@ -6,9 +6,10 @@
 namespace axisfit {
 
 /// Minimises over all `fit` recordings, from u, within the bounds, with the coupling's rate
-/// (coupling_for each recording). Single-threaded and deterministic.
+/// (coupling_for each recording). Single-threaded and deterministic. Throws Interrupted when the
+/// job's stop flag is set.
 SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
-                  double coupling_rate, const SolveOptions& options);
+                  double coupling_rate, SolveOptions options);
 
 /// Residuals of all fit recordings and then of the priors at u, and their Jacobian with respect to
 /// u.

@@ -28,7 +28,8 @@ class Loop {
       : options_(options),
         first_(first),
         progress_(progress),
-        threads_(thread_count(job.options.threads)) {
+        threads_(thread_count(job.options.threads)),
+        first_coupling_(job.options.coupling) {
     result_.models.push_back({"", job, first});
     if (std::ranges::none_of(job.recordings,
                              [](const Recording& r) { return r.role == Role::validate; })) {
@@ -38,11 +39,17 @@ class Loop {
   }
 
   ClosedLoop run() {
+    safe_ = path();
     if (current().fit.usable) {
-      find();
-      take_away();
-      note_rivals();
-      leave_out_undecided();
+      try {
+        find();
+        take_away();
+        note_rivals();
+        leave_out_undecided();
+      } catch (const Interrupted&) {
+        result_.interrupted = true;
+        take(std::move(safe_));
+      }
     }
     finish();
     return std::move(result_);
@@ -239,6 +246,7 @@ class Loop {
     }
     accepted_.push_back(std::move(accepted));
     result_.models.push_back({best->candidate.name, std::move(best->job), std::move(best->fit)});
+    if (current().job.options.coupling == first_coupling_) safe_ = path();
     return true;
   }
 
@@ -443,7 +451,9 @@ class Loop {
   const FitResult& first_;
   const LoopProgress& progress_;
   const int threads_;
+  const CouplingMode first_coupling_;
   ClosedLoop result_;
+  Path safe_;  ///< the latest state that can be a result, not of a held simulation
   std::vector<Accepted> accepted_;
   std::vector<Rivalry> rivalries_;
   std::size_t tried_ = 1;
@@ -468,6 +478,7 @@ void Loop::finish() {
     near.options.attempts = 1;
     if (near.options.coupling == CouplingMode::continuation)
       near.options.coupling_rate = score_rates(near).back();
+    near.options.stop = nullptr;  // the result has to be finished
     FitResult exact = estimate(near);
     if (exact.usable) last.fit = std::move(exact);
   }
@@ -495,6 +506,8 @@ std::string Loop::verdict() const {
         fmt::join(accepted, ", "), accepted.size() > 1 ? "them" : "it", total.validate_percent);
     text += result_.explained ? ", and every signal is explained down to its noise."
                               : ", but not down to the noise.";
+  } else if (result_.interrupted) {
+    return "The search for what is missing was stopped: no effect is accepted so far.";
   } else if (undecided.empty()) {
     text = "Something is missing, but no effect passes: see the reasons.";
   }

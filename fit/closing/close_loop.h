@@ -57,6 +57,7 @@ struct ClosedLoop {
   std::vector<EffectTrial> effects;  ///< every effect that was refitted, its last trial
   bool held_out_blocks = false;      ///< no recording to validate: blocks of the fitted were kept
   bool explained = false;            ///< nothing but noise is left
+  bool interrupted = false;          ///< the search was not finished
   std::string verdict;               ///< a few sentences for the user
   std::vector<Rivals> rivals;        ///< the effects that stay undecided
 };
@@ -64,7 +65,8 @@ struct ClosedLoop {
 /// Tells what is being done: a phase in words, and how much of it is done.
 using LoopProgress = std::function<void(const std::string& phase, int done, int of)>;
 
-/// `first` is the fit of the job as declared.
+/// `first` is the fit of the job as declared. When the job's stop flag is set, the effects accepted
+/// so far are the result.
 ClosedLoop close_loop(const Job& job, const FitResult& first, const CloseLoopOptions& options = {},
                       const LoopProgress& progress = {});
 

@@ -70,6 +70,7 @@ Separation what_separates(const ClosedLoop& loop, const Rivals& rivals,
 
   std::vector<Separation> found(trials.size());
   parallel_for(trials.size(), thread_count(job.options.threads), [&](std::size_t i) {
+    if (is_set(job.options.stop)) throw Interrupted();
     const Trial& trial = trials[i];
     const Course a = simulated(rivals.with_chosen, trial, signals, within),
                  b = simulated(rivals.with_rival, trial, signals, within);

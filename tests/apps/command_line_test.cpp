@@ -6,6 +6,8 @@
 #include <sys/wait.h>
 
 #include <array>
+#include <chrono>
+#include <csignal>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +17,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -59,6 +62,10 @@ class CommandLineTest : public ::testing::Test {
     const int failed = posix_spawn(&child, argv[0], &actions, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     if (failed != 0) throw std::runtime_error("cannot run " + arguments.front());
+    if (interrupt_after_ > std::chrono::milliseconds::zero()) {
+      std::this_thread::sleep_for(interrupt_after_);
+      kill(child, SIGINT);
+    }
     int status = 0;
     if (waitpid(child, &status, 0) != child) throw std::runtime_error("lost " + program);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -83,6 +90,7 @@ class CommandLineTest : public ::testing::Test {
   }
 
   TempFolder folder_, outputs_;
+  std::chrono::milliseconds interrupt_after_{0};  ///< never, if zero
 };
 
 // fit-params
@@ -236,6 +244,19 @@ TEST_F(CommandLineTest, TheLoopIsClosedOnDemand) {
   EXPECT_NE(folder_.read("results/fitted.yaml").find("coulomb_friction:\n    F_c: "),
             std::string::npos);
   EXPECT_EQ(simulate({results + "/fitted.yaml", motion()}).exit_code, 0);
+}
+
+TEST_F(CommandLineTest, CtrlCKeepsWhatIsFinished) {
+  interrupt_after_ = std::chrono::milliseconds(1500);
+  const auto begin = std::chrono::steady_clock::now();
+  const Outcome stopped = fit({job(), "--starts", "100000", "--output", outputs_.path("results")});
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+  EXPECT_EQ(stopped.exit_code, 130);
+  EXPECT_NE(stopped.out.find("Stopped before all was finished"), std::string::npos) << stopped.err;
+  const Json json = Json::parse(outputs_.read("results/result.json"));
+  EXPECT_EQ(json.at("interrupted"), true);
+  EXPECT_GE(json.at("starts").size(), 1u);
+  EXPECT_LT(json.at("starts").size(), 100000u);
 }
 
 TEST_F(CommandLineTest, NoLoopIsClosedAroundAnUnusableFit) {

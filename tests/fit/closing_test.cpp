@@ -130,6 +130,26 @@ TEST(CloseLoop, AddsNoMoreThanIsAllowed) {
   EXPECT_FALSE(loop.explained);
 }
 
+TEST(CloseLoop, KeepsWhatIsAcceptedWhenItIsStopped) {
+  Job job = secret_named("drive_lag").job();
+  const FitResult fit = estimate(job);
+  StopFlag stop = false;
+  job.options.stop = &stop;
+  // After the first effect, or else at once.
+  for (const bool late : {true, false}) {
+    stop = !late;
+    int phases = 0;
+    const ClosedLoop loop = close_loop(job, fit, {}, [&](const std::string& phase, int, int) {
+      if (phase == "looking for suspects") ++phases;
+      if (phase == "is drive_lag needed?" || phases > 1) stop = true;
+    });
+    EXPECT_EQ(loop.interrupted, stop.load());
+    EXPECT_EQ(accepted(loop), late ? Names{"drive_lag"} : Names{});
+    EXPECT_TRUE(loop.result.fit.usable);
+    EXPECT_EQ(loop.verdict.find("was stopped") != std::string::npos, !late) << loop.verdict;
+  }
+}
+
 TEST(CloseLoop, IsTheSameForAnyNumberOfThreads) {
   Job job = secret_named("drive_lag").job();
   const FitResult fit = estimate(job);

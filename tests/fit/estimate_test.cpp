@@ -151,6 +151,28 @@ TEST(DistinctMinima, TakeEqualCostsTogether) {
   EXPECT_EQ(minima[1].reduced_cost, 3.0);
 }
 
+TEST(Estimate, KeepsTheStartsThatWereFinishedWhenItIsStopped) {
+  Job job = example_job();
+  job.options.starts = 3;
+  job.options.threads = 1;
+  StopFlag stop = false;
+  job.options.stop = &stop;
+  const FitResult result = estimate(job, [&](const Progress& p) { stop = p.starts_done == 1; });
+  EXPECT_TRUE(result.usable);
+  EXPECT_TRUE(result.interrupted);
+  EXPECT_EQ(result.starts.size(), 1u);
+  job.options.stop = nullptr;
+  job.options.starts = 1;
+  const FitResult first = estimate(job);
+  EXPECT_FALSE(first.interrupted);
+  for (std::size_t i = 0; i < first.parameters.size(); ++i)
+    EXPECT_EQ(result.parameters[i].value, first.parameters[i].value);
+
+  stop = true;
+  job.options.stop = &stop;
+  EXPECT_THROW(estimate(job), Interrupted);
+}
+
 /// A slide whose instruments are of unknown quality: the first guesses of their noise are far off.
 Job job_of_unknown_noise() {
   Job job = two_recordings(slide(), slide(), {"M", "B_a"});
