@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -83,6 +84,12 @@ class ProgressLine {
   bool shown_ = false;
 };
 
+/// Whether standard error is a terminal that can clear a line.
+bool can_show_progress() {
+  const char* terminal = std::getenv("TERM");
+  return isatty(STDERR_FILENO) != 0 && terminal != nullptr && std::string(terminal) != "dumb";
+}
+
 std::string fitting_text(const Progress& p) {
   return fmt::format(
       "{}{}, reduced chi-square {:.4g}",
@@ -145,7 +152,7 @@ int run(const Arguments& arguments) {
   if (arguments.seed) options.seed = *arguments.seed;
 
   const Outcome outcome = [&] {
-    ProgressLine line(!arguments.quiet && isatty(STDERR_FILENO) != 0);
+    ProgressLine line(!arguments.quiet && can_show_progress());
     return find_outcome(
         std::move(file), arguments.wishes, [&](const Progress& p) { line.show(fitting_text(p)); },
         [&](const std::string& phase, int done, int of) {

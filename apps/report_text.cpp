@@ -171,8 +171,7 @@ std::string report_text(const Outcome& outcome) {
     return text + "\n" +
            paragraph(fmt::format(
                "Stopped before all was finished: this is the result of {} of {} starts{}. A fit "
-               "that "
-               "begins at these values, with fitted.yaml as its axis, goes on from here.",
+               "that begins at these values, with fitted.yaml as its axis, goes on from here.",
                outcome.first.starts.size(), std::max(1, job.options.starts),
                outcome.loop ? ", and of the effects accepted so far" : ""));
   if (outcome.wishes.experiment) text += "\n" + suggestion_text(outcome);

@@ -9,6 +9,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Of the documents: grows when a key changes its meaning or goes, not when one is added.
+constexpr int kSchemaVersion = 1;
+
 const char* text(Status status) {
   switch (status) {
     case Status::converged:
@@ -332,6 +335,7 @@ Json result_json(const Outcome& outcome) {
         parameter_json(fit.parameters[i], i < declared.size() ? declared[i] : job.free[i]));
   }
   Json json{
+      {"schema_version", kSchemaVersion},
       {"version", version()},
       {"status", text(fit.status)},
       {"usable", fit.usable},
@@ -399,8 +403,10 @@ nlohmann::ordered_json forecast_json(const Job& job, const Forecast& forecast) {
                           {"standard_error", optional(u.determined, u.standard_error)},
                           {"shown", std::move(shown)}});
   }
-  Json json{
-      {"version", version()}, {"finite", forecast.finite}, {"parameters", std::move(parameters)}};
+  Json json{{"schema_version", kSchemaVersion},
+            {"version", version()},
+            {"finite", forecast.finite},
+            {"parameters", std::move(parameters)}};
   json.update(together_json(space, forecast.uncertainty.correlation, forecast.together));
   return json;
 }

@@ -60,7 +60,8 @@ void expect_finite(const Json& value, const std::string& where) {
 TEST(ResultTest, JsonHasItsDocumentedKeys) {
   const Json json = Found(fit_job("{starts: 2, seed: 5}")).json;
   // docs/result.md promises these to other programs.
-  EXPECT_EQ(keys(json), (std::vector<std::string>{"version",
+  EXPECT_EQ(keys(json), (std::vector<std::string>{"schema_version",
+                                                  "version",
                                                   "status",
                                                   "usable",
                                                   "interrupted",
@@ -420,7 +421,8 @@ TEST(ResultTest, FaultsOfInstrumentsAreTold) {
 TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
   const Found found(rubbing_job(), true);
   const Json& json = found.json;
-  EXPECT_EQ(keys(json), (std::vector<std::string>{"version",
+  EXPECT_EQ(keys(json), (std::vector<std::string>{"schema_version",
+                                                  "version",
                                                   "status",
                                                   "usable",
                                                   "interrupted",
