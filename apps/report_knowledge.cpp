@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <ranges>
+#include <span>
 
 #include "apps/report_text.h"
 #include "apps/text_table.h"
@@ -24,15 +28,22 @@ std::string interval_text(const ParameterUncertainty& u) {
 /// Estimates that hang together: neither is known without the other.
 std::string correlation_text(const FitResult& result) {
   constexpr double kStrong = 0.95;
-  std::vector<std::string> pairs;
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::pair<double, std::string>> pairs;
   for (Eigen::Index i = 0; i < result.correlation.rows(); ++i)
     for (Eigen::Index k = 0; k < i; ++k)
       if (const double c = result.correlation(i, k); std::abs(c) > kStrong)
-        pairs.push_back(fmt::format("{} and {} by {:.3g}",
-                                    result.parameters[static_cast<std::size_t>(k)].name,
-                                    result.parameters[static_cast<std::size_t>(i)].name, c));
+        pairs.emplace_back(
+            std::abs(c),
+            fmt::format("{} and {} by {:.3g}", result.parameters[static_cast<std::size_t>(k)].name,
+                        result.parameters[static_cast<std::size_t>(i)].name, c));
   if (pairs.empty()) return "";
-  return paragraph(fmt::format("Strongly correlated: {}.", fmt::join(pairs, ", ")), 2);
+  std::ranges::stable_sort(pairs, std::greater{}, [](const auto& pair) { return pair.first; });
+  const std::size_t named = std::min(kNamed, pairs.size());
+  const auto names = std::span(pairs).first(named) | std::views::values;
+  const std::string more =
+      pairs.size() > named ? fmt::format(", and {} more pairs", pairs.size() - named) : "";
+  return paragraph(fmt::format("Strongly correlated: {}{}.", fmt::join(names, ", "), more), 2);
 }
 
 }  // namespace

@@ -28,8 +28,7 @@ class Loop {
       : options_(options),
         first_(first),
         progress_(progress),
-        threads_(thread_count(job.options.threads)),
-        first_coupling_(job.options.coupling) {
+        threads_(thread_count(job.options.threads)) {
     result_.models.push_back({"", job, first});
     if (std::ranges::none_of(job.recordings,
                              [](const Recording& r) { return r.role == Role::validate; })) {
@@ -43,6 +42,7 @@ class Loop {
     if (current().fit.usable) {
       try {
         find();
+        safe_ = path();
         take_away();
         note_rivals();
         leave_out_undecided();
@@ -88,8 +88,11 @@ class Loop {
     find_named();
     if (explained()) return;
     Path unheld = path();
+    provisional_ = true;
     find_held();
+    provisional_ = false;
     if (!is_better(current(), unheld.models.back())) take(std::move(unheld));
+    safe_ = path();
     if (explained()) return;
     const Path named = path();
     while (has_room() && round(true)) {
@@ -97,6 +100,7 @@ class Loop {
     const Path appended = path();
     const bool appends = accepted_.size() > named.accepted.size();
     if (named.accepted.empty()) return;
+    provisional_ = true;
     restart();
     if (!round(true)) return take(appended);
     find_named();
@@ -246,7 +250,7 @@ class Loop {
     }
     accepted_.push_back(std::move(accepted));
     result_.models.push_back({best->candidate.name, std::move(best->job), std::move(best->fit)});
-    if (current().job.options.coupling == first_coupling_) safe_ = path();
+    if (!provisional_) safe_ = path();
     return true;
   }
 
@@ -451,9 +455,9 @@ class Loop {
   const FitResult& first_;
   const LoopProgress& progress_;
   const int threads_;
-  const CouplingMode first_coupling_;
   ClosedLoop result_;
-  Path safe_;  ///< the latest state that can be a result, not of a held simulation
+  Path safe_;                 ///< the latest state that can be a result
+  bool provisional_ = false;  ///< what is accepted has yet to prove better than that
   std::vector<Accepted> accepted_;
   std::vector<Rivalry> rivalries_;
   std::size_t tried_ = 1;
@@ -469,7 +473,7 @@ void Loop::finish() {
   for (Recording& r : last.job.recordings) r.held_out.clear();
   if (accepted_.empty()) {
     last.fit = first_;
-  } else {
+  } else if (!result_.interrupted) {
     tell("fitting the result");
     Job near = last.job;
     const auto values = values_of(last.fit);
@@ -478,9 +482,12 @@ void Loop::finish() {
     near.options.attempts = 1;
     if (near.options.coupling == CouplingMode::continuation)
       near.options.coupling_rate = score_rates(near).back();
-    near.options.stop = nullptr;  // the result has to be finished
-    FitResult exact = estimate(near);
-    if (exact.usable) last.fit = std::move(exact);
+    try {
+      FitResult exact = estimate(near);
+      if (exact.usable) last.fit = std::move(exact);
+    } catch (const Interrupted&) {
+      result_.interrupted = true;
+    }
   }
   result_.verdict = verdict();
 }

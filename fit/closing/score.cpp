@@ -99,6 +99,7 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> base_solver(base.jacobian);
   const Job fixed = fixed_at(job, held_values);
   parallel_for(test.scores.size(), thread_count(threads), [&](std::size_t i) {
+    if (is_set(job.options.stop)) throw Interrupted();
     Score& score = test.scores[i];
     const Candidate& candidate = test.candidates[score.candidate];
     score.strengths.assign(candidate.strengths.size(), 0.0);
