@@ -106,9 +106,7 @@ std::string closing_text(const std::string& phase, int done, int of) {
 
 /// What the recordings can tell, before the fit.
 int check(const Arguments& arguments, const Job& job) {
-  std::vector<double> initial;
-  for (const FreeParameter& p : job.free) initial.push_back(p.initial);
-  const Forecast found = forecast(job, initial);
+  const Forecast found = forecast(job, draw_start(job, 0));
   if (arguments.json)
     std::cout << forecast_json(job, found).dump(2) << '\n';
   else if (!arguments.quiet)

@@ -42,13 +42,6 @@ std::vector<SignalScore> score_signals(const Job& job, const FitResult& fit) {
   return scores;
 }
 
-bool estimates_noise(const Job& job) {
-  return std::ranges::any_of(job.recordings, [](const Recording& r) {
-    return std::ranges::any_of(r.measurements,
-                               [](const Measurement& m) { return m.noise == NoiseSource::fit; });
-  });
-}
-
 /// The parameters that are to be profiled.
 std::vector<std::size_t> profiled(const Job& job, const std::vector<std::string>& names) {
   const ParameterSpace space(job);
@@ -73,7 +66,8 @@ void pursue(Outcome& outcome, const std::function<void(const Progress&)>& fittin
   if (outcome.wishes.close_loop && outcome.first.usable)
     outcome.loop = close_loop(outcome.file.job, outcome.first, {}, closing);
   if (outcome.loop && outcome.loop->interrupted) throw Interrupted();
-  if (outcome.loop && estimates_noise(outcome.file.job) && !outcome.loop->effects.empty())
+  if (outcome.loop && has_noise_from(outcome.file.job, NoiseSource::fit) &&
+      !outcome.loop->effects.empty())
     outcome.loop->result.fit = estimate_with_noise(outcome.loop->result.job, fitting);
   if (outcome.fit().usable) {
     if (closing) closing("looking at the residual", 0, 0);
@@ -128,6 +122,12 @@ Outcome find_outcome(JobFile file, const Wishes& wishes,
   const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - begin;
   outcome.wall_time = wall_time.count();
   return outcome;
+}
+
+bool has_noise_from(const Job& job, NoiseSource source) {
+  return std::ranges::any_of(job.recordings, [&](const Recording& r) {
+    return std::ranges::find(r.measurements, source, &Measurement::noise) != r.measurements.end();
+  });
 }
 
 const Experiment* next_experiment(const Outcome& outcome) {

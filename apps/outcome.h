@@ -65,6 +65,9 @@ struct Outcome {
   const FitResult& fit() const { return loop ? loop->result.fit : first; }
 };
 
+/// Whether the noise of any measurement of a job comes from there.
+bool has_noise_from(const Job& job, NoiseSource source);
+
 /// The experiment to make next, where it was asked for and there is one: that which tells undecided
 /// effects apart, or else that which determines the parameters.
 const Experiment* next_experiment(const Outcome& outcome);

@@ -132,15 +132,10 @@ std::string errors_text(const Job& job, const FitResult& result) {
   std::string text = "Errors of the free-running simulation\n" +
                      aligned(rows, {Set::left, Set::left, Set::left, Set::right, Set::right,
                                     Set::right, Set::right, Set::left, Set::right});
-  const auto any = [&](NoiseSource source) {
-    return std::ranges::any_of(job.recordings, [&](const Recording& r) {
-      return std::ranges::any_of(r.measurements,
-                                 [&](const Measurement& m) { return m.noise == source; });
-    });
-  };
-  if (any(NoiseSource::differences)) text += "  * estimated from differences of the samples\n";
-  if (any(NoiseSource::rest)) text += "  *** what the instrument shows at rest\n";
-  if (any(NoiseSource::fit))
+  if (has_noise_from(job, NoiseSource::differences))
+    text += "  * estimated from differences of the samples\n";
+  if (has_noise_from(job, NoiseSource::rest)) text += "  *** what the instrument shows at rest\n";
+  if (has_noise_from(job, NoiseSource::fit))
     text += "  ** estimated together with the parameters: the reduced chi-square judges nothing\n";
   return text;
 }

@@ -34,23 +34,29 @@ std::string_view excitation_needed(std::string_view quantity) {
       "the gear to ring: an abrupt command, recorded by an accelerometer or fast velocity sensor";
   constexpr std::string_view kBothWays = "motion in both directions at several speeds";
   constexpr std::string_view kAcceleration = "strong acceleration and braking";
+  constexpr std::string_view kVoltage =
+      "the motor voltage to reach its limit: until then the current loop hides it";
+  constexpr std::string_view kBreakaway =
+      "the arm to come to rest and break away: slow motion with reversals";
+  constexpr std::string_view kFastChanges =
+      "fast changes of the command: a step, a chirp or a pseudo-random sequence";
   static constexpr std::pair<std::string_view, std::string_view> kNeeds[]{
       {"V_L", "the preamplifier to reach its limit: a larger step of the command"},
       {"V_s", "the motor voltage to reach its limit: full speed with strong acceleration"},
-      {"R", "the motor voltage to reach its limit: until then the current loop hides it"},
-      {"L", "the motor voltage to reach its limit: until then the current loop hides it"},
-      {"K_e", "the motor voltage to reach its limit: until then the current loop hides it"},
+      {"R", kVoltage},
+      {"L", kVoltage},
+      {"K_e", kVoltage},
       {"H", kReversal},
       {"b_g", kRinging},
       {"k_g", kRinging},
       {"B_a", kBothWays},
-      {"F_s", "the arm to come to rest and break away: slow motion with reversals"},
-      {"w", "the arm to come to rest and break away: slow motion with reversals"},
+      {"F_s", kBreakaway},
+      {"w", kBreakaway},
       {"M", kAcceleration},
       {"J_m", kAcceleration},
-      {"T_p", "fast changes of the command: a step, a chirp or a pseudo-random sequence"},
-      {"T_z", "fast changes of the command: a step, a chirp or a pseudo-random sequence"},
-      {"T_r", "fast changes of the command: a step, a chirp or a pseudo-random sequence"},
+      {"T_p", kFastChanges},
+      {"T_z", kFastChanges},
+      {"T_r", kFastChanges},
       {"T_d", "abrupt changes of the command"},
       {"coulomb_friction.F_c", kBothWays},
       {"directional_friction.dB_a", kBothWays},

@@ -10,15 +10,9 @@
 namespace axisfit {
 namespace {
 
-std::vector<double> initial_values(const Job& job) {
-  std::vector<double> values;
-  for (const FreeParameter& p : job.free) values.push_back(p.initial);
-  return values;
-}
-
 TEST(Forecast, IsWhatTheFitFinds) {
   Job job = two_recordings(slide(), slide(), {"M", "B_a"});
-  const Forecast expected = forecast(job, initial_values(job));
+  const Forecast expected = forecast(job, draw_start(job, 0));
   const FitResult fit = estimate(job);
   ASSERT_TRUE(expected.finite && fit.usable);
   for (std::size_t i = 0; i < job.free.size(); ++i) {
@@ -33,7 +27,7 @@ TEST(Forecast, KnowsWhatIsNotSeenAndWhatThatNeeds) {
   const Model<double> truth = motor_axis();
   Job job = two_recordings(truth, truth, {"V_L", "T_p"});
   job.recordings = {recorded(truth, SineMotion{0.4, 2.0, 2.0}, 1.0, 3)};
-  const Forecast expected = forecast(job, initial_values(job));
+  const Forecast expected = forecast(job, draw_start(job, 0));
   EXPECT_FALSE(expected.uncertainty.parameters[0].determined);
   EXPECT_TRUE(expected.uncertainty.parameters[1].determined);
   EXPECT_EQ(expected.together.without_influence, std::vector<std::size_t>{0});
