@@ -161,6 +161,15 @@ NumberError parse_number(std::string_view text, double& value) {
   return std::isfinite(value) ? NumberError::kNone : NumberError::kNotFinite;
 }
 
+// The text with a decimal point for its comma; empty if it has none, or more than that.
+std::string with_point(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos || text.find('.') != std::string_view::npos) return {};
+  std::string point(text);
+  point[comma] = '.';
+  return point;
+}
+
 bool is_number(std::string_view text) {
   double value = 0;
   return parse_number(text, value) == NumberError::kNone;
@@ -176,10 +185,11 @@ std::string describe(NumberError error, std::string_view text) {
   if (error == NumberError::kOutOfRange) {
     return quote(text) + " is out of the range of a double; choose another unit or fix the number";
   }
-  std::string point(text);
-  std::replace(point.begin(), point.end(), ',', '.');
-  if (point != text && is_number(point)) {
-    return quote(text) + " has a decimal comma; write numbers with a decimal point";
+  const bool point = is_number(text);
+  if (point || is_number(with_point(text))) {
+    return quote(text) + " has a decimal " + (point ? "point" : "comma") +
+           ", but numbers above it have a decimal " + (point ? "comma" : "point") +
+           "; write all of them alike";
   }
   return quote(text) + " is not a number; every row below the header must hold numbers";
 }
@@ -199,16 +209,25 @@ std::string unescape(std::string_view quoted) {
   return text;
 }
 
-std::vector<Column> read_header(const std::string& file, std::string_view line, char delimiter) {
+// How the lines of a file are made.
+struct Format {
+  char delimiter = ',';
+  bool delimiter_at_end = false;
+  char decimal = 0;  // the mark that the first number with one had
+};
+
+std::vector<Column> read_header(const std::string& file, std::string_view line, Format& format) {
   if (is_blank(line)) {
     throw RecordingError(file, 1, "the line is blank" + std::string(kHeaderAdvice));
   }
   std::vector<Column> columns;
-  for (FieldReader fields(line, delimiter); !fields.done();) {
+  for (FieldReader fields(line, format.delimiter); !fields.done();) {
     const std::size_t number = columns.size() + 1;
     const std::optional<std::string_view> field = fields.next();
     if (!field) throw_bad_quotes(file, 1, number);
     std::string name = unescape(*field);
+    format.delimiter_at_end = name.empty() && fields.done() && !columns.empty();
+    if (format.delimiter_at_end) break;
     if (name.empty()) {
       throw RecordingError(
           file, 1, "column " + std::to_string(number) + " has no name; name it or remove it");
@@ -232,23 +251,65 @@ std::vector<Column> read_header(const std::string& file, std::string_view line, 
   return columns;
 }
 
-void append_row(Table& table, std::size_t line_number, std::string_view line, char delimiter) {
-  FieldReader fields(line, delimiter);
+// Takes the units, if that is what the line holds: as many texts as there are columns, some of them
+// perhaps empty, and not the beginning of a number among them.
+bool read_units(std::string_view line, const Format& format, std::vector<Column>& columns) {
+  std::vector<std::string> units;
+  for (FieldReader fields(line, format.delimiter); !fields.done();) {
+    const std::optional<std::string_view> field = fields.next();
+    if (!field) return false;
+    double value = 0;
+    std::string_view text = *field;
+    if (text.starts_with('+')) text.remove_prefix(1);
+    if (std::from_chars(text.data(), text.data() + text.size(), value).ec !=
+        std::errc::invalid_argument) {
+      return false;
+    }
+    units.push_back(unescape(*field));
+  }
+  if (format.delimiter_at_end && !units.empty() && units.back().empty()) units.pop_back();
+  if (units.size() != columns.size()) return false;
+  if (std::all_of(units.begin(), units.end(), [](const auto& unit) { return unit.empty(); })) {
+    return false;
+  }
+  for (std::size_t i = 0; i < units.size(); ++i) columns[i].unit = std::move(units[i]);
+  return true;
+}
+
+// The number in a field, with the decimal mark of the file.
+NumberError read_number(std::string_view text, Format& format, double& value) {
+  const bool comma = format.delimiter != ',' && format.decimal != '.';
+  if (comma && text.find(',') != std::string_view::npos) {
+    const NumberError error = parse_number(with_point(text), value);
+    if (error == NumberError::kNone) format.decimal = ',';
+    return error;
+  }
+  const NumberError error = parse_number(text, value);
+  if (format.decimal != '.' && text.find('.') != std::string_view::npos) {
+    if (format.decimal == ',') return NumberError::kNotANumber;
+    if (error == NumberError::kNone) format.decimal = '.';
+  }
+  return error;
+}
+
+void append_row(Table& table, std::size_t line_number, std::string_view line, Format& format) {
+  FieldReader fields(line, format.delimiter);
+  const std::size_t expected = table.columns.size();
   std::size_t count = 0;
   for (; !fields.done(); ++count) {
     const std::optional<std::string_view> field = fields.next();
     if (!field) throw_bad_quotes(table.file, line_number, count + 1);
-    if (count >= table.columns.size()) continue;  // go on counting for the message below
+    if (count == expected && format.delimiter_at_end && fields.done() && field->empty()) break;
+    if (count >= expected) continue;  // go on counting for the message below
     Column& column = table.columns[count];
     double value = 0;
-    const NumberError error = parse_number(*field, value);
+    const NumberError error = read_number(*field, format, value);
     if (error != NumberError::kNone) {
       throw RecordingError(table.file, line_number,
                            "column " + quote(column.name) + ": " + describe(error, *field));
     }
     column.values.push_back(value);
   }
-  const std::size_t expected = table.columns.size();
   if (count == expected) {
     table.lines.push_back(line_number);
     return;
@@ -319,8 +380,9 @@ Table read_csv(const std::string& path) {
   table.file = path;
   LineReader lines(text);
   const std::string_view header = lines.next();
-  const char delimiter = find_delimiter(header);
-  table.columns = read_header(path, header, delimiter);
+  Format format;
+  format.delimiter = find_delimiter(header);
+  table.columns = read_header(path, header, format);
 
   const auto line_ends = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
   for (Column& column : table.columns) column.values.reserve(line_ends);
@@ -337,7 +399,8 @@ Table read_csv(const std::string& path) {
       throw RecordingError(path, blank_line,
                            "the line is blank, but rows follow; remove it, or complete the row");
     }
-    append_row(table, lines.number(), line, delimiter);
+    if (lines.number() == 2 && read_units(line, format, table.columns)) continue;
+    append_row(table, lines.number(), line, format);
   }
   if (table.rows() == 0) {
     throw RecordingError(path, 1, "there are no rows below the header; check how it was recorded");

@@ -20,6 +20,7 @@ class RecordingError : public std::runtime_error {
 struct Column {
   std::string name;
   std::vector<double> values;
+  std::string unit{};  // as written in a row of units below the header; empty: there is none
 };
 
 // Named columns of equal length and where they came from. Units are those of the source; the names
@@ -41,14 +42,17 @@ struct Table {
 };
 
 // Reads a file of numbers separated by commas; by semicolons or tabs if the header has no comma.
-// The first line names the columns, every further one holds one finite number per column. The
-// locale does not matter: numbers have a decimal point and no thousands separators. Fields may be
-// quoted and surrounded by blanks; a UTF-8 byte-order mark, CRLF line ends, and blank lines at the
-// end of the file are accepted.
+// The first line names the columns, the second may have their units (it does, if none of its
+// fields is a number), every further one holds one finite number per column. The locale does not
+// matter: numbers have a decimal point, or, where commas do not separate them, all of them that
+// are not whole a decimal comma; no thousands separators. Fields may be quoted and surrounded by
+// blanks; a UTF-8 byte-order mark, CRLF line ends, a separator at the end of every line, and blank
+// lines at the end of the file are accepted.
 //
 // Throws RecordingError naming line and column for anything else: no such file, no header (also:
 // only numbers in the first line), no rows, empty or repeated column names, a row with too few or
-// too many fields, fields that are empty, no number, not finite or beyond the range of a double.
+// too many fields, fields that are empty, no number, not finite or beyond the range of a double,
+// decimal points and decimal commas in one file.
 Table read_csv(const std::string& path);
 
 // Writes the header and the rows with commas and LF. Each number takes the fewest digits that read

@@ -97,6 +97,8 @@ TEST_F(TableTest, AcceptsWhatSpreadsheetsAndLoggersWrite) {
       " a , b \n 1 , 2 \n\t3\t,\t-4\t\n",      // blanks
       "\"a\"\t b \n 1\t\"2\"\n3 \t -4\n",      // the same with tabs
       "a,b\n+1,2.\n3.0e0,-4E+00\n",            // other spellings of the numbers
+      "a;b\n1,0;+2\n3;-4,00e0\n",              // decimal commas
+      "a,b,\n1,2,\n3,-4, \n",                  // separators at the end of every line
   };
   for (const std::string_view text : variants) {
     SCOPED_TRACE(text);
@@ -108,6 +110,31 @@ TEST_F(TableTest, AcceptsWhatSpreadsheetsAndLoggersWrite) {
     EXPECT_EQ(table.columns[1].values, (Values{2, -4}));
     EXPECT_EQ(table.lines, (std::vector<std::size_t>{2, 3}));
   }
+}
+
+TEST_F(TableTest, ReadsARowOfUnits) {
+  for (const char* text :
+       {"t;v;k\ns;mm/s;\n0,5;1;2\n1;2,5;3\n", "t,v,k\ns,mm/s,\n0.5,1,2\n1,2.5,3\n"}) {
+    const Table table = read(text);
+    ASSERT_EQ(table.columns.size(), 3u);
+    EXPECT_EQ(table.columns[0].unit, "s");
+    EXPECT_EQ(table.columns[1].unit, "mm/s");
+    EXPECT_EQ(table.columns[2].unit, "");
+    EXPECT_EQ(table.columns[1].values, (Values{1, 2.5}));
+    EXPECT_EQ(table.lines, (std::vector<std::size_t>{3, 4}));
+  }
+}
+
+TEST_F(TableTest, TakesNoRowOfDataForUnits) {
+  EXPECT_EQ(error("t,v\n0,abc\n1,2\n"),
+            "rec.csv:2: column 'v': 'abc' is not a number; every row below the header must hold "
+            "numbers");
+  EXPECT_EQ(error("t,v\nnan,nan\n1,2\n"),
+            "rec.csv:2: column 't': 'nan' is not finite; remove the row or cut the recording "
+            "there");
+  EXPECT_EQ(error("t,v\ns,m\nkg,N\n1,2\n"),
+            "rec.csv:3: column 't': 'kg' is not a number; every row below the header must hold "
+            "numbers");
 }
 
 TEST_F(TableTest, QuotedNamesMayHoldDelimitersAndQuotes) {
@@ -127,9 +154,12 @@ TEST_F(TableTest, TellsTheLineAndTheColumnOfTextThatIsNoNumber) {
   EXPECT_EQ(error("time\tvelocity\n\t\"1\"\n"),
             "rec.csv:2: column 'time': the field is empty; every row below the header must hold a "
             "number in every column");
-  EXPECT_EQ(error("time;velocity\n0,5;1\n"),
-            "rec.csv:2: column 'time': '0,5' has a decimal comma; write numbers with a decimal "
-            "point");
+  EXPECT_EQ(error("time;velocity\n0.5;1\n1;1,5\n"),
+            "rec.csv:3: column 'velocity': '1,5' has a decimal comma, but numbers above it have a "
+            "decimal point; write all of them alike");
+  EXPECT_EQ(error("time;velocity\n0,5;1\n1;1.5\n"),
+            "rec.csv:3: column 'velocity': '1.5' has a decimal point, but numbers above it have a "
+            "decimal comma; write all of them alike");
   EXPECT_EQ(error("time\nnan\n"),
             "rec.csv:2: column 'time': 'nan' is not finite; remove the row or cut the recording "
             "there");
@@ -140,8 +170,9 @@ TEST_F(TableTest, TellsTheLineAndTheColumnOfTextThatIsNoNumber) {
 
 TEST_F(TableTest, RefusesEverythingThatIsNotExactlyOneFiniteNumber) {
   for (const char* text :
-       {"1 2", "1.2.3", "0x10", "1e", ".", "-", "+", "+-1", "--1", "1,000", "1d3", "12 s", "inf",
-        "-Infinity", "NaN(1)", "1e-999", "\"\"", "1\"\"", "\"1"}) {
+       {"1 2",       "1.2.3",     "0x10",    "1e",   ".",     "-",   "+",    "+-1",
+        "--1",       "1,000,000", "1.000,5", "1,5e", ",",     "1d3", "12 s", "inf",
+        "-Infinity", "NaN(1)",    "1e-999",  "\"\"", "1\"\"", "\"1"}) {
     SCOPED_TRACE(text);
     const std::string message = error(std::string("a;b\n0;") + text + "\n");
     EXPECT_TRUE(message.starts_with("rec.csv:2: ")) << message;
@@ -149,7 +180,7 @@ TEST_F(TableTest, RefusesEverythingThatIsNotExactlyOneFiniteNumber) {
 }
 
 TEST_F(TableTest, KeepsTheTextOfTheFileInMessagesShortAndPrintable) {
-  const std::string message = error("a\nx\x1B[31m" + std::string(500, 'y') + "\n");
+  const std::string message = error("a\n1\nx\x1B[31m" + std::string(500, 'y') + "\n");
   EXPECT_NE(message.find("'x?[31m"), std::string::npos) << message;
   EXPECT_LT(message.size(), 200u);
 }
@@ -170,7 +201,10 @@ TEST_F(TableTest, RefusesBlankLinesBetweenRows) {
 
 TEST_F(TableTest, RefusesUnusableHeaders) {
   EXPECT_EQ(error(",q\n0,1\n"), "rec.csv:1: column 1 has no name; name it or remove it");
-  EXPECT_EQ(error("t,\n0,1\n"), "rec.csv:1: column 2 has no name; name it or remove it");
+  EXPECT_EQ(error("t,,q\n0,1,2\n"), "rec.csv:1: column 2 has no name; name it or remove it");
+  EXPECT_EQ(error("t,\n0,1\n"),
+            "rec.csv:2: 2 fields for the 1 column of the header, more after column 't'; name them "
+            "or remove them");
   EXPECT_EQ(error("t,q,t\n0,1,2\n"),
             "rec.csv:1: columns 1 and 3 are both named 't'; give every column its own name");
   EXPECT_EQ(error("0,0\n0,1\n"),
