@@ -12,8 +12,10 @@ namespace {
 /// every sample.
 template <class T, class Also>
 SimulationOutcome run(const Job& job, const Recording& recording, const Model<T>& model,
-                      const Coupling& coupling, Recorder<T>& recorder, Also&& also) {
+                      const Coupling& coupling, Recorder<T>& recorder, Also&& also,
+                      std::vector<ModeChange>* modes = nullptr) {
   IntegratorOptions options;
+  options.modes = modes;
   options.step = job.options.step;
   // A recording shows less than one event per sample. Parameters with which the axis chatters
   // faster, as a controller in a limit cycle, are none to go on from.
@@ -59,8 +61,9 @@ Prediction predict(const Job& job, const ParameterSpace& space, std::size_t inde
   const Model<double> model = model_at(job, space, u, index);
   Recorder<double> recorder(model.instruments, signals, recording.times);
   Prediction prediction;
-  const SimulationOutcome outcome =
-      run(job, recording, model, coupling, recorder, [&](const Integrator<double>& axis) {
+  const SimulationOutcome outcome = run(
+      job, recording, model, coupling, recorder,
+      [&](const Integrator<double>& axis) {
         const Equations<double>& equations = axis.equations();
         const State<double>& y = axis.state();
         const double drive = equations.drive_force(axis.mode(), y, axis.input());
@@ -71,7 +74,8 @@ Prediction predict(const Job& job, const ParameterSpace& space, std::size_t inde
                  ? drive
                  : equations.gear_force(axis.mode(), y),
              coupling.active() ? equations.coupling_force(y, axis.input().target) : 0.0});
-      });
+      },
+      &prediction.modes);
   for (std::size_t m = 0; m < signals.size(); ++m)
     prediction.simulated.push_back(recorder.readings(m));
   prediction.finished = outcome.finished;

@@ -29,6 +29,7 @@ struct Prediction {
   /// Per measurement, in the recording's order, one value per sample, in the signal's unit.
   std::vector<std::vector<double>> simulated;
   std::vector<Sample> samples;
+  std::vector<ModeChange> modes;  ///< that the axis passed through, the first included
   int events = 0;
 };
 

@@ -26,6 +26,7 @@
 #include <optional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "sim/equations.h"
 #include "sim/propagator.h"
@@ -42,6 +43,8 @@ struct IntegratorOptions {
   int event_limit = 1000;
   /// Events altogether before it is given up as too slow.
   long event_budget = 100'000'000;
+  /// Where the modes passed through are noted, the first included; null: nowhere.
+  std::vector<ModeChange>* modes = nullptr;
 };
 
 template <class T>
@@ -229,6 +232,8 @@ class Integrator {
 
 template <class T>
 void Integrator<T>::switch_mode(const Mode& mode) {
+  if (options_.modes != nullptr && (options_.modes->empty() || mode != mode_))
+    options_.modes->push_back({value_of(input_.time), mode});
   mode_ = mode;
   here_.reset();
   flow_ = &flow_of(mode);

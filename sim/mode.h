@@ -18,6 +18,12 @@ struct Mode {
   bool operator==(const Mode&) const = default;
 };
 
+/// From `time` (s) on the axis is in `mode`.
+struct ModeChange {
+  double time = 0.0;
+  Mode mode;
+};
+
 /// The surfaces on which the mode changes. A guard is positive inside the mode.
 enum class Guard : std::uint8_t {
   contact_positive,     ///< x = H

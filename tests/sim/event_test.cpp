@@ -64,6 +64,24 @@ TEST(DryFriction, BringsAMassToRestAtTheAnalyticInstantAndPlace) {
   }
 }
 
+TEST(ModeLog, HoldsEveryModeFromTheInstantItBegins) {
+  Model<double> model = rubbing_mass(20.0);
+  model.initial[1] = 0.7;
+  std::vector<ModeChange> modes;
+  IntegratorOptions options;
+  options.modes = &modes;
+  // At rest after 0.42 s; 30 N set it in motion again at 0.6 s.
+  const Schedule command{{0.0, 0.6}, {0.0, 30.0}};
+  EXPECT_TRUE(run(model, command, instants(100, 1e-2), options).finished);
+  ASSERT_EQ(modes.size(), 3u);
+  EXPECT_EQ(modes[0].time, 0.0);
+  EXPECT_EQ(modes[0].mode.sliding, 1);
+  EXPECT_NEAR(modes[1].time, kMass * 0.7 / 20.0, 1e-12);
+  EXPECT_EQ(modes[1].mode.sliding, 0);
+  EXPECT_NEAR(modes[2].time, 0.6, 1e-12);
+  EXPECT_EQ(modes[2].mode.sliding, 1);
+}
+
 TEST(DryFriction, HoldsUpToItsLevelAndNotBeyond) {
   const Model<double> model = rubbing_mass(20.0);
   // A staircase of 1 N every 10 ms: the step beyond 20 N sets the mass in motion, at its instant.
