@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -16,6 +17,7 @@
 #include "apps/job_file.h"
 #include "apps/motion_file.h"
 #include "apps/output_folder.h"
+#include "apps/report_page.h"
 #include "apps/report_text.h"
 #include "apps/result_json.h"
 
@@ -26,6 +28,7 @@ using namespace axisfit;
 constexpr const char* kResultFile = "result.json";
 constexpr const char* kAxisFile = "fitted.yaml";
 constexpr const char* kResidualsFile = "residuals.csv";
+constexpr const char* kReportFile = "report.html";
 constexpr const char* kMotionFile = "next-motion.yaml";
 
 enum ExitCode { kUsable = 0, kNoUsableFit = 3, kInterrupted = 130 };  // besides kBadInput
@@ -42,6 +45,7 @@ void stop_on_signals() {
 }
 
 struct Arguments {
+  std::string command;  ///< as one would type it
   std::string job;
   std::string data;
   std::string output;
@@ -115,6 +119,28 @@ int check(const Arguments& arguments, const Job& job) {
   return kUsable;
 }
 
+/// The contents of a file that has been read before; empty if it has gone.
+std::string text_of(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+/// A command line that a shell reads as these arguments.
+std::string typed(int argc, char** argv) {
+  std::string line;
+  for (int i = 0; i < argc; ++i) {
+    const std::string argument = i == 0 ? "fit-params" : argv[i];
+    const bool plain = argument.find_first_not_of(
+                           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                           "_-./=,+:@%") == std::string::npos;
+    std::string quoted = "'";
+    for (const char c : argument) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+    line += (i > 0 ? " " : "") + (plain && !argument.empty() ? argument : quoted + "'");
+  }
+  return line;
+}
+
 /// The files of the output folder: names and texts.
 std::vector<std::pair<std::string, std::string>> files_of(const Arguments& arguments,
                                                           const Outcome& outcome,
@@ -127,7 +153,10 @@ std::vector<std::pair<std::string, std::string>> files_of(const Arguments& argum
       {kResultFile, json},
       {kAxisFile,
        format_axis_file(fitted, fmt::format("Fitted by {}.\n{}", origin, verdict_of(outcome)))},
-      {kResidualsFile, residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis)}};
+      {kResidualsFile, residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis)},
+      {kReportFile,
+       report_page(outcome, {arguments.command, arguments.job, text_of(arguments.job),
+                             outcome.file.axis_file, text_of(outcome.file.axis_file)})}};
   if (const Experiment* next = next_experiment(outcome)) {
     files.emplace_back(
         kMotionFile, format_motion_file({next->motion, next->duration},
@@ -140,7 +169,7 @@ int run(const Arguments& arguments) {
   JobFile file = read_job_file(arguments.job, arguments.data);
   if (arguments.check) return check(arguments, file.job);
   if (!arguments.output.empty()) {
-    std::vector<std::string> names{kResultFile, kAxisFile, kResidualsFile};
+    std::vector<std::string> names{kResultFile, kAxisFile, kResidualsFile, kReportFile};
     if (arguments.wishes.experiment) names.emplace_back(kMotionFile);
     check_folder(arguments.output, names);
   }
@@ -193,7 +222,7 @@ int main(int argc, char** argv) {
       ->excludes(experiment);
   app.add_option("--data", arguments.data, "folder of the recordings, if not the job file's");
   app.add_option("--output", arguments.output,
-                 "folder for result.json, fitted.yaml and residuals.csv");
+                 "folder for report.html, result.json, fitted.yaml and residuals.csv");
   auto* json = app.add_flag("--json", arguments.json, "print result.json instead of the table");
   app.add_flag("--quiet", arguments.quiet, "print nothing but errors")->excludes(json);
   app.add_option("--threads", arguments.threads, "number of threads; default: all cores")
@@ -204,6 +233,7 @@ int main(int argc, char** argv) {
                  "number of starts, the first from the initial values; default: the job's")
       ->check(CLI::Range(1, 1000000));
   return run_program(app, argc, argv, [&] {
+    arguments.command = typed(argc, argv);
     for (std::istringstream names(profiles); std::getline(names, profiles, ',');)
       arguments.wishes.profiles.push_back(profiles);
     arguments.wishes.stop = &stop_flag;

@@ -1,0 +1,189 @@
+#include "apps/chart.h"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <regex>
+
+namespace axisfit {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string from_base64(const std::string& text) {
+  static const std::string digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  std::uint32_t bits = 0;
+  int held = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    bits = bits << 6 | static_cast<std::uint32_t>(digits.find(c));
+    if ((held += 6) >= 8) bytes += static_cast<char>(bits >> (held -= 8) & 0xFF);
+  }
+  return bytes;
+}
+
+/// The values of a column as the script has them.
+std::vector<double> decoded(const Json& column) {
+  const std::size_t n = column["length"];
+  std::vector<double> values;
+  if (column.contains("interval")) {
+    for (std::size_t i = 0; i < n; ++i)
+      values.push_back(double(column["start"]) + double(i) * double(column["interval"]));
+    return values;
+  }
+  const std::string packed = from_base64(column["data"]);
+  std::string bytes(4 * n, '\0');
+  uLongf size = static_cast<uLongf>(bytes.size());
+  EXPECT_EQ(
+      uncompress(reinterpret_cast<Bytef*>(bytes.data()), &size,
+                 reinterpret_cast<const Bytef*>(packed.data()), static_cast<uLong>(packed.size())),
+      Z_OK);
+  EXPECT_EQ(size, 4 * n);
+  std::uint32_t k = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t plane = 0; plane < 4; ++plane)
+      k += static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[plane * n + i]))
+           << (8 * plane);
+    const auto whole = static_cast<std::int32_t>(k);
+    values.push_back(whole == std::numeric_limits<std::int32_t>::min()
+                         ? NAN
+                         : double(column["start"]) + double(column["step"]) * whole);
+  }
+  return values;
+}
+
+std::vector<double> through_script(const ChartColumns& columns, ChartColumns::Index i) {
+  return decoded(chart_data({}, columns)["columns"][i]);
+}
+
+TEST(ChartColumns, ReachTheScriptToHalfTheirStep) {
+  ChartColumns columns;
+  std::vector<double> values;
+  for (int i = 0; i < 5000; ++i) values.push_back(1.3 * std::sin(0.01 * i) - 0.4 + 1e-4 * (i % 7));
+  const auto at = columns.add(values, 3e-5);
+  EXPECT_EQ(columns[at].step, 1e-5);
+  const std::vector<double> shown = through_script(columns, at);
+  ASSERT_EQ(shown.size(), values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) ASSERT_NEAR(shown[i], values[i], 0.5001e-5);
+}
+
+TEST(ChartColumns, AreKeptOnce) {
+  ChartColumns columns;
+  const auto first = columns.add({1.0, 2.0}, 0.1);
+  EXPECT_EQ(columns.add({1.0, 2.0}, 0.1), first);
+  EXPECT_NE(columns.add({1.0, 2.0}, 0.01), first);
+  EXPECT_NE(columns.add({1.0, 2.5}, 0.1), first);
+  EXPECT_EQ(columns.size(), 3u);
+}
+
+TEST(ChartColumns, KeepGapsAndLargeValues) {
+  ChartColumns columns;
+  const auto at = columns.add({-4e12, NAN, 5e12, 0.0, INFINITY}, 1e-3);
+  const std::vector<double> shown = through_script(columns, at);
+  EXPECT_NEAR(shown[0], -4e12, 1e-9 * 5e12);
+  EXPECT_TRUE(std::isnan(shown[1]));
+  EXPECT_NEAR(shown[2], 5e12, 1e-9 * 5e12);
+  EXPECT_EQ(shown[3], 0.0);
+  EXPECT_TRUE(std::isnan(shown[4]));
+}
+
+TEST(ChartColumns, EvenTimesAreTwoNumbersAndUnevenOnesStayExactAnywhere) {
+  ChartColumns columns;
+  std::vector<double> even, uneven;
+  for (int i = 0; i < 1000; ++i) {
+    even.push_back(0.25 + 1e-3 * i);
+    uneven.push_back(1.7e9 + 1e-3 * i + 2e-4 * (i % 3));  // s since 1970
+  }
+  const auto first = columns.add_times(even), second = columns.add_times(uneven);
+  EXPECT_FALSE(chart_data({}, columns)["columns"][first].contains("data"));
+  const auto shown_even = through_script(columns, first),
+             shown_uneven = through_script(columns, second);
+  for (std::size_t i = 0; i < even.size(); ++i) {
+    ASSERT_NEAR(shown_even[i], even[i], 1e-9);
+    ASSERT_NEAR(shown_uneven[i], uneven[i], 2e-6);
+  }
+}
+
+TEST(ChartColumns, NoiseOf20000SamplesTakesTwoBytesEach) {
+  ChartColumns columns;
+  std::vector<double> values;
+  for (int i = 0; i < 20000; ++i)
+    values.push_back(std::sin(1e-3 * i) + 2e-3 * std::sin(12345.678 * i * i));
+  columns.add(values, 2e-5);
+  EXPECT_LT(chart_data({}, columns).dump().size(), 50000u);
+}
+
+Chart sine(ChartColumns& columns, std::size_t samples) {
+  std::vector<double> x, y;
+  for (std::size_t i = 0; i < samples; ++i) {
+    x.push_back(1e-3 * double(i));
+    y.push_back(std::sin(0.01 * double(i)));
+  }
+  y[samples / 2] = 7.0;  // a spike of one sample
+  const auto times = columns.add_times(x);
+  return {.id = "trace",
+          .title = "velocity of <script>alert(1)</script>",
+          .x = {"time", "s"},
+          .y = {"velocity", "m/s"},
+          .series = {{"measured", "measured", times, columns.add(y, 1e-4)}},
+          .recording = "a & b"};
+}
+
+TEST(Chart, ThinsLongSeriesAndLosesNoSpike) {
+  ChartColumns columns;
+  const Chart chart = sine(columns, 200000);
+  const std::string svg = figure(chart, columns).text();
+  EXPECT_LT(svg.size(), 30000u);
+  // The axis reaches beyond 7, and the line reaches the spike: 6 % below the top of the frame.
+  const std::size_t path = svg.find("<path class=\"series measured\"");
+  ASSERT_NE(path, std::string::npos);
+  const std::size_t begin = svg.find(" d=\"", path) + 4, end = svg.find('"', begin);
+  const std::regex move("[ml](-?[0-9.]+),?(-?[0-9.]+)");
+  double y = 0.0, highest = INFINITY;
+  const std::string d = svg.substr(begin, end - begin);
+  for (std::sregex_iterator at(d.begin(), d.end(), move), last; at != last; ++at)
+    highest = std::min(highest, y += std::stod((*at)[2]));
+  EXPECT_NEAR(highest, 20.0, 1.5);
+}
+
+TEST(Chart, ShowsNamesAsText) {
+  ChartColumns columns;
+  const Chart chart = sine(columns, 100);
+  const std::string svg = figure(chart, columns).text();
+  EXPECT_EQ(svg.find("<script"), std::string::npos);
+  EXPECT_NE(svg.find("velocity of &lt;script&gt;alert(1)&lt;/script&gt;"), std::string::npos);
+}
+
+TEST(Chart, IsDescribedToTheScript) {
+  ChartColumns columns;
+  const std::vector<Chart> charts{sine(columns, 100)};
+  const Json chart = chart_data(charts, columns)["charts"][0];
+  EXPECT_EQ(chart["id"], "trace");
+  EXPECT_EQ(chart["kind"], "lines");
+  EXPECT_EQ(chart["time"], true);
+  EXPECT_EQ(chart["recording"], "a & b");
+  EXPECT_EQ(chart["y"]["unit"], "m/s");
+  EXPECT_EQ(chart["series"][0]["role"], "measured");
+  EXPECT_EQ(chart["series"][0]["y"], 1);
+}
+
+TEST(Chart, OfNothingIsEmptyAndStillDrawn) {
+  ChartColumns columns;
+  const auto none = columns.add({}, 1.0);
+  const Chart chart{.id = "none",
+                    .title = "none",
+                    .x = {"x"},
+                    .y = {"y", "", true},
+                    .series = {{"nothing", "measured", none, none}}};
+  EXPECT_NE(figure(chart, columns).text().find("</svg>"), std::string::npos);
+  EXPECT_EQ(figure(chart, columns).text().find("nan"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace axisfit
