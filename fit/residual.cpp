@@ -14,12 +14,8 @@ template <class T, class Also>
 SimulationOutcome run(const Job& job, const Recording& recording, const Model<T>& model,
                       const Coupling& coupling, Recorder<T>& recorder, Also&& also,
                       std::vector<ModeChange>* modes = nullptr) {
-  IntegratorOptions options;
+  IntegratorOptions options = recording_options(recording.times, job.options.step);
   options.modes = modes;
-  options.step = job.options.step;
-  // A recording shows less than one event per sample. Parameters with which the axis chatters
-  // faster, as a controller in a limit cycle, are none to go on from.
-  options.event_budget = 200 + static_cast<long>(recording.times.size()) / 2;
   const auto series = [&](Signal signal) {
     const Measurement* m = coupling.active() ? recording.find(signal) : nullptr;
     return m == nullptr ? std::vector<double>{} : recorder.refined(m->values);

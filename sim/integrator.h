@@ -43,6 +43,8 @@ struct IntegratorOptions {
   int event_limit = 1000;
   /// Events altogether before it is given up as too slow.
   long event_budget = 100'000'000;
+  /// Steps altogether before it is given up, since it swings too fast to be followed.
+  long step_budget = 200'000'000;
   /// Where the modes passed through are noted, the first included; null: nowhere.
   std::vector<ModeChange>* modes = nullptr;
 };
@@ -90,7 +92,8 @@ class Integrator {
   }
 
   /// Goes on to the instant `end` (s), not before the present time.
-  /// Returns false when the motion chatters or is not finite any more; the state is then useless.
+  /// Returns false when the motion chatters, swings too fast to be followed, or is not finite any
+  /// more; the state is then useless.
   bool advance_to(const T& end);
 
   /// s. How much later than written a command acts: the dead time, and the derivative of a force
@@ -104,6 +107,8 @@ class Integrator {
   const Equations<T>& equations() const { return equations_; }
   /// Number of events so far.
   int events() const { return events_; }
+  /// Number of steps so far, those of the search for events included.
+  long steps() const { return steps_; }
 
  private:
   /// Everything that one linear system needs, in T and on plain values.
@@ -228,6 +233,7 @@ class Integrator {
   int level_ = 0;  // of the longest step now allowed; falls to 0 as steps grow after an event
   std::optional<Look> here_;  // the guards at the present state, while they are known
   int events_ = 0;
+  long steps_ = 0;
 };
 
 template <class T>
@@ -355,8 +361,8 @@ bool Integrator<T>::meets_guard(const State<double>& from, int level, double len
   Look start = *here_;
   const bool by_series = level > ladder.last;
   const int fine = by_series ? level : std::max(level, flow_->longest);
-  const int pieces = by_series ? 1 : 1 << (fine - level);
-  const double piece = length / pieces;
+  const long pieces = by_series ? 1 : 1L << (fine - level);
+  const double piece = length / static_cast<double>(pieces);
   Input<double> input = now.input;
   const View<double> view{now.equations, now.propagator, input, now.target_rate};
   const auto move = [&](double t) { input = moved(input, t); };
@@ -364,7 +370,7 @@ bool Integrator<T>::meets_guard(const State<double>& from, int level, double len
   constexpr double kSmooth = 0.5;  // rad
   const bool halved = !by_series && fine < ladder.last && flow_->oscillation * piece > kSmooth;
   to = from;
-  for (int i = 0; i < pieces; ++i) {
+  for (long i = 0; i < pieces && steps_ <= options_.step_budget; ++i, ++steps_) {
     State<double> middle;
     if (halved) middle = step(view, to, fine + 1);
     to = by_series ? step_by(view, to, piece) : step(view, to, fine);
@@ -473,7 +479,9 @@ bool Integrator<T>::advance_to(const T& end) {
 
     const State<double> from = plain_state();
     State<double> to;
-    if (meets_guard(from, by_series ? ladder.last + 1 : level, length, to)) {
+    const bool met = meets_guard(from, by_series ? ladder.last + 1 : level, length, to);
+    if (steps_ > options_.step_budget) return false;
+    if (met) {
       if (!shortest) {
         search = piece ? level : std::max(level, flow_->longest - 1) + 1;
         continue;

@@ -70,7 +70,8 @@ Table record(const Rig& rig, const Motion& motion, const RecordingOptions& optio
   if (reached + 1 != recorder.instants().size())
     throw std::runtime_error(
         "the motion cannot be simulated beyond " + std::to_string(recorder.instants()[reached]) +
-        " s: the state is not finite, or events follow each other without end");
+        " s: the state is not finite, or it swings too fast to be followed, or events follow each "
+        "other without end");
 
   Table table;
   table.columns.push_back({"time_s", times});

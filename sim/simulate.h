@@ -22,10 +22,24 @@ struct Measured {
 
 /// How a simulation ended.
 struct SimulationOutcome {
-  bool finished = false;    ///< false: not finite, or chattering without end
+  bool finished = false;    ///< false: not finite, chattering, or swinging too fast to be followed
   std::size_t reached = 0;  ///< number of instants that were read
   int events = 0;
+  long steps = 0;
 };
+
+/// Options for a simulation that is compared with a recording, with budgets that such a simulation
+/// keeps to by far: less than one event per sample, and a hundred steps for each sample and each
+/// `step` (s). Parameters with which the axis chatters or swings faster are none to go on from.
+inline IntegratorOptions recording_options(std::span<const double> times, double step) {
+  const double samples = static_cast<double>(times.size());
+  IntegratorOptions options;
+  options.step = step;
+  options.event_budget = 200 + static_cast<long>(0.5 * samples);
+  options.step_budget =
+      100'000 + static_cast<long>(100.0 * (samples + (times.back() - times.front()) / step));
+  return options;
+}
 
 /// Simulates from times[0] on and calls read(i, integrator) at every instant times[i] (s,
 /// increasing).
@@ -64,6 +78,7 @@ SimulationOutcome simulate(const Model<T>& model, const Schedule& command,
     read(i, axis);
     outcome.reached = i + 1;
     outcome.events = axis.events();
+    outcome.steps = axis.steps();
   }
   outcome.finished = true;
   return outcome;
