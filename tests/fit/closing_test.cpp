@@ -175,12 +175,13 @@ TEST(CloseLoop, IsTheSameForAnyNumberOfThreads) {
 TEST(CloseLoop, TellsWhatItDoes) {
   const Job job = secret_named("coulomb_friction").job();
   std::set<std::string> phases;
-  close_loop(job, estimate(job), {}, [&](const std::string& phase, int done, int of) {
-    EXPECT_LE(done, of);
-    phases.insert(phase);
+  close_loop(job, estimate(job), {}, [&](const Progress& p) {
+    EXPECT_LE(p.done, p.of);
+    EXPECT_GT(p.best, 1.0);
+    phases.insert(p.phase);
   });
   EXPECT_TRUE(phases.contains("looking for suspects"));
-  EXPECT_TRUE(phases.contains("refitting with coulomb_friction"));
+  EXPECT_TRUE(phases.contains("trying coulomb_friction"));
 }
 
 TEST(CloseLoop, NeedsAUsableFit) {
