@@ -38,6 +38,8 @@ std::vector<Trial> run_starts(const Job& job, const ParameterSpace& space,
   if (progress && starts > 1) progress(all);
   parallel_for(trials.size(), thread_count(job.options.threads), [&](std::size_t i) {
     Trial& trial = trials[i];
+    trial.interrupted = is_set(job.options.stop);
+    if (trial.interrupted) return;  // a million starts would take their time to throw
     trial.from = draw_start(job, static_cast<int>(i));
     try {
       trial.result =
