@@ -172,12 +172,15 @@ std::string report_text(const Outcome& outcome) {
   text += paragraph(verdict_of(outcome));
   for (const Separation& s : outcome.separations) text += paragraph(s.words);
   if (!outcome.loop && outcome.diagnosis) text += residual_verdict(job, *outcome.diagnosis);
-  if (outcome.interrupted)
+  if (outcome.interrupted) {
+    const int starts = std::max(1, job.options.starts);
     return text + "\n" +
            paragraph(fmt::format(
-               "Stopped before all was finished: this is the result of {} of {} starts{}.",
-               outcome.first.starts.size(), std::max(1, job.options.starts),
+               "Stopped before all was finished: this is the result of {}{}.",
+               starts > 1 ? fmt::format("{} of {} starts", outcome.first.starts.size(), starts)
+                          : "the fit",
                outcome.loop ? ", and of the effects accepted so far" : ""));
+  }
   if (outcome.wishes.experiment) text += "\n" + suggestion_text(outcome);
   return text;
 }

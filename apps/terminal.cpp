@@ -27,9 +27,9 @@ constexpr std::pair<std::string_view, fmt::terminal_color> kVerdicts[]{
     {"Stopped before all was finished", fmt::terminal_color::yellow},
     {"  accepted  ", fmt::terminal_color::green},
     {"  undecided  ", fmt::terminal_color::yellow},
-    {": weakly determined", fmt::terminal_color::yellow},
-    {": not determined", fmt::terminal_color::red},
-    {": at bound", fmt::terminal_color::yellow}};
+    {"weakly determined", fmt::terminal_color::yellow},
+    {"not determined", fmt::terminal_color::red},
+    {"at bound", fmt::terminal_color::yellow}};
 
 std::string with_verdict(const std::string& line) {
   for (const auto& [words, colour] : kVerdicts) {

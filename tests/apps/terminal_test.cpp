@@ -22,7 +22,7 @@ TEST(Terminal, ColoursHeadingsAndVerdictsAndNothingElse) {
   const std::string text = coloured(kReport);
   EXPECT_EQ(std::regex_replace(text, std::regex("\033\\[[0-9;]*m"), ""), kReport);
   EXPECT_TRUE(text.starts_with("\033[1mParameters\033[0m\n  V_L  2.7  V\n")) << text;
-  EXPECT_NE(text.find("preamplifier limit\033[31m: not determined\033[0m\n"), std::string::npos);
+  EXPECT_NE(text.find("preamplifier limit: \033[31mnot determined\033[0m\n"), std::string::npos);
   EXPECT_NE(text.find("\n\033[32mUsable fit\033[0m: reduced"), std::string::npos);
   EXPECT_TRUE(text.ends_with("\ndetermine V_L.\n"));
   EXPECT_NE(coloured("No usable fit: why.\n").find("\033[31mNo usable fit\033[0m"),
