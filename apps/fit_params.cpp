@@ -122,22 +122,34 @@ std::vector<std::pair<std::string, std::string>> files_of(const Arguments& argum
   return files;
 }
 
+/// As a shell reads it.
+std::string quoted(const std::string& path) {
+  if (path.find_first_of(" \t'\"\\$&;|<>()*?[]`!#~") == std::string::npos) return path;
+  std::string text = path;
+  for (std::size_t at = 0; (at = text.find('\'', at)) != std::string::npos; at += 4)
+    text.replace(at, 1, "'\\''");
+  return "'" + text + "'";
+}
+
 /// How to go on after Ctrl-C.
-std::string advice(const Arguments& arguments, const Outcome& outcome) {
-  std::string command = "fit-params " + arguments.job;
-  if (!arguments.data.empty()) command += " --data " + arguments.data;
-  if (outcome.wishes.close_loop) command += " --close-loop";
-  std::string text;
+std::string advice(const Arguments& arguments) {
   if (arguments.output.empty())
-    text = paragraph(
-        "Nothing is written: with --output FOLDER the result is kept, also when stopped, and "
-        "--from FOLDER/fitted.yaml goes on from it.");
-  else
-    text = paragraph(fmt::format("What was finished is in {0}/{1}, {0}/{2} and {0}/{3}. To go on "
-                                 "from its values:",
-                                 arguments.output, kResultFile, kAxisFile, kResidualsFile)) +
-           fmt::format("  {0} --from {1}/{2} --output {1}\n", command, arguments.output, kAxisFile);
-  return "\n" + text;
+    return "\n" + paragraph(
+                      "Nothing is written: with --output FOLDER the result is kept, also when "
+                      "stopped, and --from FOLDER/fitted.yaml goes on from it.");
+  const std::string& folder = arguments.output;
+  std::string command = "fit-params " + quoted(arguments.job);
+  if (!arguments.data.empty()) command += " --data " + quoted(arguments.data);
+  if (arguments.wishes.close_loop) command += " --close-loop";
+  command +=
+      fmt::format(" --from {} --output {}", quoted(folder + "/" + kAxisFile), quoted(folder));
+  return "\n" +
+         paragraph(fmt::format(
+             "What was finished is in {0}/{1}, {0}/{2} and {0}/{3}. To go on from "
+             "its values{4}:",
+             folder, kResultFile, kAxisFile, kResidualsFile,
+             arguments.wishes.close_loop ? ", with the search for effects begun anew" : "")) +
+         "  " + command + "\n";
 }
 
 int run(const Arguments& arguments) {
@@ -168,7 +180,7 @@ int run(const Arguments& arguments) {
     print(for_stdout(report_text(outcome)));
   if (!arguments.output.empty()) write_folder(arguments.output, files_of(arguments, outcome, json));
   if (outcome.interrupted) {
-    if (!arguments.quiet) std::cerr << advice(arguments, outcome);
+    if (!arguments.quiet) std::cerr << advice(arguments);
     return kInterrupted;
   }
   return outcome.fit().usable ? kUsable : kNoUsableFit;
