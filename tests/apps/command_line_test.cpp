@@ -320,9 +320,9 @@ TEST_F(CommandLineTest, CtrlCKeepsWhatIsFinished) {
 }
 
 TEST_F(CommandLineTest, CtrlCBeforeAnythingIsFinishedSaysSo) {
-  interrupt_after_ = std::chrono::milliseconds(200);
+  interrupt_after_ = std::chrono::milliseconds(500);
   const Outcome stopped =
-      fit({AXISFIT_CONFIGS "/jobs/paper.yaml", "--output", outputs_.path("results")});
+      fit({AXISFIT_CONFIGS "/jobs/close-loop.yaml", "--output", outputs_.path("results")});
   EXPECT_EQ(stopped.exit_code, 130);
   EXPECT_EQ(stopped.out, "");
   EXPECT_TRUE(stopped.err.starts_with("Stopped before a fit was finished")) << stopped.err;
@@ -341,7 +341,7 @@ TEST_F(CommandLineTest, ProgressIsShownOnATerminalAndTakenAway) {
     return terminal.finish();
   };
   const std::string text = shown({});
-  EXPECT_TRUE(text.starts_with(std::string(kClear) + "starts  [..........]  ")) << text;
+  EXPECT_NE(text.find(std::string(kClear) + "starts  [..........]  "), std::string::npos) << text;
   EXPECT_NE(text.find(" of 1000000 done"), std::string::npos) << text;
   // What follows begins on a clean line.
   EXPECT_TRUE(text.substr(text.rfind(kClear)).starts_with(std::string(kClear) + "\r\nNothing is"))

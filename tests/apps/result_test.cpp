@@ -309,7 +309,7 @@ TEST(ResultTest, ARecordingThatCannotBeSimulatedHasNoErrors) {
   const std::string text = report_text(outcome);
   EXPECT_NE(text.find(" - "), std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
-  EXPECT_TRUE(text.ends_with("\n" + outcome.first.verdict + "\n"));
+  EXPECT_TRUE(text.ends_with("\n" + paragraph(outcome.first.verdict)));
 }
 
 TEST(ResultTest, LongNamesAndNumbersFitInTheWidth) {
