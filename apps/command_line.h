@@ -3,9 +3,11 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "apps/text_table.h"
 #include "apps/version.h"
 #include "sim/suggest.h"
 
@@ -13,11 +15,42 @@ namespace axisfit {
 
 inline constexpr int kBadInput = 2;  ///< exit code
 
+/// Help that fits the width of text: options with the names of their values, what they do beside.
+class NarrowHelp : public CLI::Formatter {
+ public:
+  std::string make_description(const CLI::App* app) const override {
+    return paragraph(app->get_description());
+  }
+  std::string make_option_name(const CLI::Option* option, bool positional) const override {
+    const std::string name = CLI::Formatter::make_option_name(option, positional);
+    return name.substr(0, name.find('{'));  // without the value of a flag that is given none
+  }
+  std::string make_option_opts(const CLI::Option* option) const override {
+    if (!option->get_option_text().empty()) return " " + option->get_option_text();
+    const std::string type = option->get_type_name();
+    // Without what is allowed, which the message about a mistake tells.
+    return option->get_type_size() == 0 || option->get_positional()
+               ? ""
+               : " " + type.substr(0, type.find(':'));
+  }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    const std::string standard = option->get_default_str();
+    return option->get_description() + (standard.empty() ? "" : "; default: " + standard);
+  }
+  std::string make_option(const CLI::Option* option, bool positional) const override {
+    constexpr std::size_t kColumn = 28;
+    const std::string name = "  " + make_option_name(option, positional) + make_option_opts(option);
+    const std::string text = paragraph(make_option_desc(option), kColumn);
+    return name.size() + 2 > kColumn ? name + "\n" + text : name + text.substr(name.size());
+  }
+};
+
 /// Parses the command line and returns what `work` does: the exit code. Mistakes of the user, in
 /// the command line or told by an exception, end with their message on standard error and
 /// kBadInput.
 template <class Work>
 int run_program(CLI::App& app, int argc, char** argv, Work&& work) {
+  app.formatter(std::make_shared<NarrowHelp>());
   app.set_version_flag("--version", std::string("axisfit ") + version());
   try {
     app.parse(argc, argv);

@@ -4,8 +4,7 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <cstdio>
-#include <cstdlib>
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <optional>
@@ -17,9 +16,12 @@
 #include "apps/job_file.h"
 #include "apps/motion_file.h"
 #include "apps/output_folder.h"
+#include "apps/progress.h"
 #include "apps/report_page.h"
 #include "apps/report_text.h"
 #include "apps/result_json.h"
+#include "apps/terminal.h"
+#include "apps/text_table.h"
 
 namespace {
 
@@ -39,8 +41,9 @@ static_assert(StopFlag::is_always_lock_free);
 
 void stop_on_signals() {
   struct sigaction action = {};
-  action.sa_handler = [](int) { stop_flag = true; };
-  action.sa_flags = SA_RESETHAND;
+  action.sa_handler = [](int signal) {
+    if (stop_flag.exchange(true)) end_by_signal(signal);
+  };
   for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
 }
 
@@ -49,6 +52,7 @@ struct Arguments {
   std::string job;
   std::string data;
   std::string output;
+  std::string from;
   bool check = false;
   Wishes wishes;
   bool json = false;
@@ -65,58 +69,57 @@ constexpr const char* kExamples = R"(Examples:
   fit-params configs/jobs/paper.yaml --suggest-experiment --output results
   fit-params configs/jobs/paper.yaml --output results --starts 20 --seed 7
   fit-params configs/jobs/emps.yaml --data ~/Downloads/EMPS
-  fit-params job.yaml --json | jq '.parameters[] | {name, value, standard_error}'
+  fit-params job.yaml --json | jq '.parameters[] | {name, value}'
 
 Exit codes: 0 usable fit, 2 bad input, 3 no usable fit, 130 stopped by Ctrl-C.)";
 
-/// Progress on one line of a terminal, removed at the end.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool visible) : visible_(visible) {}
-  ~ProgressLine() {
-    if (shown_) std::fputs("\r\033[K", stderr);
-  }
-  void show(const std::string& line) {
-    if (!visible_) return;
-    fmt::print(stderr, "\r\033[K{}", line.substr(0, 78));
-    std::fflush(stderr);
-    shown_ = true;
-  }
-
- private:
-  bool visible_;
-  bool shown_ = false;
-};
-
-/// Whether standard error is a terminal that can clear a line.
-bool can_show_progress() {
-  const char* terminal = std::getenv("TERM");
-  return isatty(STDERR_FILENO) != 0 && terminal != nullptr && std::string(terminal) != "dumb";
+/// Begins at the values of another axis, as far as it has them, instead of the job's initial ones.
+void begin_at(const std::string& axis_file, Job& job) {
+  Diagnostics diagnostics;
+  auto rig = read_axis_file(axis_file, diagnostics);
+  diagnostics.throw_if_any();
+  const std::vector<double*> values = members(rig->model);
+  for (FreeParameter& p : job.free)
+    if (!p.recording && is_used(quantity_list()[p.quantity], rig->model.structure))
+      p.initial = std::clamp(*values[p.quantity], p.lower, p.upper);
 }
 
-std::string fitting_text(const Progress& p) {
-  return fmt::format(
-      "{}{}, reduced chi-square {:.4g}",
-      p.starts > 1 ? fmt::format("start {} of {}: ", p.starts_done + 1, p.starts) : "",
-      p.stage.coupling_rate > 0.0
-          ? fmt::format("held to the data at {:.3g} 1/s", p.stage.coupling_rate)
-          : "free running",
-      p.stage.reduced_cost);
+/// A text for standard output.
+void print(const std::string& text) {
+  if (!(std::cout << text).flush()) throw std::runtime_error("cannot write to standard output");
 }
 
-std::string closing_text(const std::string& phase, int done, int of) {
-  return of > 0 ? fmt::format("{} ({} of {} done)", phase, done, of) : phase;
+std::string for_stdout(const std::string& report) {
+  return takes_colour(STDOUT_FILENO) ? coloured(report) : report;
 }
 
 /// What the recordings can tell, before the fit.
-int check(const Arguments& arguments, const Job& job) {
+int check(const Arguments& arguments, const Job& job, std::optional<ProgressLine>& line) {
+  line->tell({"looking at what the recordings can tell"});
   const Forecast found = forecast(job, draw_start(job, 0));
+  line.reset();
   if (arguments.json)
-    std::cout << forecast_json(job, found).dump(2) << '\n';
+    print(forecast_json(job, found).dump(2) + "\n");
   else if (!arguments.quiet)
-    std::cout << forecast_text(job, found);
-  if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
+    print(for_stdout(forecast_text(job, found)));
   return kUsable;
+}
+
+/// As a shell reads it.
+std::string quoted(const std::string& path) {
+  if (!path.empty() && path.find_first_of(" \t\n'\"\\$&;|<>()*?[]{}`!#~") == std::string::npos)
+    return path;
+  std::string text = path;
+  for (std::size_t at = 0; (at = text.find('\'', at)) != std::string::npos; at += 4)
+    text.replace(at, 1, "'\\''");
+  return "'" + text + "'";
+}
+
+/// The command line, as one would type it.
+std::string typed(int argc, char** argv) {
+  std::string line = "fit-params";
+  for (int i = 1; i < argc; ++i) line += " " + quoted(argv[i]);
+  return line;
 }
 
 /// The contents of a file that has been read before; empty if it has gone.
@@ -124,21 +127,6 @@ std::string text_of(const std::string& path) {
   std::ostringstream text;
   text << std::ifstream(path).rdbuf();
   return text.str();
-}
-
-/// A command line that a shell reads as these arguments.
-std::string typed(int argc, char** argv) {
-  std::string line;
-  for (int i = 0; i < argc; ++i) {
-    const std::string argument = i == 0 ? "fit-params" : argv[i];
-    const bool plain = argument.find_first_not_of(
-                           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                           "_-./=,+:@%") == std::string::npos;
-    std::string quoted = "'";
-    for (const char c : argument) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-    line += (i > 0 ? " " : "") + (plain && !argument.empty() ? argument : quoted + "'");
-  }
-  return line;
 }
 
 /// The files of the output folder: names and texts.
@@ -165,9 +153,33 @@ std::vector<std::pair<std::string, std::string>> files_of(const Arguments& argum
   return files;
 }
 
+/// How to go on after Ctrl-C.
+std::string advice(const Arguments& arguments) {
+  if (arguments.output.empty())
+    return "\n" + paragraph(
+                      "Nothing is written: with --output FOLDER the result is kept, also when "
+                      "stopped, and --from FOLDER/fitted.yaml goes on from it.");
+  const std::string& folder = arguments.output;
+  std::string command = "fit-params " + quoted(arguments.job);
+  if (!arguments.data.empty()) command += " --data " + quoted(arguments.data);
+  if (arguments.wishes.close_loop) command += " --close-loop";
+  command +=
+      fmt::format(" --from {} --output {}", quoted(folder + "/" + kAxisFile), quoted(folder));
+  return "\n" +
+         paragraph(fmt::format(
+             "What was finished is in {0}/{1}, {0}/{2} and {0}/{3}. To go on from "
+             "its values{4}:",
+             folder, kResultFile, kAxisFile, kResidualsFile,
+             arguments.wishes.close_loop ? ", with the search for effects begun anew" : "")) +
+         "  " + command + "\n";
+}
+
 int run(const Arguments& arguments) {
+  std::optional<ProgressLine> line(std::in_place, !arguments.quiet && is_terminal(STDERR_FILENO));
+  line->tell({"reading the recordings"});
   JobFile file = read_job_file(arguments.job, arguments.data);
-  if (arguments.check) return check(arguments, file.job);
+  if (!arguments.from.empty()) begin_at(arguments.from, file.job);
+  if (arguments.check) return check(arguments, file.job, line);
   if (!arguments.output.empty()) {
     std::vector<std::string> names{kResultFile, kAxisFile, kResidualsFile, kReportFile};
     if (arguments.wishes.experiment) names.emplace_back(kMotionFile);
@@ -178,24 +190,21 @@ int run(const Arguments& arguments) {
   if (arguments.starts) options.starts = *arguments.starts;
   if (arguments.seed) options.seed = *arguments.seed;
 
-  const Outcome outcome = [&] {
-    ProgressLine line(!arguments.quiet && can_show_progress());
-    return find_outcome(
-        std::move(file), arguments.wishes, [&](const Progress& p) { line.show(fitting_text(p)); },
-        [&](const std::string& phase, int done, int of) {
-          line.show(closing_text(phase, done, of));
-        });
-  }();
+  const Outcome outcome = find_outcome(std::move(file), arguments.wishes,
+                                       [&](const Progress& progress) { line->tell(progress); });
+  const std::string json = result_json(outcome).dump(2) + "\n";
+  line.reset();
 
   // What was found is shown before anything can go wrong with writing it.
-  const std::string json = result_json(outcome).dump(2) + "\n";
   if (arguments.json)
-    std::cout << json;
+    print(json);
   else if (!arguments.quiet)
-    std::cout << report_text(outcome);
-  if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
+    print(for_stdout(report_text(outcome)));
   if (!arguments.output.empty()) write_folder(arguments.output, files_of(arguments, outcome, json));
-  if (outcome.interrupted) return kInterrupted;
+  if (outcome.interrupted) {
+    if (!arguments.quiet) std::cerr << advice(arguments);
+    return kInterrupted;
+  }
   return outcome.fit().usable ? kUsable : kNoUsableFit;
 }
 
@@ -220,9 +229,14 @@ int main(int argc, char** argv) {
       ->excludes(close)
       ->excludes(profile)
       ->excludes(experiment);
-  app.add_option("--data", arguments.data, "folder of the recordings, if not the job file's");
+  app.add_option("--data", arguments.data, "folder of the recordings, if not the job file's")
+      ->type_name("FOLDER");
+  app.add_option("--from", arguments.from,
+                 "begin at the values of this axis file, such as a fitted.yaml")
+      ->type_name("AXIS.yaml");
   app.add_option("--output", arguments.output,
-                 "folder for report.html, result.json, fitted.yaml and residuals.csv");
+                 "folder for report.html, result.json, fitted.yaml and residuals.csv")
+      ->type_name("FOLDER");
   auto* json = app.add_flag("--json", arguments.json, "print result.json instead of the table");
   app.add_flag("--quiet", arguments.quiet, "print nothing but errors")->excludes(json);
   app.add_option("--threads", arguments.threads, "number of threads; default: all cores")
@@ -241,7 +255,8 @@ int main(int argc, char** argv) {
     try {
       return run(arguments);
     } catch (const Interrupted&) {
-      std::cerr << "Stopped before a fit was finished: nothing is written.\n";
+      if (!arguments.quiet)
+        std::cerr << "Stopped before a fit was finished: there is nothing to keep. Begin anew.\n";
       return static_cast<int>(kInterrupted);
     }
   });

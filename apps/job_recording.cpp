@@ -124,7 +124,7 @@ class RecordingReader {
     const Trim trim = trim_node ? read_trim(*trim_node) : Trim();
     ConfigMap signals(signals_node);
     const auto input = read_input(data, signals_node, signals, times, recording);
-    const bool any_named = read_measurements(data, signals, times, trim, recording);
+    const std::size_t named = read_measurements(data, signals, times, trim, recording);
     signals.finish();
     if (!times || !input) return;
     // Commands from before the first sample kept still act on it.
@@ -141,7 +141,7 @@ class RecordingReader {
       recording.times = {0.0, 1.0};
       return;
     }
-    check_samples(signals_node, any_named, recording);
+    check_samples(signals_node, named, recording);
     take_noise_from_rest(signals_node, recording);
     if (recording.initial_state == InitialState::data) initial_state_from_data(recording);
     if (!recording.acceleration_at_rest) leave_out_acceleration_at_rest(recording);
@@ -203,18 +203,18 @@ class RecordingReader {
     return command_from_reference(rig_.controller, *times, *reference, *position);
   }
 
-  /// All signals but the input. Returns whether any was named, rightly or wrongly.
-  bool read_measurements(const RecordingFile& data, ConfigMap& signals,
-                         const std::optional<Values>& times, const Trim& trim,
-                         Recording& recording) {
+  /// All signals but the input. Returns how many were named, rightly or wrongly.
+  std::size_t read_measurements(const RecordingFile& data, ConfigMap& signals,
+                                const std::optional<Values>& times, const Trim& trim,
+                                Recording& recording) {
     const Structure& structure = rig_.model.structure;
-    bool any_named = false;
+    std::size_t named = 0;
     for (const SignalInfo& signal : kSignalTable) {
       const bool is_input =
           signal.signal == Signal::drive_force && structure.drive == Drive::force_source;
       const auto given = is_input ? std::nullopt : signals.optional(signal.name);
       if (!given) continue;
-      any_named = true;
+      ++named;
       if (!has_signal(signal.signal, structure)) {
         given->error(fmt::format("the drive of this axis has no {}: remove it", signal.name));
         continue;
@@ -222,7 +222,7 @@ class RecordingReader {
       auto measurement = read_measurement(data, *given, signal, times, trim);
       if (measurement) recording.measurements.push_back(std::move(*measurement));
     }
-    return any_named;
+    return named;
   }
 
   static std::optional<Measurement> read_measurement(const RecordingFile& data,
@@ -260,14 +260,14 @@ class RecordingReader {
   }
 
   /// Whether the recording has what its role and the options of the fit need.
-  void check_samples(const ConfigNode& signals_node, bool any_named,
+  void check_samples(const ConfigNode& signals_node, std::size_t named,
                      const Recording& recording) const {
     const bool held = recording.find(Signal::position) || recording.find(Signal::velocity);
-    if (!any_named)
+    if (named == 0)
       signals_node.error(
           fmt::format("nothing to compare with: name at least one of {}",
                       fmt::join(kSignalTable | std::views::transform(&SignalInfo::name), ", ")));
-    else if (recording.role == Role::fit && !recording.measurements.empty() &&
+    else if (recording.role == Role::fit && recording.measurements.size() == named &&
              std::ranges::none_of(recording.measurements, &Measurement::fitted))
       signals_node.error(
           "nothing to fit: every signal says fit: false; drop that from one, or give "

@@ -61,54 +61,50 @@ std::vector<std::size_t> profiled(const Job& job, const std::vector<std::string>
 }
 
 /// All that follows the first fit.
-void pursue(Outcome& outcome, const std::function<void(const Progress&)>& fitting,
-            const LoopProgress& closing) {
+void pursue(Outcome& outcome, const ProgressReport& progress) {
+  const auto tell = [&](const std::string& phase, int done = 0, int of = 0) {
+    if (progress) progress({phase, done, of, outcome.fit().reduced_chi_square});
+  };
   if (outcome.wishes.close_loop && outcome.first.usable)
-    outcome.loop = close_loop(outcome.file.job, outcome.first, {}, closing);
+    outcome.loop = close_loop(outcome.file.job, outcome.first, {}, progress);
   if (outcome.loop && outcome.loop->interrupted) throw Interrupted();
   if (outcome.loop && has_noise_from(outcome.file.job, NoiseSource::fit) &&
       !outcome.loop->effects.empty())
-    outcome.loop->result.fit = estimate_with_noise(outcome.loop->result.job, fitting);
+    outcome.loop->result.fit = estimate_with_noise(outcome.loop->result.job, progress);
   if (outcome.fit().usable) {
-    if (closing) closing("looking at the residual", 0, 0);
+    tell("looking at the residual");
     outcome.diagnosis = diagnose(outcome.job(), outcome.fit());
   }
   if (outcome.fit().usable && !outcome.wishes.profiles.empty())
     outcome.profiles =
         profiles(outcome.job(), outcome.fit(), profiled(outcome.job(), outcome.wishes.profiles),
-                 [&](int done, int of) {
-                   if (closing) closing("profiles", done, of);
-                 });
+                 [&](int done, int of) { tell("profiles", done, of); });
   const ControllerSettings& controller = outcome.file.rig.controller;
   if (outcome.loop)
     for (const Rivals& rivals : outcome.loop->rivals) {
-      if (closing)
-        closing("what tells " + rivals.chosen + " and " + rivals.rival + " apart?", 0, 0);
+      tell("what tells " + rivals.chosen + " and " + rivals.rival + " apart?");
       outcome.separations.push_back(
           what_separates(*outcome.loop, rivals, controller, outcome.file.limits));
     }
   if (outcome.wishes.experiment)
-    outcome.suggestion = suggest_experiment(outcome.job(), outcome.fit(), controller,
-                                            outcome.file.limits, [&](int done, int of) {
-                                              if (closing) closing("trying motions", done, of);
-                                            });
+    outcome.suggestion =
+        suggest_experiment(outcome.job(), outcome.fit(), controller, outcome.file.limits,
+                           [&](int done, int of) { tell("trying motions", done, of); });
 }
 
 }  // namespace
 
-Outcome find_outcome(JobFile file, const Wishes& wishes,
-                     const std::function<void(const Progress&)>& fitting,
-                     const LoopProgress& closing) {
+Outcome find_outcome(JobFile file, const Wishes& wishes, const ProgressReport& progress) {
   const auto begin = std::chrono::steady_clock::now();
   Outcome outcome;
   outcome.file = std::move(file);
   outcome.wishes = wishes;
   outcome.file.job.options.stop = wishes.stop;
   profiled(outcome.file.job, wishes.profiles);
-  outcome.first = estimate_with_noise(outcome.file.job, fitting);
+  outcome.first = estimate_with_noise(outcome.file.job, progress);
   outcome.interrupted = outcome.first.interrupted;
   try {
-    if (!outcome.interrupted) pursue(outcome, fitting, closing);
+    if (!outcome.interrupted) pursue(outcome, progress);
   } catch (const Interrupted&) {
     outcome.interrupted = true;
   }

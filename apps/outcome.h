@@ -2,7 +2,6 @@
 // explaining that. Text and JSON are made from it.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -78,9 +77,7 @@ std::string verdict_of(const Outcome& outcome);
 /// Fits the job, looks for what it lacks and, where asked, adds that. Throws std::runtime_error
 /// when a wish names a parameter that is not fitted, and Interrupted when it is stopped before one
 /// start of the fit is finished.
-Outcome find_outcome(JobFile file, const Wishes& wishes,
-                     const std::function<void(const Progress&)>& fitting = {},
-                     const LoopProgress& closing = {});
+Outcome find_outcome(JobFile file, const Wishes& wishes, const ProgressReport& progress = {});
 
 /// Samples of a signal that do not count, since the arm rests (fit/rest.h).
 struct LeftOut {

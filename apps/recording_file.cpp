@@ -44,9 +44,13 @@ const std::vector<double>* RecordingFile::column(const ConfigNode& node) const {
   std::vector<std::string> names;
   for (const auto& [existing, values] : columns_) names.push_back(existing);
   const std::string near = nearest(*name, names);
-  node.error(fmt::format("no column '{}' in {}; {}", *name, path_,
-                         near.empty() ? fmt::format("it has {}", fmt::join(names, ", "))
-                                      : fmt::format("did you mean '{}'?", near)));
+  constexpr std::size_t kNamed = 30;
+  const std::size_t more = names.size() - std::min(names.size(), kNamed);
+  names.resize(names.size() - more);
+  node.error(fmt::format("no column '{}' in {}; {}t has {}{}", *name, path_,
+                         near.empty() ? "i" : fmt::format("did you mean '{}'? I", near),
+                         fmt::join(names, ", "),
+                         more > 0 ? fmt::format(" and {} more", more) : ""));
   return nullptr;
 }
 

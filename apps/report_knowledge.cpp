@@ -48,6 +48,18 @@ std::string correlation_text(const FitResult& result) {
 
 }  // namespace
 
+std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty>& known) {
+  const ParameterSpace space(job);
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    std::string words(quantity_list()[space[i].quantity].quantity.meaning);
+    if (const std::string_view verdict = verdict_name(known[i]); verdict != "determined")
+      words += fmt::format(": {}", verdict);
+    rows.push_back({space.name(i), words});
+  }
+  return aligned(rows, {Set::left, Set::wrapped});
+}
+
 std::string knowledge_text(const FitResult& result) {
   const double excess = std::sqrt(result.reduced_chi_square);
   std::string noise = excess > 1.0
@@ -65,8 +77,9 @@ std::string together_text(const Identifiability& known) {
   std::string text;
   for (const WeakDirection& weak : known.weak) text += paragraph(weak.words, 2);
   for (const Combination& c : known.combinations)
-    text += fmt::format("  {} = {} +- {:.2g}\n", c.name, with_digits_of(c.value, c.standard_error),
-                        c.standard_error);
+    text += paragraph(fmt::format("{} = {} +- {:.2g}", c.name,
+                                  with_digits_of(c.value, c.standard_error), c.standard_error),
+                      2);
   return text;
 }
 
@@ -140,7 +153,7 @@ std::string forecast_text(const Job& job, const Forecast& forecast) {
     return paragraph(
         "What can be determined is not known: with the initial values the simulation does not get "
         "through the recordings.");
-  std::vector<std::vector<std::string>> rows{{"", "", "expected error", "seen best in", ""}};
+  std::vector<std::vector<std::string>> rows{{"", "expected error", "seen best in"}};
   const ParameterSpace space(job);
   std::string needs;
   for (std::size_t i = 0; i < space.size(); ++i) {
@@ -151,20 +164,19 @@ std::string forecast_text(const Job& job, const Forecast& forecast) {
     const SeriesRows& series = forecast.series[static_cast<std::size_t>(best)];
     const Recording& recording = job.recordings[series.recording];
     rows.push_back(
-        {space.name(i), std::string(quantity_list()[space[i].quantity].quantity.meaning),
+        {space.name(i),
          u.determined ? with_unit(fmt::format("{:.2g}", u.standard_error), unit) : "-",
          most > 0.0
              ? fmt::format("{} of {}", info(recording.measurements[series.measurement].signal).name,
                            recording.name)
-             : "no signal",
-         verdict_name(u) == "determined" ? "" : std::string(verdict_name(u))});
+             : "no signal"});
     const std::string_view need = excitation_needed(quantity_list()[space[i].quantity].name);
     if ((!u.determined || u.weak) && !u.at_bound && !need.empty())
       needs += paragraph(fmt::format("{} needs {}.", space.name(i), need), 2);
   }
   return "What these recordings can tell, if the initial values are about right\n" +
-         aligned(rows, {Set::left, Set::left, Set::right, Set::left, Set::left}) +
-         together_text(forecast.together) + needs;
+         aligned(rows, {Set::left, Set::right, Set::wrapped}) + together_text(forecast.together) +
+         needs + "\n" + meanings_text(job, forecast.uncertainty.parameters);
 }
 
 }  // namespace axisfit

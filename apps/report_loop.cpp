@@ -61,8 +61,7 @@ std::string errors_text(const Outcome& outcome) {
     const Recording& recording = outcome.job().recordings[head.recording];
     const Measurement& m = recording.measurements[head.measurement];
     const std::string_view unit = info(m.signal).unit;
-    rows.push_back({fmt::format("{}, {}: {}", recording.name, role_name(recording, head.fitted),
-                                info(m.signal).name)});
+    rows.push_back({series_name(recording, role_name(recording, head.fitted), m.signal)});
     for (std::size_t i = 0; i < loop.models.size(); ++i) {
       const SignalScore* score = find_series(outcome.scores[i].signals, head);
       std::vector<std::string> row{model_name(loop.models[i]), "-", "-", "-", ""};

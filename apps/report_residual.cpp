@@ -53,20 +53,20 @@ std::vector<std::string> force_cells(const std::string& name, const MissingForce
 }
 
 std::string residual_text(const Job& job, const Diagnosis& diagnosis) {
-  std::vector<std::vector<std::string>> rows{{"", "", "", "unexplained", "depends on (share)"}};
+  std::vector<std::vector<std::string>> rows{{"", "unexplained", "depends on (share)"}};
   for (const SeriesTest& test : diagnosis.tests) {
     const Recording& recording = job.recordings[test.series.recording];
     std::vector<std::string> on;
     constexpr std::size_t kNamed = 3;
     for (const Dependence& d : test.dependences)
       if (on.size() < kNamed) on.push_back(fmt::format("{} {:.2g} %", d.on, 100.0 * d.share));
-    rows.push_back({recording.name, role_name(recording, test.series.fitted),
-                    std::string(info(recording.measurements[test.series.measurement].signal).name),
+    rows.push_back({series_name(recording, role_name(recording, test.series.fitted),
+                                recording.measurements[test.series.measurement].signal),
                     test.explained ? "noise" : fmt::format("{:.3g} %", test.unexplained_percent),
                     fmt::format("{}", fmt::join(on, ", "))});
   }
   return "Residual beyond the noise, of the root mean square\n" +
-         aligned(rows, {Set::left, Set::left, Set::left, Set::right, Set::wrapped});
+         aligned(rows, {Set::left, Set::right, Set::wrapped});
 }
 
 std::string instruments_text(const Job& job, const Diagnosis& diagnosis) {

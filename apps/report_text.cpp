@@ -35,22 +35,29 @@ std::string recordings_text(const Job& job) {
     std::string signals;
     for (const Measurement& m : r.measurements)
       signals += (signals.empty() ? "" : ", ") + std::string(info(m.signal).name);
-    rows.push_back({r.role == Role::fit ? "fit" : "validate", r.name,
+    rows.push_back({r.name, r.role == Role::fit ? "fit" : "validate",
                     fmt::format("{} samples", r.times.size()),
                     fmt::format("{:.4g} s to {:.4g} s", r.times.front(), r.times.back()), signals});
   }
   std::string text =
-      "Recordings\n" + aligned(rows, {Set::left, Set::left, Set::right, Set::left, Set::left});
+      "Recordings\n" + aligned(rows, {Set::left, Set::left, Set::right, Set::left, Set::wrapped});
   for (const Recording& r : job.recordings) text += rest_text(r);
   return text;
+}
+
+/// What stands beside the numbers, which have no room for it.
+std::string legend_text(const Job& job, const FitResult& result) {
+  std::vector<ParameterUncertainty> known;
+  for (const ParameterResult& p : result.parameters) known.push_back(p.uncertainty);
+  return meanings_text(job, known);
 }
 
 /// With a closed loop, the declared model's estimates stand where the initial values would.
 std::string parameters_text(const Outcome& outcome) {
   const Job& job = outcome.job();
   const FitResult& result = outcome.fit();
-  std::vector<std::vector<std::string>> rows{{"", "", "value", "std. error", "95 % interval",
-                                              outcome.loop ? "declared" : "initial", "unit", ""}};
+  std::vector<std::vector<std::string>> rows{
+      {"", "value", "std. error", "95 % interval", outcome.loop ? "declared" : "initial", "unit"}};
   for (std::size_t i = 0; i < job.free.size(); ++i) {
     const ParameterResult& p = result.parameters[i];
     const ParameterUncertainty& u = p.uncertainty;
@@ -62,17 +69,15 @@ std::string parameters_text(const Outcome& outcome) {
       const auto& declared = outcome.loop->models.front().fit.parameters;
       other = i < declared.size() ? fmt::format("{:.4g}", declared[i].value) : "-";
     }
-    rows.push_back({p.name, std::string(quantity.meaning),
-                    open ? fmt::format("~{:.1g}", p.value) : with_digits_of(p.value, error),
+    rows.push_back({p.name, open ? fmt::format("~{:.1g}", p.value) : with_digits_of(p.value, error),
                     u.determined ? fmt::format("{:.2g}", error) : "-",
                     u.has_interval() ? fmt::format("{} .. {}", with_digits_of(u.lower, error),
                                                    with_digits_of(u.upper, error))
                                      : "-",
-                    other, std::string(quantity.unit),
-                    verdict_name(u) == "determined" ? "" : std::string(verdict_name(u))});
+                    other, std::string(quantity.unit)});
   }
-  return "Parameters\n" + aligned(rows, {Set::left, Set::left, Set::right, Set::right, Set::right,
-                                         Set::right, Set::left, Set::left});
+  return "Parameters\n" +
+         aligned(rows, {Set::left, Set::right, Set::right, Set::right, Set::right, Set::left});
 }
 
 /// How many of several starts ended in the same place, and where the others did.
@@ -110,17 +115,16 @@ const char* mark_of(NoiseSource noise) {
 std::string errors_text(const Job& job, const FitResult& result) {
   const bool prediction = job.options.coupling == CouplingMode::fixed;
   std::vector<std::vector<std::string>> rows{
-      {"", "", "", "rmse", "of range", "noise", "red. chi2", "unit", ""}};
+      {"", "rmse", "of range", "noise", "red. chi2", "unit", ""}};
   if (prediction) rows.front().back() = "predicted rmse";
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     const Recording& recording = job.recordings[r];
     for (const SignalError& e : result.recordings[r].signals) {
       const bool finished = result.recordings[r].prediction.finished;
-      rows.push_back({recording.name,
-                      recording.role == Role::validate ? "validate"
-                      : e.fitted                       ? "fit"
-                                                       : "compare",
-                      std::string(info(e.signal).name),
+      const char* role = recording.role == Role::validate ? "validate"
+                         : e.fitted                       ? "fit"
+                                                          : "compare";
+      rows.push_back({series_name(recording, role, e.signal),
                       finished ? fmt::format("{:.4g}", e.rmse) : "-",
                       finished ? fmt::format("{:.3g} %", e.nrmse_percent) : "-",
                       fmt::format("{:.3g}{}", e.sigma, mark_of(e.noise)),
@@ -130,24 +134,30 @@ std::string errors_text(const Job& job, const FitResult& result) {
     }
   }
   std::string text = "Errors of the free-running simulation\n" +
-                     aligned(rows, {Set::left, Set::left, Set::left, Set::right, Set::right,
-                                    Set::right, Set::right, Set::left, Set::right});
+                     aligned(rows, {Set::left, Set::right, Set::right, Set::right, Set::right,
+                                    Set::left, Set::right});
   if (has_noise_from(job, NoiseSource::differences))
     text += "  * estimated from differences of the samples\n";
   if (has_noise_from(job, NoiseSource::rest)) text += "  *** what the instrument shows at rest\n";
   if (has_noise_from(job, NoiseSource::fit))
-    text += "  ** estimated together with the parameters: the reduced chi-square judges nothing\n";
+    text += paragraph(
+        "** estimated together with the parameters: the reduced chi-square judges nothing", 2);
   return text;
 }
 
 }  // namespace
 
+std::string series_name(const Recording& recording, const char* role, Signal signal) {
+  return fmt::format("{}, {}: {}", recording.name, role, info(signal).name);
+}
+
 std::string report_text(const Outcome& outcome) {
   const Job& job = outcome.job();
   const FitResult& result = outcome.fit();
-  std::string text = fmt::format("{}\n{}{}\n{}\n", recordings_text(job), parameters_text(outcome),
-                                 knowledge_text(result) + starts_text(outcome.first),
-                                 outcome.loop ? loop_text(outcome) : errors_text(job, result));
+  std::string text =
+      fmt::format("{}\n{}{}\n{}\n{}\n", recordings_text(job), parameters_text(outcome),
+                  knowledge_text(result) + starts_text(outcome.first), legend_text(job, result),
+                  outcome.loop ? loop_text(outcome) : errors_text(job, result));
   if (const std::string profiles = profiles_text(outcome); !profiles.empty())
     text += profiles + "\n";
   if (outcome.diagnosis && !outcome.diagnosis->explained) {
@@ -159,16 +169,18 @@ std::string report_text(const Outcome& outcome) {
   if (outcome.diagnosis)
     if (const std::string faults = instruments_text(job, *outcome.diagnosis); !faults.empty())
       text += "Instruments\n" + faults + "\n";
-  text += outcome.loop ? paragraph(verdict_of(outcome)) : verdict_of(outcome) + "\n";
+  text += paragraph(verdict_of(outcome));
   for (const Separation& s : outcome.separations) text += paragraph(s.words);
   if (!outcome.loop && outcome.diagnosis) text += residual_verdict(job, *outcome.diagnosis);
-  if (outcome.interrupted)
+  if (outcome.interrupted) {
+    const int starts = std::max(1, job.options.starts);
     return text + "\n" +
            paragraph(fmt::format(
-               "Stopped before all was finished: this is the result of {} of {} starts{}. A fit "
-               "that begins at these values, with fitted.yaml as its axis, goes on from here.",
-               outcome.first.starts.size(), std::max(1, job.options.starts),
+               "Stopped before all was finished: this is the result of {}{}.",
+               starts > 1 ? fmt::format("{} of {} starts", outcome.first.starts.size(), starts)
+                          : "the fit",
                outcome.loop ? ", and of the effects accepted so far" : ""));
+  }
   if (outcome.wishes.experiment) text += "\n" + suggestion_text(outcome);
   return text;
 }

@@ -1,5 +1,4 @@
-// What was found as text for a terminal. Lines end with '\n'; those of tables and paragraphs fit 80
-// characters, except for the table of parameters.
+// What was found as text for a terminal. Lines end with '\n' and have no more than 80 characters.
 #pragma once
 
 #include <string>
@@ -27,6 +26,12 @@ std::string residual_verdict(const Job& job, const Diagnosis& diagnosis);
 
 /// Its part on the closed loop: effects that were tried, and the errors before and after.
 std::string loop_text(const Outcome& outcome);
+
+/// "step, fit: velocity"
+std::string series_name(const Recording& recording, const char* role, Signal signal);
+
+/// What each parameter of a job is and, unless it is determined, its verdict.
+std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty>& known);
 
 /// What the intervals rest on, and what is known instead of parameters that are not determined.
 std::string knowledge_text(const FitResult& result);

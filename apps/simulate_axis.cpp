@@ -1,8 +1,11 @@
 // simulate-axis AXIS.yaml MOTION.yaml: a recording as a rig would make it.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <iostream>
 #include <sstream>
 
@@ -10,6 +13,8 @@
 #include "apps/command_line.h"
 #include "apps/motion_file.h"
 #include "apps/output_folder.h"
+#include "apps/progress.h"
+#include "apps/terminal.h"
 #include "sim/rig.h"
 
 namespace {
@@ -26,8 +31,10 @@ struct Arguments {
 
 constexpr const char* kExamples = R"(Examples:
   simulate-axis configs/axes/x.yaml configs/motions/step.yaml --output step.csv
-  simulate-axis configs/axes/x.yaml configs/motions/move.yaml --set "M=161 kg" --seed 7 -o move.csv
-  simulate-axis results/fitted.yaml configs/motions/chirp.yaml --signals velocity motor_current
+  simulate-axis configs/axes/x.yaml configs/motions/move.yaml --seed 7 \
+      --set "M=161 kg" --output move.csv
+  simulate-axis results/fitted.yaml configs/motions/chirp.yaml \
+      --signals velocity motor_current
 
 Exit codes: 0 recorded, 2 bad input.)";
 
@@ -78,7 +85,11 @@ void run(Arguments arguments) {
       throw std::runtime_error(fmt::format("--signals: the drive of this axis has no {}", name));
   }
   std::ostringstream text;
-  write_csv(text, record(*rig, motion.motion, options), arguments.exact ? 0 : 9);
+  {
+    ProgressLine line(is_terminal(STDERR_FILENO));
+    line.tell({"simulating"});
+    write_csv(text, record(*rig, motion.motion, options), arguments.exact ? 0 : 9);
+  }
   if (arguments.output.empty())
     std::cout << text.str() << std::flush;
   else
@@ -100,13 +111,18 @@ int main(int argc, char** argv) {
   app.footer(kExamples);
   app.add_option("AXIS.yaml", arguments.axis, "the axis (docs/axis-file.md)")->required();
   app.add_option("MOTION.yaml", arguments.motion, "the motion (docs/motion-file.md)")->required();
-  app.add_option("-o,--output", arguments.output, "CSV file; default: standard output");
-  app.add_option("--set", arguments.changes, "change a quantity: NAME=VALUE, with its unit")
+  app.add_option("-o,--output", arguments.output, "CSV file; default: standard output")
+      ->type_name("FILE");
+  app.add_option("--set", arguments.changes, "change a quantity; the value has its unit")
       ->take_all()
+      ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  const auto* chosen = app.add_option("--signals", arguments.signals, "signals to record")
-                           ->check(CLI::IsMember(signals))
-                           ->capture_default_str();
+  const auto* chosen =
+      app.add_option("--signals", arguments.signals,
+                     fmt::format("signals to record, of {}", fmt::join(signals, ", ")))
+          ->check(CLI::IsMember(signals))
+          ->option_text("NAME ...")
+          ->default_str(fmt::format("{}", fmt::join(arguments.signals, ", ")));
   app.add_option("--rate", arguments.recording.rate, "samples per second")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
@@ -114,6 +130,7 @@ int main(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_flag("--exact", arguments.exact, "no noise, encoder not quantised, all digits");
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, end_by_signal);
   return run_program(app, argc, argv, [&] {
     arguments.signals_given = chosen->count() > 0;
     run(std::move(arguments));

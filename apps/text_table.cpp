@@ -4,21 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace axisfit {
 namespace {
-
-/// In characters: units may contain multi-byte ones.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
-}
 
 /// Lines of at most `width` characters, unless a word is longer.
 std::vector<std::string> broken(const std::string& text, std::size_t width) {
   std::vector<std::string> lines{""};
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find(' ', at), text.size());
+    std::size_t end = std::min(text.find(' ', at), text.size());
+    if (text.compare(end, 2, " %") == 0) end = std::min(text.find(' ', end + 1), text.size());
     const std::string word = text.substr(at, end - at);
     std::string& line = lines.back();
     if (line.empty())
@@ -32,24 +28,55 @@ std::vector<std::string> broken(const std::string& text, std::size_t width) {
   return lines;
 }
 
-}  // namespace
+constexpr std::size_t kIndent = 2, kGap = 2;
+constexpr std::size_t kLeastWrapped = 20;  ///< width of a column to wrap in
 
-std::string aligned(const std::vector<std::vector<std::string>>& rows,
-                    const std::vector<Set>& set) {
+/// The widths of the columns, where the first is left no more than there is room for.
+std::vector<std::size_t> widths_of(const std::vector<std::vector<std::string>>& rows,
+                                   const std::vector<Set>& set) {
   std::vector<std::size_t> width(set.size(), 0);
   for (const auto& row : rows)
     for (std::size_t c = 0; c < row.size(); ++c)
-      if (set[c] != Set::wrapped) width[c] = std::max(width[c], width_of(row[c]));
+      width[c] = set[c] == Set::wrapped ? kLeastWrapped : std::max(width[c], width_of(row[c]));
+  const std::size_t others =
+      std::accumulate(width.begin() + 1, width.end(), kIndent) + kGap * (width.size() - 1);
+  const std::size_t room = kTextWidth - std::min(others, kTextWidth);
+  if (width[0] <= room) return width;
+  width[0] = 0;
+  for (const auto& row : rows)
+    if (const std::size_t first = width_of(row[0]); first <= room)
+      width[0] = std::max(width[0], first);
+  return width;
+}
+
+}  // namespace
+
+std::size_t width_of(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+std::string aligned(const std::vector<std::vector<std::string>>& rows,
+                    const std::vector<Set>& set) {
+  const std::vector<std::size_t> width = widths_of(rows, set);
   std::string text;
   for (const auto& row : rows) {
-    std::string line(2, ' ');
+    std::string line(kIndent, ' ');
     for (std::size_t c = 0; c < row.size(); ++c) {
-      if (c > 0) line += "  ";
+      if (c > 0) line += std::string(kGap, ' ');
       if (set[c] == Set::wrapped) {
         const std::size_t indent = width_of(line);
-        const auto lines = broken(row[c], kTextWidth - std::min(indent, kTextWidth - 20));
+        const auto lines =
+            broken(row[c], kTextWidth - std::min(indent, kTextWidth - kLeastWrapped));
         for (std::size_t i = 0; i < lines.size(); ++i)
           line += (i > 0 ? "\n" + std::string(indent, ' ') : "") + lines[i];
+        continue;
+      }
+      if (width_of(row[c]) > width[c]) {  // the first
+        line += row[c];
+        if (row.size() == 1) continue;
+        text += line + "\n";
+        line.assign(kIndent + width[c], ' ');
         continue;
       }
       const std::string pad(width[c] - width_of(row[c]), ' ');

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace axisfit {
@@ -15,7 +16,11 @@ enum class Set {
   wrapped,  ///< left, and broken at blanks where the line would be too long; the last column only
 };
 
-/// Rows as columns, a line or more for each, all ending with '\n'.
+/// Its width in characters, which may have several bytes.
+std::size_t width_of(std::string_view text);
+
+/// Rows as columns, a line or more for each, all ending with '\n'. Where lines would be too long, a
+/// first cell that is the reason stands on a line of its own, above the others.
 std::string aligned(const std::vector<std::vector<std::string>>& rows, const std::vector<Set>& set);
 
 /// A paragraph, broken at blanks, each line after `indent` blanks and ending with '\n'.

@@ -20,29 +20,40 @@ struct Trial {
   ContinuationResult result;
 };
 
+/// Where the only start of a fit is.
+Progress progress_of(const Stage& stage) {
+  return {.phase = stage.coupling_rate > 0.0
+                       ? fmt::format("fitting, held to the data at {:.3g} 1/s", stage.coupling_rate)
+                       : "fitting, running free",
+          .best = stage.reduced_cost};
+}
+
 /// All starts, spread over threads; every one is independent of the others.
 std::vector<Trial> run_starts(const Job& job, const ParameterSpace& space,
-                              const std::function<void(const Progress&)>& progress) {
+                              const ProgressReport& progress) {
   const int starts = std::max(1, job.options.starts);
   std::vector<Trial> trials(static_cast<std::size_t>(starts));
   std::mutex mutex;
-  int done = 0;
+  Progress all{.phase = "starts", .of = starts};
+  if (progress && starts > 1) progress(all);
   parallel_for(trials.size(), thread_count(job.options.threads), [&](std::size_t i) {
-    const int start = static_cast<int>(i);
     Trial& trial = trials[i];
-    trial.from = draw_start(job, start);
+    trial.interrupted = is_set(job.options.stop);
+    if (trial.interrupted) return;  // a million starts would take their time to throw
+    trial.from = draw_start(job, static_cast<int>(i));
     try {
       trial.result =
           continue_to_free(job, space, space.internal(trial.from), [&](const Stage& stage) {
-            const std::lock_guard lock(mutex);
-            if (progress) progress({done, starts, start, stage});
+            if (progress && starts == 1) progress(progress_of(stage));
           });
     } catch (const Interrupted&) {
       trial.interrupted = true;
       return;
     }
     const std::lock_guard lock(mutex);
-    ++done;
+    ++all.done;
+    if (trial.result.last.usable) all.best = std::fmin(all.best, trial.result.last.reduced_cost);
+    if (progress && starts > 1) progress(all);
   });
   return trials;
 }
@@ -182,7 +193,7 @@ std::vector<double> draw_start(const Job& job, int start) {
   return values;
 }
 
-FitResult estimate(const Job& job, const std::function<void(const Progress&)>& progress) {
+FitResult estimate(const Job& job, const ProgressReport& progress) {
   const ParameterSpace space(job);
   std::vector<Trial> trials = run_starts(job, space, progress);
   const bool interrupted = std::erase_if(trials, [](const Trial& t) { return t.interrupted; }) > 0;
@@ -227,7 +238,7 @@ FitResult estimate(const Job& job, const std::function<void(const Progress&)>& p
   return result;
 }
 
-FitResult estimate_with_noise(Job& job, const std::function<void(const Progress&)>& progress) {
+FitResult estimate_with_noise(Job& job, const ProgressReport& progress) {
   FitResult result = estimate(job, progress);
   Job again = job;
   again.options.starts = 1;

@@ -1,7 +1,6 @@
 // The fit of a job, from its data to a judged result.
 #pragma once
 
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "fit/continuation.h"
 #include "fit/identifiability.h"
+#include "fit/progress.h"
 #include "fit/residual.h"
 #include "fit/uncertainty.h"
 
@@ -90,14 +90,6 @@ struct FitResult {
   std::vector<StartResult> starts;
 };
 
-/// What a fit tells while it runs. Called from several threads, one at a time.
-struct Progress {
-  int starts_done = 0;
-  int starts = 1;
-  int start = 0;  ///< the start that `stage` belongs to
-  Stage stage;
-};
-
 /// Where start number `start` begins: the initial values for the first, values drawn around them
 /// for the others, by the job's seed and spread and the start's number alone.
 std::vector<double> draw_start(const Job& job, int start);
@@ -107,14 +99,14 @@ std::vector<double> values_of(const FitResult& result);
 
 /// Fits a job. The result depends on the job alone, not on the number of threads. When the job's
 /// stop flag is set, it is that of the starts that were finished; Interrupted where there is none.
-FitResult estimate(const Job& job, const std::function<void(const Progress&)>& progress = {});
+FitResult estimate(const Job& job, const ProgressReport& progress = {});
 
 /// Fits a job, and where the noise of a measurement is to be estimated together with the
 /// parameters, goes on in turn: sigma in the job becomes the size of the residual, degrees of
 /// freedom counted, and the job is fitted again with it, until both stay. That is the maximum of
 /// the likelihood of independent normal noise. A signal has one sigma in all recordings in which it
 /// is to be estimated.
-FitResult estimate_with_noise(Job& job, const std::function<void(const Progress&)>& progress = {});
+FitResult estimate_with_noise(Job& job, const ProgressReport& progress = {});
 
 /// The model with the estimates in place of the free quantities that all recordings share.
 Model<double> fitted_model(const Job& job, const FitResult& result);

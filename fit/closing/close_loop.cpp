@@ -24,7 +24,7 @@ constexpr double kUndecided = 9.2;
 class Loop {
  public:
   Loop(const Job& job, const FitResult& first, const CloseLoopOptions& options,
-       const LoopProgress& progress)
+       const ProgressReport& progress)
       : options_(options),
         first_(first),
         progress_(progress),
@@ -163,8 +163,8 @@ class Loop {
     accepted_.clear();
   }
 
-  void tell(const std::string& phase, int done = 0, int of = 0) const {
-    if (progress_) progress_(phase, done, of);
+  void tell(const std::string& phase, int done = 0, int of = 0) {
+    if (progress_) progress_({phase, done, of, current().fit.reduced_chi_square});
   }
 
   /// Every second of ten stretches of each recording is left to be judged only.
@@ -210,14 +210,14 @@ class Loop {
       const Promise& p = promises[i];
       {
         const std::lock_guard lock(mutex);
-        tell("refitting with " + p.candidate.name, done, static_cast<int>(promises.size()));
+        tell("trying " + p.candidate.name, done, static_cast<int>(promises.size()));
       }
       Extension& e = extensions[i];
       e = extend(current().job, p.candidate, p.score.values, p.score.strengths, p.score.shapes);
       e.score = p.score.gain;
       judge(e, before, chance);
       const std::lock_guard lock(mutex);
-      ++done;
+      tell("trying " + p.candidate.name, ++done, static_cast<int>(promises.size()));
     });
     // Of several settings of one candidate the best counts.
     std::vector<Extension*> contenders;
@@ -453,7 +453,7 @@ class Loop {
 
   const CloseLoopOptions options_;
   const FitResult& first_;
-  const LoopProgress& progress_;
+  const ProgressReport& progress_;
   const int threads_;
   ClosedLoop result_;
   Path safe_;                 ///< the latest state that can be a result
@@ -527,7 +527,7 @@ std::string Loop::verdict() const {
 }  // namespace
 
 ClosedLoop close_loop(const Job& job, const FitResult& first, const CloseLoopOptions& options,
-                      const LoopProgress& progress) {
+                      const ProgressReport& progress) {
   return Loop(job, first, options, progress).run();
 }
 

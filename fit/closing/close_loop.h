@@ -6,7 +6,6 @@
 // catalogue explains is drawn as a curve without a name.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -62,12 +61,9 @@ struct ClosedLoop {
   std::vector<Rivals> rivals;        ///< the effects that stay undecided
 };
 
-/// Tells what is being done: a phase in words, and how much of it is done.
-using LoopProgress = std::function<void(const std::string& phase, int done, int of)>;
-
 /// `first` is the fit of the job as declared. When the job's stop flag is set, the effects accepted
 /// so far are the result.
 ClosedLoop close_loop(const Job& job, const FitResult& first, const CloseLoopOptions& options = {},
-                      const LoopProgress& progress = {});
+                      const ProgressReport& progress = {});
 
 }  // namespace axisfit

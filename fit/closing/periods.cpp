@@ -46,7 +46,8 @@ Eigen::VectorXcd response(const Recording& recording, const std::vector<std::com
 
 std::vector<double> periods_in(const Recording& recording, const Prediction& prediction,
                                const Coupling& coupling, const Eigen::VectorXd& residuals,
-                               const Eigen::MatrixXd& basis, std::size_t most, bool of_drive) {
+                               const Eigen::MatrixXd& basis, std::size_t most, bool of_drive,
+                               const StopFlag* stop) {
   const std::size_t n = prediction.samples.size();
   if (n < 16 || n != recording.times.size()) return {};
   double low = INFINITY, high = -INFINITY, speed = 0.0;
@@ -68,6 +69,7 @@ std::vector<double> periods_in(const Recording& recording, const Prediction& pre
   const Eigen::VectorXd rest = residuals - basis * (basis.transpose() * residuals);
   const double spacing = 0.25 / stroke;  // 1/m, a quarter of a cycle over the stroke
   for (double wave = 2.0 * spacing; wave < 1.0 / shortest; wave += spacing) {
+    if (is_set(stop)) throw Interrupted();
     std::vector<std::complex<double>> force(n);
     for (std::size_t i = 0; i < n; ++i)
       force[i] = std::polar(1.0, 2.0 * std::numbers::pi * wave * prediction.samples[i].position) *

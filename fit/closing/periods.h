@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "fit/interrupt.h"
 #include "fit/residual.h"
 
 namespace axisfit {
@@ -14,10 +15,13 @@ namespace axisfit {
 /// what the free parameters explain of them already, in orthonormal columns of as many rows. With
 /// `of_drive` the force is in proportion to the drive's, as that of a ripple of its torque.
 ///
+/// Throws Interrupted when the stop flag is set.
+///
 /// A spectrum in space. The response to the force is that of a rigid axis held by the coupling:
 /// good enough to find a period, not to judge it.
 std::vector<double> periods_in(const Recording& recording, const Prediction& prediction,
                                const Coupling& coupling, const Eigen::VectorXd& residuals,
-                               const Eigen::MatrixXd& basis, std::size_t most, bool of_drive);
+                               const Eigen::MatrixXd& basis, std::size_t most, bool of_drive,
+                               const StopFlag* stop = nullptr);
 
 }  // namespace axisfit

@@ -63,7 +63,7 @@ Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::Vecto
       auto& periods = of_drive ? s.drive_periods : s.periods;
       for (const double period :
            periods_in(recording, prediction, coupling, base.residuals.segment(row, rows),
-                      basis.middleRows(row, rows), kPeriods, of_drive))
+                      basis.middleRows(row, rows), kPeriods, of_drive, job.options.stop))
         periods.push_back(period);
     }
     row += rows;

@@ -5,6 +5,7 @@ complete -c fit-params -l profile -d 'likelihood profiles, of all or of =NAME,NA
 complete -c fit-params -l suggest-experiment -d 'say which motion to record next'
 complete -c fit-params -l check -d 'say what the recordings can tell, do not fit'
 complete -c fit-params -l data -x -a '(__fish_complete_directories)' -d 'folder of the recordings'
+complete -c fit-params -l from -r -d 'begin at the values of an axis'
 complete -c fit-params -l output -x -a '(__fish_complete_directories)' -d 'folder for the results'
 complete -c fit-params -l json -d 'print result.json instead of the table'
 complete -c fit-params -l quiet -d 'print nothing but errors'

@@ -4,17 +4,20 @@
 #include <matio.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <chrono>
 #include <csignal>
 #include <cstddef>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -40,21 +43,61 @@ struct Outcome {
   std::string out, err;
 };
 
+/// A terminal that shows nothing to anybody, but keeps what is written to it.
+class Terminal {
+ public:
+  Terminal() : master_(posix_openpt(O_RDWR | O_NOCTTY)) {
+    if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0)
+      throw std::runtime_error("no terminal to be had");
+    path_ = ptsname(master_);
+    slave_ = open(path_.c_str(), O_RDWR | O_NOCTTY);  // else reading would end at once
+    reader_ = std::thread([this] {
+      char buffer[4096];
+      for (ssize_t n; (n = read(master_, buffer, sizeof buffer)) > 0;)
+        text_.append(buffer, static_cast<std::size_t>(n));
+    });
+  }
+  ~Terminal() {
+    finish();
+    close(master_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  const std::string& path() const { return path_; }
+  /// All that was written, when nobody writes any more.
+  const std::string& finish() {
+    if (reader_.joinable()) {
+      close(slave_);
+      reader_.join();
+    }
+    return text_;
+  }
+
+ private:
+  int master_ = -1, slave_ = -1;
+  std::string path_, text_;
+  std::thread reader_;
+};
+
 class CommandLineTest : public ::testing::Test {
  protected:
-  CommandLineTest() { write_recordings(folder_); }
+  CommandLineTest() {
+    write_recordings(folder_);
+    setenv("TERM", "xterm", 1);
+    unsetenv("NO_COLOR");
+  }
 
-  /// Runs a program with its standard output going to a file; returns its exit code.
-  int spawn(const std::string& program, std::vector<std::string> arguments,
-            const std::string& out) {
+  /// Runs a program with its outputs going to files; returns its exit code.
+  int spawn(const std::string& program, std::vector<std::string> arguments, const std::string& out,
+            const std::string& err) {
     arguments.insert(arguments.begin(), std::string(AXISFIT_BIN) + "/" + program);
     std::vector<char*> argv;
     for (std::string& a : arguments) argv.push_back(a.data());
     argv.push_back(nullptr);
-    const std::string err = outputs_.path("err");
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    constexpr int kNew = O_WRONLY | O_CREAT | O_TRUNC;
+    constexpr int kNew = O_WRONLY | O_CREAT | O_TRUNC | O_NOCTTY;
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), kNew, 0600);
     posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), kNew, 0600);
@@ -71,7 +114,8 @@ class CommandLineTest : public ::testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   Outcome run(const std::string& program, std::vector<std::string> arguments) {
-    const int exit_code = spawn(program, std::move(arguments), outputs_.path("out"));
+    const int exit_code =
+        spawn(program, std::move(arguments), outputs_.path("out"), outputs_.path("err"));
     return {exit_code, outputs_.read("out"), outputs_.read("err")};
   }
   Outcome fit(std::vector<std::string> arguments) {
@@ -102,6 +146,8 @@ TEST_F(CommandLineTest, HelpHasExamples) {
     EXPECT_NE(help.out.find("Examples:\n  " + std::string(program) + " "), std::string::npos);
     EXPECT_NE(help.out.find("Exit codes: 0 "), std::string::npos);
     EXPECT_EQ(help.err, "");
+    std::istringstream lines(help.out);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << line;
     const Outcome version = run(program, {"--version"});
     EXPECT_EQ(version.exit_code, 0);
     EXPECT_TRUE(version.out.starts_with("axisfit "));
@@ -257,6 +303,87 @@ TEST_F(CommandLineTest, CtrlCKeepsWhatIsFinished) {
   EXPECT_EQ(json.at("interrupted"), true);
   EXPECT_GE(json.at("starts").size(), 1u);
   EXPECT_LT(json.at("starts").size(), 100000u);
+
+  // How to go on is for the user, not for who reads the result; and it works.
+  EXPECT_EQ(stopped.out.find("--from"), std::string::npos);
+  const std::string results = outputs_.path("results"), axis = results + "/fitted.yaml";
+  EXPECT_NE(stopped.err.find(results + "/result.json"), std::string::npos) << stopped.err;
+  EXPECT_NE(stopped.err.find("\n  fit-params " + folder_.path("job.yaml") + " --from " + axis +
+                             " --output " + results + "\n"),
+            std::string::npos)
+      << stopped.err;
+  interrupt_after_ = std::chrono::milliseconds::zero();
+  const Json again =
+      Json::parse(fit({folder_.path("job.yaml"), "--json", "--from", axis}).out).at("parameters");
+  for (std::size_t i = 0; i < again.size(); ++i)
+    EXPECT_EQ(again[i].at("initial"), json.at("parameters")[i].at("value"));
+}
+
+TEST_F(CommandLineTest, CtrlCBeforeAnythingIsFinishedSaysSo) {
+  interrupt_after_ = std::chrono::milliseconds(500);
+  const Outcome stopped =
+      fit({AXISFIT_CONFIGS "/jobs/close-loop.yaml", "--output", outputs_.path("results")});
+  EXPECT_EQ(stopped.exit_code, 130);
+  EXPECT_EQ(stopped.out, "");
+  EXPECT_TRUE(stopped.err.starts_with("Stopped before a fit was finished")) << stopped.err;
+  EXPECT_FALSE(std::filesystem::exists(outputs_.path("results")));
+}
+
+TEST_F(CommandLineTest, ProgressIsShownOnATerminalAndTakenAway) {
+  const std::string many = job(fit_job("{starts: 1000000}"));
+  constexpr const char* kClear = "\r\033[K";
+  interrupt_after_ = std::chrono::milliseconds(1500);
+  const auto shown = [&](const std::vector<std::string>& more) {
+    Terminal terminal;
+    std::vector<std::string> arguments{many};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(spawn("fit-params", arguments, outputs_.path("out"), terminal.path()), 130);
+    return terminal.finish();
+  };
+  const std::string text = shown({});
+  EXPECT_NE(text.find(std::string(kClear) + "starts  [..........]  "), std::string::npos) << text;
+  EXPECT_NE(text.find(" of 1000000 done"), std::string::npos) << text;
+  // What follows begins on a clean line.
+  EXPECT_TRUE(text.substr(text.rfind(kClear)).starts_with(std::string(kClear) + "\r\nNothing is"))
+      << text;
+  EXPECT_EQ(outputs_.read("out").find('\033'), std::string::npos);
+  EXPECT_EQ(shown({"--quiet"}), "");
+  setenv("TERM", "dumb", 1);
+  EXPECT_TRUE(shown({}).starts_with("\r\nNothing is written"));
+}
+
+TEST_F(CommandLineTest, WhatIsQuickShowsNoProgress) {
+  Terminal terminal;
+  EXPECT_EQ(spawn("simulate-axis", {kXAxis, motion()}, outputs_.path("out"), terminal.path()), 0);
+  EXPECT_EQ(terminal.finish(), "");
+}
+
+TEST_F(CommandLineTest, ColoursAreForTerminalsThatTakeThem) {
+  const std::string path = job();
+  const auto printed = [&] {
+    Terminal terminal;
+    EXPECT_EQ(spawn("fit-params", {path}, terminal.path(), outputs_.path("err")), 0);
+    return terminal.finish();
+  };
+  EXPECT_NE(printed().find("\033[1mParameters\033[0m"), std::string::npos);
+  setenv("NO_COLOR", "1", 1);
+  const std::string plain = printed();
+  EXPECT_NE(plain.find("Parameters"), std::string::npos);
+  EXPECT_EQ(plain.find('\033'), std::string::npos);
+  setenv("NO_COLOR", "", 1);  // as if it were not set
+  EXPECT_NE(printed().find('\033'), std::string::npos);
+  setenv("TERM", "dumb", 1);
+  EXPECT_EQ(printed().find('\033'), std::string::npos);
+}
+
+TEST_F(CommandLineTest, AMisspeltColumnIsNamedWithTheColumnsThereAre) {
+  const std::string bad =
+      job(replaced(fit_job(), "{column: velocity_mps, unit: m/s, sigma: 2 mm/s}",
+                   "{column: velocty_mps, unit: m/s}"));
+  const std::string csv = folder_.path("short.csv");
+  EXPECT_EQ(folder_.without_path(fit({bad}).err),
+            "job.yaml:7:26: no column 'velocty_mps' in short.csv; did you mean 'velocity_mps'? It "
+            "has command_v, motor_current_a, time_s, velocity_mps\n");
 }
 
 TEST_F(CommandLineTest, NoLoopIsClosedAroundAnUnusableFit) {
@@ -393,8 +520,8 @@ TEST_F(CommandLineTest, RecordingsMayBeInAnotherFolder) {
 
 TEST_F(CommandLineTest, AFullDeviceIsAnError) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "There is no /dev/full here.";
-  EXPECT_EQ(spawn("simulate-axis", {kXAxis, motion()}, "/dev/full"), 2);
-  EXPECT_EQ(spawn("fit-params", {job()}, "/dev/full"), 2);
+  EXPECT_EQ(spawn("simulate-axis", {kXAxis, motion()}, "/dev/full", outputs_.path("err")), 2);
+  EXPECT_EQ(spawn("fit-params", {job()}, "/dev/full", outputs_.path("err")), 2);
 }
 
 // simulate-axis

@@ -630,7 +630,7 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
            // Columns.
            {"column: v,", "column: w,", "7:26: no column 'w' in data.csv; it has f, t_ms, u, v, x"},
            {"column: t_ms", "column: tms",
-            "4:20: no column 'tms' in data.csv; did you mean 't_ms'?"},
+            "4:20: no column 'tms' in data.csv; did you mean 't_ms'? It has f, t_ms, u, v, x"},
            {"column: u, ", "", "6:16: key 'column' is missing in command"},
            {"unit: ms", "unit: m",
             "4:32: 'm' does not fit a quantity in 's'; write for example 's'"},
@@ -753,7 +753,7 @@ fit: {loss: cubes}
 colour: red
 )"),
       "job.yaml:4:11: role must be one of fit, validate, not 'train'\n"
-      "job.yaml:5:20: no column 'time' in data.csv; did you mean 't_ms'?\n"
+      "job.yaml:5:20: no column 'time' in data.csv; did you mean 't_ms'? It has f, t_ms, u, v, x\n"
       "job.yaml:8:55: unknown key 'sing'; did you mean 'sign'?\n"
       "job.yaml:9:5: key 'signals' is missing in entry 2 of recordings\n"
       "job.yaml:9:11: none.csv: cannot be opened (No such file or directory); check the path "

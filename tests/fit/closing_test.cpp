@@ -139,9 +139,9 @@ TEST(CloseLoop, KeepsWhatIsAcceptedWhenItIsStopped) {
   for (const bool late : {true, false}) {
     stop = !late;
     int phases = 0;
-    const ClosedLoop loop = close_loop(job, fit, {}, [&](const std::string& phase, int, int) {
-      if (phase == "looking for suspects") ++phases;
-      if (phase == "is drive_lag needed?" || phases > 1) stop = true;
+    const ClosedLoop loop = close_loop(job, fit, {}, [&](const Progress& p) {
+      if (p.phase == "looking for suspects") ++phases;
+      if (p.phase == "is drive_lag needed?" || phases > 1) stop = true;
     });
     EXPECT_EQ(loop.interrupted, stop.load());
     EXPECT_EQ(accepted(loop), late ? Names{"drive_lag"} : Names{});
@@ -175,12 +175,15 @@ TEST(CloseLoop, IsTheSameForAnyNumberOfThreads) {
 TEST(CloseLoop, TellsWhatItDoes) {
   const Job job = secret_named("coulomb_friction").job();
   std::set<std::string> phases;
-  close_loop(job, estimate(job), {}, [&](const std::string& phase, int done, int of) {
-    EXPECT_LE(done, of);
-    phases.insert(phase);
+  std::vector<double> best;
+  close_loop(job, estimate(job), {}, [&](const Progress& p) {
+    EXPECT_LE(p.done, p.of);
+    best.push_back(p.best);
+    phases.insert(p.phase);
   });
   EXPECT_TRUE(phases.contains("looking for suspects"));
-  EXPECT_TRUE(phases.contains("refitting with coulomb_friction"));
+  EXPECT_TRUE(phases.contains("trying coulomb_friction"));
+  EXPECT_GT(best.front(), 2.0 * best.back());  // of the model so far
 }
 
 TEST(CloseLoop, NeedsAUsableFit) {

@@ -157,7 +157,7 @@ TEST(Estimate, KeepsTheStartsThatWereFinishedWhenItIsStopped) {
   job.options.threads = 1;
   StopFlag stop = false;
   job.options.stop = &stop;
-  const FitResult result = estimate(job, [&](const Progress& p) { stop = p.starts_done == 1; });
+  const FitResult result = estimate(job, [&](const Progress& p) { stop = p.done == 1; });
   EXPECT_TRUE(result.usable);
   EXPECT_TRUE(result.interrupted);
   EXPECT_EQ(result.starts.size(), 1u);

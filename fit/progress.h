@@ -1,0 +1,21 @@
+// What long work tells of itself while it runs.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+
+namespace axisfit {
+
+struct Progress {
+  std::string phase;  ///< what is being done, in words
+  int done = 0;       ///< parts of the phase that are finished
+  int of = 0;         ///< parts that it has; zero where it has none
+  /// Reduced chi-square of the best model so far; not a number before there is one.
+  double best = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Called from several threads, one at a time.
+using ProgressReport = std::function<void(const Progress&)>;
+
+}  // namespace axisfit
