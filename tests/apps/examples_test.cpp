@@ -1,5 +1,5 @@
-// The worked examples of docs/examples.md find the truth of their recordings, as testdata/README.md
-// states it. EMPS, a measured axis, has a test of its own.
+// The worked examples of docs/examples.md and docs/tutorial.md find the truth of their recordings,
+// as testdata/README.md states it. EMPS, a measured axis, has a test of its own.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,6 +58,19 @@ TEST(ExamplesTest, ScrewWithoutDryFrictionIsGivenIt) {
   ASSERT_TRUE(outcome.loop);
   EXPECT_EQ(outcome.loop->models.size(), 2u);
   expect_truth(outcome, truth_of_the_screw());
+}
+
+// docs/tutorial.md
+TEST(ExamplesTest, BentScrewIsGivenAForceOncePerTurn) {
+  const Outcome outcome = outcome_of("screw-bent.yaml", {.close_loop = true});
+  EXPECT_GT(outcome.first.reduced_chi_square, 10.0);
+  ASSERT_TRUE(outcome.loop);
+  EXPECT_EQ(outcome.loop->models.size(), 2u);
+  Truth truth = truth_of_the_screw();
+  truth.insert({{"periodic_force.F_s1", 6.0},
+                {"periodic_force.F_c1", 0.0},
+                {"periodic_force.period", 0.01}});
+  expect_truth(outcome, truth);
 }
 
 TEST(ExamplesTest, TwoPayloads) {
