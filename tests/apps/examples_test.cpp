@@ -1,0 +1,96 @@
+// The worked examples of docs/examples.md and docs/tutorial.md find the truth of their recordings,
+// as testdata/README.md states it. EMPS, a measured axis, has a test of its own.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include "apps/outcome.h"
+
+namespace axisfit {
+namespace {
+
+using Truth = std::map<std::string, double>;
+
+Outcome outcome_of(const std::string& job, const Wishes& wishes = {}) {
+  return find_outcome(read_job_file(AXISFIT_CONFIGS "/jobs/" + job), wishes);
+}
+
+/// Every parameter lies within three standard errors of the truth, and nothing but noise is left in
+/// any recording, fitted or not.
+void expect_truth(const Outcome& outcome, const Truth& truth) {
+  const FitResult& fit = outcome.fit();
+  ASSERT_TRUE(fit.usable) << fit.verdict;
+  EXPECT_NEAR(fit.reduced_chi_square, 1.0, 0.05);
+  EXPECT_TRUE(outcome.diagnosis->explained);
+  ASSERT_EQ(fit.parameters.size(), truth.size());
+  for (const ParameterResult& p : fit.parameters) {
+    ASSERT_TRUE(truth.contains(p.name)) << p.name;
+    EXPECT_TRUE(p.uncertainty.determined) << p.name;
+    EXPECT_NEAR(p.value, truth.at(p.name), 3.0 * p.uncertainty.standard_error) << p.name;
+  }
+}
+
+Truth truth_of_the_paper() {
+  return {{"V_L", 2.7}, {"B_a", 200.0}, {"b_g", 1500.0}, {"k_g", 5e6}, {"T_p", 0.04}};
+}
+
+/// What turns is seen at the table, r_g^2 being the ratio.
+Truth truth_of_the_screw() {
+  const double r_g = 10e-3 / (2.0 * std::numbers::pi);
+  return {{"M", 62.0 + 6e-5 / (r_g * r_g)},
+          {"B_a", 180.0 + 2e-4 / (r_g * r_g)},
+          {"coulomb_friction.F_c", 35.0},
+          {"constant_force.F_0", -6.0}};
+}
+
+TEST(ExamplesTest, PaperStep) { expect_truth(outcome_of("paper.yaml"), truth_of_the_paper()); }
+
+TEST(ExamplesTest, PaperMove) { expect_truth(outcome_of("paper-move.yaml"), truth_of_the_paper()); }
+
+TEST(ExamplesTest, Screw) { expect_truth(outcome_of("screw.yaml"), truth_of_the_screw()); }
+
+TEST(ExamplesTest, ScrewWithoutDryFrictionIsGivenIt) {
+  const Outcome outcome = outcome_of("screw-viscous.yaml", {.close_loop = true});
+  EXPECT_GT(outcome.first.reduced_chi_square, 100.0);
+  ASSERT_TRUE(outcome.loop);
+  EXPECT_EQ(outcome.loop->models.size(), 2u);
+  expect_truth(outcome, truth_of_the_screw());
+}
+
+// docs/tutorial.md
+TEST(ExamplesTest, BentScrewIsGivenAForceOncePerTurn) {
+  const Outcome outcome = outcome_of("screw-bent.yaml", {.close_loop = true});
+  EXPECT_GT(outcome.first.reduced_chi_square, 10.0);
+  ASSERT_TRUE(outcome.loop);
+  EXPECT_EQ(outcome.loop->models.size(), 2u);
+  Truth truth = truth_of_the_screw();
+  truth.insert({{"periodic_force.F_s1", 6.0},
+                {"periodic_force.F_c1", 0.0},
+                {"periodic_force.period", 0.01}});
+  expect_truth(outcome, truth);
+}
+
+TEST(ExamplesTest, TwoPayloads) {
+  const Outcome outcome = outcome_of("payload.yaml");
+  expect_truth(outcome, {{"M@empty", 146.0},
+                         {"M@loaded", 161.0},
+                         {"V_L", 2.7},
+                         {"B_a", 200.0},
+                         {"b_g", 1500.0},
+                         {"k_g", 5e6}});
+
+  // The masses err together, so that their difference is known much better than each of them.
+  const FitResult& fit = outcome.fit();
+  const double empty = fit.parameters[0].uncertainty.standard_error;
+  const double loaded = fit.parameters[1].uncertainty.standard_error;
+  const double error =
+      std::sqrt(empty * empty + loaded * loaded - 2.0 * fit.correlation(0, 1) * empty * loaded);
+  EXPECT_LT(error, 0.15 * loaded);
+  EXPECT_NEAR(fit.parameters[1].value - fit.parameters[0].value, 15.0, 3.0 * error);
+}
+
+}  // namespace
+}  // namespace axisfit
