@@ -186,7 +186,7 @@ class ConfigMap {
   template <class T>
   std::optional<ConfigNode> read(std::string_view key, T& value);
 
-  /// The value of a described key, missing or not as described.
+  /// The value of a described key: as required() or optional(), whichever its description says.
   std::optional<ConfigNode> given(std::string_view key);
 
   /// The value of a key. When it is missing: nothing, with a diagnostic at the start of the map.

@@ -48,8 +48,7 @@ struct Amount {
   std::string unit;
   double lower = -kUnlimited;  ///< in `unit`
   double upper = kUnlimited;
-  std::string
-      words{};  ///< unit and range for people, where the numbers above are not all: "+-limit"
+  std::string words{};  ///< for people, where the above do not tell all: "V, +-limit"
 };
 
 /// [lower, upper], two amounts.
