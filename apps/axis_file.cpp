@@ -11,17 +11,58 @@
 namespace axisfit {
 namespace {
 
-const std::vector<std::string> kDrives{"velocity_loop", "current_source", "force_source"};
-const std::vector<std::string> kTransmissions{"backlash", "rigid"};
+/// Keys for the quantities of a group.
+Section quantity_keys(std::string_view group) {
+  Section keys;
+  for (const QuantityEntry& entry : quantity_list())
+    if (entry.group == group) keys.push_back(Key::of(entry.quantity));
+  return keys;
+}
+
+Section effect_keys() {
+  Section keys;
+  const Effects<double> effects{};
+  visit_effects(effects, [&](std::size_t, const auto& effect) {
+    Section parameters = quantity_keys(effect.name);
+    // An effect that is not used is refused as a whole.
+    const std::string used = parameters.front().used;
+    for (Key& parameter : parameters) parameter.used.clear();
+    keys.push_back(Key::optional(std::string(effect.name), Map{std::move(parameters)},
+                                 Otherwise{"no such effect"}, std::string(effect.meaning)));
+    keys.back().used = used;
+  });
+  return keys;
+}
+
+Section instrument_keys() {
+  Section keys;
+  for (const SignalInfo& signal : kSignalTable) {
+    Section settings = quantity_keys(signal.name);
+    settings.push_back(Key::optional(
+        "noise", Amount{std::string(signal.unit), 0.0, 1e6}, Rig().noise[index_of(signal.signal)],
+        "standard deviation of noise, white and normal; simulate-axis only"));
+    keys.push_back(Key::optional(std::string(signal.name), Map{std::move(settings)},
+                                 Otherwise{"ideal"}, std::string(signal.meaning)));
+  }
+  return keys;
+}
+
+Section controller_keys() {
+  Section keys;
+  ControllerSettings settings;
+  visit_settings(settings,
+                 [&](const Quantity& quantity, double) { keys.push_back(Key::of(quantity)); });
+  return keys;
+}
 
 std::string describe(const Structure& structure) {
   return fmt::format("drive {} and transmission {}",
-                     kDrives[static_cast<std::size_t>(structure.drive)],
-                     kTransmissions[static_cast<std::size_t>(structure.transmission)]);
+                     drive_names()[static_cast<std::size_t>(structure.drive)],
+                     transmission_names()[static_cast<std::size_t>(structure.transmission)]);
 }
 
 void read_parameters(const ConfigNode& node, Model<double>& model) {
-  ConfigMap map(node);
+  ConfigMap map(node, keys_below(axis_keys(), "parameters"));
   const std::vector<double*> member = members(model);
   for (const QuantityEntry& entry : quantity_list()) {
     if (!entry.group.empty()) continue;
@@ -35,62 +76,80 @@ void read_parameters(const ConfigNode& node, Model<double>& model) {
       value = entry.quantity.symbol == "r_g" ? 1.0 : 0.0;
       continue;
     }
-    const bool compulsory = std::isnan(quantity.standard);
-    const auto given = compulsory ? map.required(quantity.symbol) : map.optional(quantity.symbol);
-    value = quantity.standard;
-    if (given) value = read_value(*given, quantity).value_or(quantity.upper);
+    value = std::isnan(quantity.standard) ? quantity.upper : quantity.standard;
+    map.read(quantity.symbol, value);
   }
   map.finish();
 }
 
 void read_initial(const ConfigNode& node, Model<double>& model) {
-  ConfigMap map(node);
+  ConfigMap map(node, keys_below(axis_keys(), "initial"));
   const std::vector<double*> member = members(model);
   for (const QuantityEntry& entry : quantity_list())
     if (entry.group == "initial" && is_used(entry, model.structure))
-      if (const auto given = map.optional(entry.quantity.symbol))
-        *member[entry.index] = read_value(*given, entry.quantity).value_or(0.0);
+      map.read(entry.quantity.symbol, *member[entry.index]);
   map.finish();
 }
 
 void read_instruments(const ConfigNode& node, Rig& rig) {
-  ConfigMap map(node);
+  const Section& keys = keys_below(axis_keys(), "instruments");
+  ConfigMap map(node, keys);
+  const std::vector<double*> member = members(rig.model);
   for (const SignalInfo& signal : kSignalTable) {
     const auto given = map.optional(signal.name);
     if (!given) continue;
-    ConfigMap instrument(*given);
-    const std::vector<double*> member = members(rig.model);
+    ConfigMap instrument(*given, keys_below(keys, signal.name));
     for (const QuantityEntry& entry : quantity_list())
-      if (entry.group == signal.name)
-        if (const auto value = instrument.optional(entry.quantity.symbol))
-          *member[entry.index] =
-              read_value(*value, entry.quantity).value_or(entry.quantity.standard);
-    if (const auto noise = instrument.optional("noise"))
-      rig.noise[index_of(signal.signal)] = noise->as_quantity(signal.unit, 0.0, 1e6).value_or(0.0);
+      if (entry.group == signal.name) instrument.read(entry.quantity.symbol, *member[entry.index]);
+    instrument.read("noise", rig.noise[index_of(signal.signal)]);
     instrument.finish();
   }
   map.finish();
 }
 
 void read_controller(const ConfigNode& node, ControllerSettings& settings) {
-  ConfigMap map(node);
-  const auto read = [&](std::string_view key, std::string_view unit, double lower, double upper,
-                        double& value) {
-    if (const auto given = map.optional(key))
-      value = given->as_quantity(unit, lower, upper).value_or(value);
-  };
-  read("period", "s", 1e-5, 1.0, settings.period);
-  read("track_period", "s", 1e-5, 10.0, settings.track_period);
-  read("k_ff", "1", 0.0, 100.0, settings.k_ff);
-  read("k_p", "1/s", 0.0, 1e5, settings.k_p);
-  read("k_i", "1/s^2", 0.0, 1e6, settings.k_i);
-  read("gain", "V s/m", 1e-3, 1e6, settings.gain);
-  read("limit", "V", 1e-3, 1e4, settings.limit);
-  read("counts_per_revolution", "1", 0.0, 1e9, settings.counts_per_revolution);
+  ConfigMap map(node, keys_below(axis_keys(), "controller"));
+  visit_settings(settings,
+                 [&](const Quantity& setting, double& value) { map.read(setting.symbol, value); });
   map.finish();
 }
 
 }  // namespace
+
+const Section& axis_keys() {
+  static const Section keys{
+      Key::optional("name", Text{}, Otherwise{"none"}, "for reports"),
+      Key::required("drive",
+                    Choice{{{"velocity_loop", "the paper's controller and current loop"},
+                            {"current_source", "an ideal power stage"},
+                            {"force_source", "the command is a force"}}},
+                    "what makes force of the command"),
+      Key::required("transmission",
+                    Choice{{{"backlash", "rack and pinion with play, a spring and a damper"},
+                            {"rigid", "motor and arm are one mass"}}},
+                    "what leads the force to the arm"),
+      Key::required("parameters", Map{quantity_keys("")}, "what the paper's model has"),
+      Key::optional("effects", Map{effect_keys()}, Otherwise{"none"},
+                    "what the paper's model lacks, by name: an effect is on because it is written"),
+      Key::optional("initial", Map{quantity_keys("initial")}, Otherwise{"all 0"},
+                    "state at the start"),
+      Key::optional("instruments", Map{instrument_keys()}, Otherwise{"ideal"},
+                    "gain, bias, lag, delay and noise per signal"),
+      Key::optional("controller", Map{controller_keys()}, Otherwise{"that of each key"},
+                    "the slave control unit: limits of motions, moves and the encoder; a fit does "
+                    "not use it, except to make a command of a `position_reference`")};
+  return keys;
+}
+
+const std::vector<std::string>& drive_names() {
+  static const auto names = std::get<Choice>(find_key(axis_keys(), "drive").form).names();
+  return names;
+}
+
+const std::vector<std::string>& transmission_names() {
+  static const auto names = std::get<Choice>(find_key(axis_keys(), "transmission").form).names();
+  return names;
+}
 
 std::optional<double> read_value(const ConfigNode& node, const Quantity& quantity) {
   return node.as_quantity(quantity.unit, quantity.lower, quantity.upper);
@@ -124,20 +183,18 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
 }
 
 void read_effects(const ConfigNode& node, Model<double>& model) {
-  ConfigMap map(node);
+  const Section& keys = keys_below(axis_keys(), "effects");
+  ConfigMap map(node, keys);
   visit_effects(model.effects, [&](std::size_t index, auto& effect) {
     const auto given = map.optional(effect.name);
     if (!given) return;
     model.structure.effects.set(index);
-    ConfigMap parameters(*given);
+    ConfigMap parameters(*given, keys_below(keys, effect.name));
     bool used = false;
     effect.visit(effect, [&](const Quantity& quantity, double& value) {
       used = used || is_used(*find_quantity(full_name(effect.name, quantity)), model.structure);
-      const bool compulsory = std::isnan(quantity.standard);
-      const auto text =
-          compulsory ? parameters.required(quantity.symbol) : parameters.optional(quantity.symbol);
-      value = compulsory ? 0.0 : quantity.standard;
-      if (text) value = read_value(*text, quantity).value_or(value);
+      value = std::isnan(quantity.standard) ? 0.0 : quantity.standard;
+      parameters.read(quantity.symbol, value);
     });
     parameters.finish();
     if (!used)
@@ -152,14 +209,14 @@ std::optional<Rig> read_axis_file(const std::string& path, Diagnostics& diagnost
   const auto root = ConfigNode::load(path, diagnostics);
   if (!root) return std::nullopt;
   Rig rig;
-  ConfigMap map(*root);
-  if (const auto name = map.optional("name")) rig.name = name->as_string().value_or("");
-  std::optional<std::size_t> drive, transmission;
-  if (const auto given = map.required("drive")) drive = given->as_choice(kDrives);
-  if (const auto given = map.required("transmission"))
-    transmission = given->as_choice(kTransmissions);
-  rig.model.structure.drive = static_cast<Drive>(drive.value_or(0));
-  rig.model.structure.transmission = static_cast<Transmission>(transmission.value_or(0));
+  ConfigMap map(*root, axis_keys());
+  map.read("name", rig.name);
+  std::optional<Drive> drive;
+  std::optional<Transmission> transmission;
+  map.read("drive", drive);
+  map.read("transmission", transmission);
+  rig.model.structure.drive = drive.value_or(Drive());
+  rig.model.structure.transmission = transmission.value_or(Transmission());
   if (const auto effects = map.optional("effects")) read_effects(*effects, rig.model);
   const auto parameters = map.required("parameters");
   const auto initial = map.optional("initial");
@@ -187,9 +244,10 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
   out << YAML::BeginMap;
   if (!rig.name.empty()) out << YAML::Key << "name" << YAML::Value << rig.name;
   const Structure& structure = rig.model.structure;
-  out << YAML::Key << "drive" << YAML::Value << kDrives[static_cast<std::size_t>(structure.drive)];
+  out << YAML::Key << "drive" << YAML::Value
+      << drive_names()[static_cast<std::size_t>(structure.drive)];
   out << YAML::Key << "transmission" << YAML::Value
-      << kTransmissions[static_cast<std::size_t>(structure.transmission)];
+      << transmission_names()[static_cast<std::size_t>(structure.transmission)];
 
   // The quantities in use by group, in the order of the list; those at their standard value are
   // left out where that is the custom (instruments, initial state).
@@ -230,19 +288,11 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
       if (const std::string name(signal.name); groups.contains(name)) emit(name, name);
     out << YAML::EndMap;
   }
-  const ControllerSettings& c = rig.controller;
   out << YAML::Key << "controller" << YAML::Value << YAML::BeginMap;
-  const auto setting = [&](const char* key, double value, std::string_view unit) {
-    out << YAML::Key << key << YAML::Value << with_unit(value, unit);
-  };
-  setting("period", c.period, "s");
-  setting("track_period", c.track_period, "s");
-  setting("k_ff", c.k_ff, "1");
-  setting("k_p", c.k_p, "1/s");
-  setting("k_i", c.k_i, "1/s^2");
-  setting("gain", c.gain, "V s/m");
-  setting("limit", c.limit, "V");
-  setting("counts_per_revolution", c.counts_per_revolution, "1");
+  visit_settings(rig.controller, [&](const Quantity& setting, double value) {
+    out << YAML::Key << std::string(setting.symbol) << YAML::Value
+        << with_unit(value, setting.unit);
+  });
   out << YAML::EndMap << YAML::EndMap;
   return with_comment(comment, out.c_str());
 }

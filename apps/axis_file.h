@@ -1,5 +1,5 @@
-// Axis files: an axis, its effects, controller and instruments, in YAML. docs/axis-file.md has
-// every key; they all come from the model's list of quantities.
+// Axis files: an axis, its effects, controller and instruments, in YAML. docs/axis-file.md tells of
+// every key; nearly all come from the model's list of quantities.
 #pragma once
 
 #include <optional>
@@ -9,6 +9,14 @@
 #include "sim/rig.h"
 
 namespace axisfit {
+
+/// The keys of an axis file. Among the parameters, effects and initial states are all that an axis
+/// can have; which of them one has depends on its drive and transmission.
+const Section& axis_keys();
+
+/// The words for drives and transmissions, in the order of their enumerations.
+const std::vector<std::string>& drive_names();
+const std::vector<std::string>& transmission_names();
 
 /// Reads an axis file. Nothing, with diagnostics, when anything in it is wrong.
 std::optional<Rig> read_axis_file(const std::string& path, Diagnostics& diagnostics);

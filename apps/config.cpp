@@ -498,7 +498,17 @@ std::optional<ConfigNode> ConfigMap::required(std::string_view key) {
   return value;
 }
 
+const Key& ConfigMap::described(std::string_view key) const {
+  if (keys_ == nullptr) throw std::logic_error("the keys of this map are not described");
+  return find_key(*keys_, key);
+}
+
+std::optional<ConfigNode> ConfigMap::given(std::string_view key) {
+  return described(key).is_required ? required(key) : optional(key);
+}
+
 std::optional<ConfigNode> ConfigMap::optional(std::string_view key) {
+  if (keys_ != nullptr) described(key);
   if (std::ranges::find(known_, key) == known_.end()) known_.emplace_back(key);
   const auto found =
       std::ranges::find_if(entries_, [key](const Entry& entry) { return entry.key.text() == key; });

@@ -3,8 +3,8 @@
 //
 //   Diagnostics diagnostics;
 //   if (const auto root = ConfigNode::load("job.yaml", diagnostics)) {
-//     ConfigMap map(*root);
-//     if (const auto mass = map.required("mass")) job.mass = mass->as_quantity("kg", 1e-3, 1e5);
+//     ConfigMap map(*root, job_keys());    // which describes the key "mass": unit, range, ...
+//     map.read("mass", job.mass);
 //     map.finish();
 //   }
 //   diagnostics.throw_if_any();
@@ -21,8 +21,11 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
+
+#include "apps/key.h"
 
 namespace axisfit {
 
@@ -124,6 +127,10 @@ class ConfigNode {
   /// "V/V"). Units are those of unit_factor() in apps/units.h, which also tells what it throws.
   std::optional<double> as_quantity(std::string_view si_unit, double lower, double upper) const;
 
+  std::optional<double> as_amount(const Amount& amount) const {
+    return as_quantity(amount.unit, amount.lower, amount.upper);
+  }
+
   /// A list of two quantities of which the first is less than the second: [40 N s/m, 1 kN s/m].
   std::optional<std::pair<double, double>> as_bounds(std::string_view si_unit, double lower,
                                                      double upper) const;
@@ -164,6 +171,24 @@ class ConfigMap {
   /// with nothing else.
   explicit ConfigMap(const ConfigNode& node);
 
+  /// The same for a map whose keys are described: asking for any other is a std::logic_error. The
+  /// description must outlive this map.
+  ConfigMap(const ConfigNode& node, const Section& keys) : ConfigMap(node) { describe(keys); }
+  ConfigMap(const ConfigNode& node, Section&& keys) = delete;
+
+  /// Describes the keys to be asked for from now on, where they depend on the value of another.
+  void describe(const Section& keys) { keys_ = &keys; }
+
+  /// Reads a described key as its description says, into a double, an integer, a bool, a text, an
+  /// enumeration or the index of a choice, or an optional one of these. Leaves `value` alone where
+  /// the key is missing or its value wrong, with a diagnostic unless the key may be missing.
+  /// Returns where it was given.
+  template <class T>
+  std::optional<ConfigNode> read(std::string_view key, T& value);
+
+  /// The value of a described key: as required() or optional(), whichever its description says.
+  std::optional<ConfigNode> given(std::string_view key);
+
   /// The value of a key. When it is missing: nothing, with a diagnostic at the start of the map.
   std::optional<ConfigNode> required(std::string_view key);
 
@@ -177,11 +202,49 @@ class ConfigMap {
   void finish() const;
 
  private:
+  const Key& described(std::string_view key) const;
+
   ConfigNode node_;
+  const Section* keys_ = nullptr;
   std::vector<Entry> entries_;
   std::vector<std::string> known_;  // the keys asked for
   bool any_key_ = false;
 };
+
+/// What an optional holds, or the type itself.
+template <class T>
+struct ValueOf {
+  using type = T;
+};
+template <class T>
+struct ValueOf<std::optional<T>> {
+  using type = T;
+};
+
+template <class T>
+std::optional<ConfigNode> ConfigMap::read(std::string_view key, T& value) {
+  using Value = typename ValueOf<T>::type;
+  const Form& form = described(key).form;
+  const auto node = given(key);
+  if (!node) return node;
+  const auto take = [&](const auto& read) {
+    if (read) value = static_cast<Value>(*read);
+  };
+  if constexpr (std::is_integral_v<Value> || std::is_enum_v<Value>) {
+    if (const auto* choice = std::get_if<Choice>(&form))
+      take(node->as_choice(choice->names()));
+    else if (std::holds_alternative<Flag>(form))
+      take(node->as_bool());
+    else
+      take(node->as_integer(std::get<Whole>(form).lower, std::get<Whole>(form).upper));
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    static_cast<void>(std::get<Text>(form));
+    take(node->as_string());
+  } else {
+    take(node->as_amount(std::get<Amount>(form)));
+  }
+  return node;
+}
 
 /// The text of a configuration file, with the lines of a comment first.
 std::string with_comment(const std::string& comment, const std::string& yaml);

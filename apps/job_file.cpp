@@ -15,7 +15,53 @@ namespace axisfit {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+constexpr std::string_view kContinuation = "continuation", kNone = "none";
+
+Section fit_keys() {
+  const FitOptions standard;
+  const Amount rate{"1/s", 1e-3, 1e6};
+  return {
+      Key::optional(
+          "coupling",
+          Either{{Choice{{{std::string(kContinuation),
+                           "firmly at first, then ever more loosely, at last free"},
+                          {std::string(kNone), "free running from the initial values"}}},
+                  Map{{Key::required("fixed", rate, "held at this rate to the end")}}}},
+          CouplingMode::continuation,
+          "how the simulation is held to the recorded velocity and position while it is fitted"),
+      Key::optional("first_coupling", rate,
+                    Otherwise{"one per sampling interval; 0.3 for the position alone"},
+                    "where a continuation starts"),
+      Key::optional("loss",
+                    Choice{{{"squares", "of the residuals"},
+                            {"huber", "residuals beyond `huber_width` count linearly"}}},
+                    standard.loss, "what is minimised"),
+      Key::optional("huber_width", Amount{"1", 0.1, 1e3}, standard.huber_width,
+                    "residual from which on it counts linearly, in sigma; needs `loss: huber`"),
+      Key::optional("max_iterations", Whole{1, 100000}, standard.max_iterations,
+                    "of each stage of a continuation; stages before the last end at 12"),
+      Key::optional("starts", Whole{1, 1000000}, standard.starts,
+                    "number of starts, the first from the initial values, the others random"),
+      Key::optional("spread", Amount{"1", 1.0, 1e6}, standard.spread,
+                    "of the random starts, on a log scale the factor either way"),
+      Key::optional("seed", Whole{}, standard.seed, "of the random starts"),
+      Key::optional("step", Amount{"s", 1e-7, 0.1}, standard.step,
+                    "longest step of the simulation")};
+}
+
+Section limit_keys() {
+  const Otherwise covered{"what the recordings covered"};
+  return {
+      Key::optional("travel", Bounds{{"m"}}, covered,
+                    "range of the arm's position, such as `[0 m, 1.2 m]`"),
+      Key::optional("speed", Amount{"m/s", 1e-6, 1e3}, covered, "largest of the arm, either way"),
+      Key::optional(
+          "voltage", Amount{"V", 1e-6, 1e6},
+          Otherwise{"of an electric drive the controller's `limit`; else what the "
+                    "recordings covered"},
+          "largest of the command, either way; never more than the controller's `limit`")};
+}
 
 class JobReader {
  public:
@@ -24,7 +70,7 @@ class JobReader {
 
   JobFile read() {
     if (const auto root = ConfigNode::load(path_, diagnostics_)) {
-      ConfigMap map(*root);
+      ConfigMap map(*root, job_keys());
       const auto axis = map.required("axis");
       bool model = false;
       if (axis) model = read_axis(*axis);
@@ -61,62 +107,53 @@ class JobReader {
 
   void read_options(const ConfigNode& node) {
     FitOptions& options = result_.job.options;
-    ConfigMap map(node);
-    if (const auto coupling = map.optional("coupling")) {
-      if (coupling->text() == "continuation") {
-        options.coupling = CouplingMode::continuation;
-      } else if (coupling->text() == "none") {
-        options.coupling = CouplingMode::none;
-      } else if (!coupling->is_map()) {
-        coupling->error("coupling must be continuation, none, or for example {fixed: 300 1/s}");
-      } else {
-        ConfigMap fixed(*coupling);
-        options.coupling = CouplingMode::fixed;
-        if (const auto rate = fixed.required("fixed"))
-          options.coupling_rate = rate->as_quantity("1/s", 1e-3, 1e6).value_or(1.0);
-        fixed.finish();
-      }
-    }
-    if (const auto rate = map.optional("first_coupling")) {
+    ConfigMap map(node, keys_below(job_keys(), "fit"));
+    if (const auto coupling = map.optional("coupling")) read_coupling(*coupling, options);
+    std::optional<double> first_rate;
+    if (const auto rate = map.read("first_coupling", first_rate)) {
       if (options.coupling == CouplingMode::continuation)
-        options.coupling_rate = rate->as_quantity("1/s", 1e-3, 1e6).value_or(0.0);
+        options.coupling_rate = first_rate.value_or(0.0);
       else
         rate->error(
             "first_coupling is where a continuation starts: it needs coupling: continuation");
     }
-    if (const auto loss = map.optional("loss")) {
-      static const std::vector<std::string> losses{"squares", "huber"};
-      options.loss = static_cast<Loss>(loss->as_choice(losses).value_or(0));
-    }
-    if (const auto width = map.optional("huber_width")) {
-      options.huber_width = width->as_number(0.1, 1e3).value_or(3.0);
-      if (options.loss != Loss::huber) width->error("huber_width needs loss: huber");
-    }
-    const auto integer = [&](const char* key, std::int64_t lower, std::int64_t upper, auto& value) {
-      if (const auto given = map.optional(key))
-        if (const auto read = given->as_integer(lower, upper))
-          value = static_cast<std::remove_reference_t<decltype(value)>>(*read);
-    };
-    integer("max_iterations", 1, 100000, options.max_iterations);
-    integer("starts", 1, 1000000, options.starts);
-    integer("seed", 0, std::numeric_limits<std::int64_t>::max(), options.seed);
-    if (const auto spread = map.optional("spread"))
-      options.spread = spread->as_number(1.0, 1e6).value_or(5.0);
-    if (const auto step = map.optional("step"))
-      options.step = step->as_quantity("s", 1e-7, 0.1).value_or(options.step);
+    map.read("loss", options.loss);
+    if (const auto width = map.read("huber_width", options.huber_width);
+        width && options.loss != Loss::huber)
+      width->error("huber_width needs loss: huber");
+    map.read("max_iterations", options.max_iterations);
+    map.read("starts", options.starts);
+    map.read("seed", options.seed);
+    map.read("spread", options.spread);
+    map.read("step", options.step);
     map.finish();
+  }
+
+  static void read_coupling(const ConfigNode& node, FitOptions& options) {
+    if (node.text() == kContinuation) {
+      options.coupling = CouplingMode::continuation;
+    } else if (node.text() == kNone) {
+      options.coupling = CouplingMode::none;
+    } else if (!node.is_map()) {
+      node.error("coupling must be continuation, none, or for example {fixed: 300 1/s}");
+    } else {
+      const auto& forms =
+          std::get<Either>(find_key(keys_below(job_keys(), "fit"), "coupling").form);
+      ConfigMap fixed(node, std::get<Map>(forms.forms.back()).keys);
+      options.coupling = CouplingMode::fixed;
+      fixed.read("fixed", options.coupling_rate);
+      fixed.finish();
+    }
   }
 
   void read_limits(const ConfigNode& node) {
     MachineLimits& limits = result_.limits;
-    ConfigMap map(node);
+    ConfigMap map(node, keys_below(job_keys(), "limits"));
     if (const auto travel = map.optional("travel"))
       if (const auto range = travel->as_bounds("m", -kUnlimited, kUnlimited))
         std::tie(limits.lowest, limits.highest) = *range;
-    if (const auto speed = map.optional("speed"))
-      limits.speed = speed->as_quantity("m/s", 1e-6, 1e3);
-    if (const auto voltage = map.optional("voltage"))
-      limits.voltage = voltage->as_quantity("V", 1e-6, 1e6);
+    map.read("speed", limits.speed);
+    map.read("voltage", limits.voltage);
     map.finish();
   }
 
@@ -145,6 +182,20 @@ class JobReader {
 };
 
 }  // namespace
+
+const Section& job_keys() {
+  static const Section keys{
+      Key::required("axis", Text{}, "the axis file"),
+      Key::optional("effects", Map{keys_below(axis_keys(), "effects")}, Otherwise{"none"},
+                    "effects to add to those of the axis file, or to replace; written as there"),
+      Key::required("recordings", List{{Map{recording_keys()}}},
+                    "what was recorded; at least one must have the role `fit`"),
+      Key::required("free", Map{free_quantities(), 1}, "the quantities to fit; at least one"),
+      Key::optional("fit", Map{fit_keys()}, Otherwise{"that of each key"}, "how to fit"),
+      Key::optional("limits", Map{limit_keys()}, Otherwise{"that of each key"},
+                    "what the machine allows in the next experiment")};
+  return keys;
+}
 
 JobFile read_job_file(const std::string& path, const std::string& data_directory) {
   return JobReader(path, data_directory).read();

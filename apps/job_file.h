@@ -1,8 +1,10 @@
-// Job files: what to fit to which recordings, in YAML. docs/job-file.md has every key.
+// Job files: what to fit to which recordings, in YAML. docs/job-file.md tells of every
+// key.
 #pragma once
 
 #include <string>
 
+#include "apps/key.h"
 #include "fit/experiment.h"
 #include "sim/rig.h"
 
@@ -15,6 +17,9 @@ struct JobFile {
   std::string axis_file;  ///< as found
   MachineLimits limits;   ///< for experiments yet to be made
 };
+
+/// The keys of a job file.
+const Section& job_keys();
 
 /// Reads a job file, its axis file and its recordings. Recordings with relative paths are looked
 /// for below `data_directory`, or next to the job file where that is empty. Throws ConfigError with

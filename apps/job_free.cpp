@@ -16,6 +16,27 @@ std::string rounded(double value, std::string_view unit) {
   return with_unit(fmt::format("{:g}", value), unit);
 }
 
+/// The keys for a free quantity, whose values are such amounts.
+Section free_keys(const Amount& amount) {
+  return {
+      Key::optional("initial", amount, Otherwise{"value of the axis file or job"},
+                    "where the fit starts"),
+      Key::optional("bounds", Bounds{amount},
+                    Otherwise{"on a log scale initial / 100 and initial * 100; on a linear scale "
+                              "the range of the quantity"},
+                    "between which it is estimated; within the range of the quantity"),
+      Key::optional("scale", Choice{{{"log"}, {"linear"}}},
+                    Otherwise{"from the bounds or the kind of quantity"},
+                    "the scale on which it is estimated"),
+      Key::optional(
+          "prior",
+          Map{{Key::required("mean", amount, "its expected value"),
+               Key::required("sigma", sigma_amount(amount.unit), "its standard deviation")}},
+          Otherwise{"none"}, "known from elsewhere, normally distributed"),
+      Key::optional("per_recording", Flag{}, false,
+                    "`true`: a value for each recording with the role `fit`")};
+}
+
 void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job& job) {
   const Quantity& quantity = entry.quantity;
   FreeParameter parameter;
@@ -23,27 +44,20 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
   parameter.initial = *members(job.model)[entry.index];
   std::optional<std::pair<double, double>> bounds;
   std::optional<std::size_t> scale;
-  bool per_recording = false, initial_given = false;
+  bool per_recording = false;
   // "M:" alone is as good as "M: {}".
   Diagnostics none;
-  ConfigMap map(node.is_null() ? *ConfigNode::parse("{}", node.file(), none) : node);
-  if (const auto initial = map.optional("initial")) {
-    initial_given = true;
-    parameter.initial = read_value(*initial, quantity).value_or(parameter.initial);
-  }
+  const Section keys = free_keys({std::string(quantity.unit), quantity.lower, quantity.upper});
+  ConfigMap map(node.is_null() ? *ConfigNode::parse("{}", node.file(), none) : node, keys);
+  const bool initial_given = map.read("initial", parameter.initial).has_value();
   if (const auto given = map.optional("bounds"))
     bounds = given->as_bounds(quantity.unit, quantity.lower, quantity.upper);
-  if (const auto given = map.optional("scale")) {
-    static const std::vector<std::string> scales{"log", "linear"};
-    scale = given->as_choice(scales);
-  }
-  if (const auto given = map.optional("per_recording"))
-    per_recording = given->as_bool().value_or(false);
+  map.read("scale", scale);
+  map.read("per_recording", per_recording);
   if (const auto given = map.optional("prior")) {
-    ConfigMap prior(*given);
+    ConfigMap prior(*given, keys_below(keys, "prior"));
     parameter.prior.emplace();
-    if (const auto mean = prior.required("mean"))
-      parameter.prior->mean = read_value(*mean, quantity).value_or(0.0);
+    prior.read("mean", parameter.prior->mean);
     if (const auto sigma = prior.required("sigma"))
       parameter.prior->sigma = read_sigma(*sigma, quantity.unit);
     prior.finish();
@@ -102,6 +116,24 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
 }
 
 }  // namespace
+
+Section free_quantities() {
+  // Those for a quantity are the same but for its unit and range, which its description tells.
+  const Map amount{free_keys({"m", -kUnlimited, kUnlimited, "a value of the quantity"}), 0, true,
+                   "free_quantity"};
+  const Map number{free_keys({"1", -kUnlimited, kUnlimited, "a value of the quantity"}), 0, true,
+                   "free_number"};
+  Section keys;
+  for (const QuantityEntry& entry : quantity_list()) {
+    const Key quantity = Key::of(entry.quantity, entry.name);
+    Key key = Key::optional(entry.name, is_dimensionless(entry.quantity.unit) ? number : amount,
+                            Otherwise{"not fitted"},
+                            fmt::format("{}; {}", quantity.meaning, value_text(quantity.form)));
+    key.used = quantity.used;
+    keys.push_back(std::move(key));
+  }
+  return keys;
+}
 
 void read_free(const ConfigNode& node, Job& job) {
   ConfigMap map(node);

@@ -6,6 +6,9 @@
 
 namespace axisfit {
 
+/// All quantities, each with the keys for a free one.
+Section free_quantities();
+
 /// Adds to the job, whose model and recordings are read already. With diagnostics where anything is
 /// wrong.
 void read_free(const ConfigNode& node, Job& job);

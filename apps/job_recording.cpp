@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <ranges>
 
 #include "apps/axis_file.h"
@@ -20,7 +19,45 @@ namespace axisfit {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+/// Every quantity of the list, as a value that differs from the axis file's.
+Section override_keys() {
+  Section keys;
+  for (const QuantityEntry& entry : quantity_list()) {
+    Key key = Key::of(entry.quantity, entry.name);
+    key.is_required = false;
+    key.standard.clear();
+    key.otherwise = "of the axis file or job";
+    keys.push_back(std::move(key));
+  }
+  return keys;
+}
+
+/// The input and all that can be measured.
+Section signal_keys() {
+  const Map column{column_keys(), 0, false, "column"};
+  Section keys{
+      Key::optional("command", column, Otherwise{"one of the other inputs"},
+                    "the set-velocity voltage U in V; each value is held from its sample on"),
+      Key::optional("position_reference", column, Otherwise{"not needed beside a command"},
+                    "in m, instead of the command: the slave control unit of the axis file makes "
+                    "the command from it and the position")};
+  for (const SignalInfo& signal : kSignalTable) {
+    Section measured = column_keys();
+    measured.push_back(
+        Key::optional("sigma",
+                      Either{{sigma_amount(signal.unit),
+                              Choice{{{"rest", "what the signal shows while the arm rests"},
+                                      {"fit", "estimated together with the parameters"}}}}},
+                      Otherwise{"estimated from the samples"}, "standard deviation of the noise"));
+    measured.push_back(Key::optional("fit", Flag{}, Measurement().fitted,
+                                     "`false`: compare and report, do not fit"));
+    keys.push_back(Key::optional(
+        std::string(signal.name), Map{std::move(measured), 0, false, "measured_column"},
+        Otherwise{"not measured"}, fmt::format("{}, in {}", signal.meaning, signal.unit)));
+  }
+  return keys;
+}
 
 class RecordingReader {
  public:
@@ -29,33 +66,19 @@ class RecordingReader {
 
   Recording read(const ConfigNode& node) {
     Recording recording;
-    ConfigMap map(node);
-    const auto file = map.required("file");
+    ConfigMap map(node, recording_keys());
     std::optional<std::string> path;
-    if (file) path = file->as_string();
+    const auto file = map.read("file", path);
     if (path) {
       recording.file = *path;
       recording.name = fs::path(*path).stem().string();
     }
-    if (const auto name = map.optional("name"))
-      recording.name = name->as_string().value_or(recording.name);
-    if (const auto role = map.optional("role")) {
-      static const std::vector<std::string> roles{"fit", "validate"};
-      recording.role = static_cast<Role>(role->as_choice(roles).value_or(0));
-    }
-    if (const auto state = map.optional("initial_state")) {
-      static const std::vector<std::string> states{"given", "data"};
-      recording.initial_state = static_cast<InitialState>(state->as_choice(states).value_or(0));
-    }
-    const auto initial_samples = map.optional("initial_samples");
-    if (const auto& n = initial_samples)
-      recording.initial_samples = static_cast<std::size_t>(n->as_integer(4, 1000000).value_or(20));
-    if (const auto rest = map.optional("acceleration_at_rest")) {
-      static const std::vector<std::string> choices{"leave_out", "keep"};
-      recording.acceleration_at_rest = rest->as_choice(choices).value_or(0) == 1;
-    }
-    if (const auto score = map.optional("score_initial_samples"))
-      recording.score_initial_samples = score->as_bool().value_or(true);
+    map.read("name", recording.name);
+    map.read("role", recording.role);
+    map.read("initial_state", recording.initial_state);
+    const auto initial_samples = map.read("initial_samples", recording.initial_samples);
+    map.read("acceleration_at_rest", recording.acceleration_at_rest);
+    map.read("score_initial_samples", recording.score_initial_samples);
     if (const auto set = map.optional("set")) read_overrides(*set, recording);
     const auto time = map.required("time");
     const auto signals = map.required("signals");
@@ -101,11 +124,9 @@ class RecordingReader {
 
   static Trim read_trim(const ConfigNode& node) {
     Trim trim;
-    ConfigMap map(node);
-    if (const auto t = map.optional("from"))
-      trim.from = t->as_quantity("s", -kUnlimited, kUnlimited).value_or(trim.from);
-    if (const auto t = map.optional("to"))
-      trim.to = t->as_quantity("s", -kUnlimited, kUnlimited).value_or(trim.to);
+    ConfigMap map(node, keys_below(recording_keys(), "trim"));
+    map.read("from", trim.from);
+    map.read("to", trim.to);
     map.finish();
     return trim;
   }
@@ -122,7 +143,7 @@ class RecordingReader {
                     Recording& recording) {
     const auto times = read_times(data, time_node);
     const Trim trim = trim_node ? read_trim(*trim_node) : Trim();
-    ConfigMap signals(signals_node);
+    ConfigMap signals(signals_node, keys_below(recording_keys(), "signals"));
     const auto input = read_input(data, signals_node, signals, times, recording);
     const std::size_t named = read_measurements(data, signals, times, trim, recording);
     signals.finish();
@@ -183,6 +204,10 @@ class RecordingReader {
     return input;
   }
 
+  static const Section& measurement_keys(std::string_view signal) {
+    return keys_below(keys_below(recording_keys(), "signals"), signal);
+  }
+
   /// The command that the axis file's slave control unit makes of a recorded position reference.
   std::optional<Values> read_reference(const RecordingFile& data, const ConfigNode& node,
                                        ConfigMap& signals,
@@ -195,7 +220,7 @@ class RecordingReader {
           "the column of the position too");
       return std::nullopt;
     }
-    ConfigMap map(*position_node);
+    ConfigMap map(*position_node, measurement_keys("position"));
     const auto position = read_column(data, map, "m");
     if (!reference || !position || !times) return std::nullopt;
     if (!same_length(node, *reference, *times) || !same_length(*position_node, *position, *times))
@@ -230,11 +255,11 @@ class RecordingReader {
                                                      const SignalInfo& signal,
                                                      const std::optional<Values>& times,
                                                      const Trim& trim) {
-    ConfigMap map(node);
+    ConfigMap map(node, measurement_keys(signal.name));
     Measurement measurement;
     measurement.signal = signal.signal;
     const auto values = read_column(data, map, signal.unit);
-    if (const auto fit = map.optional("fit")) measurement.fitted = fit->as_bool().value_or(true);
+    map.read("fit", measurement.fitted);
     if (const auto sigma = map.optional("sigma")) {
       if (sigma->text() == "fit") {
         measurement.noise = NoiseSource::fit;
@@ -306,6 +331,42 @@ class RecordingReader {
 
 }  // namespace
 
+const Section& recording_keys() {
+  const Recording standard;
+  static const Section keys{
+      Key::required("file", Text{}, "CSV, or MATLAB if the name ends in `.mat`"),
+      Key::optional("name", Text{}, Otherwise{"file name without folder and ending"},
+                    "what reports call it; unique in the job"),
+      Key::optional("role",
+                    Choice{{{"fit", "its residuals are minimised"}, {"validate", "only judged"}}},
+                    standard.role, "what it is for"),
+      Key::required("time", Map{column_keys(), 0, false, "column"},
+                    "column of the times, in a unit of time; they must increase"),
+      Key::required("signals", Map{signal_keys()},
+                    "the columns of the input and of the measured signals"),
+      Key::optional("trim",
+                    Map{{Key::optional("from", Amount{"s"}, Otherwise{"the first sample"},
+                                       "start of what is kept, inclusive"),
+                         Key::optional("to", Amount{"s"}, Otherwise{"the last sample"},
+                                       "end of what is kept, inclusive")}},
+                    Otherwise{"all samples"}, "the part that is kept, in recorded time"),
+      Key::optional(
+          "initial_state",
+          Choice{{{"given", "that of the axis file"}, {"data", "from the first samples"}}},
+          standard.initial_state, "the state at the start"),
+      Key::optional("initial_samples", Whole{4, 1000000}, standard.initial_samples,
+                    "how many samples `initial_state: data` takes"),
+      Key::optional("score_initial_samples", Flag{}, standard.score_initial_samples,
+                    "`false`: leave the initial samples out of the reported errors"),
+      Key::optional("acceleration_at_rest",
+                    Choice{{{"leave_out", "it does not count"}, {"keep", "it does"}}},
+                    standard.acceleration_at_rest, "a recorded acceleration while the arm rests"),
+      Key::optional("set", Map{override_keys()}, Otherwise{"none"},
+                    "quantities that differ in this recording, such as "
+                    "`{M: 161 kg, initial.y0: 20 mm}`")};
+  return keys;
+}
+
 Recording read_recording(const ConfigNode& node, const Rig& rig, CouplingMode coupling,
                          const std::string& data_directory) {
   return RecordingReader(rig, coupling, data_directory).read(node);
@@ -319,8 +380,13 @@ std::string resolved(const ConfigNode& node, const std::string& file, const std:
       .string();
 }
 
+Amount sigma_amount(std::string_view unit) {
+  return {std::string(unit), 0.0, kUnlimited,
+          is_dimensionless(unit) ? "number above 0" : "above 0, with its unit"};
+}
+
 double read_sigma(const ConfigNode& node, std::string_view unit) {
-  const auto sigma = node.as_quantity(unit, 0.0, kUnlimited);
+  const auto sigma = node.as_amount(sigma_amount(unit));
   if (sigma == 0.0) node.error("sigma must be above zero: residuals are divided by it");
   return sigma.value_or(1.0);
 }

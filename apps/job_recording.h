@@ -9,6 +9,9 @@
 
 namespace axisfit {
 
+/// The keys of a recording.
+const Section& recording_keys();
+
 /// Reads a recording and its file, for an axis and the coupling of the fit. With diagnostics where
 /// anything is wrong; what is returned then is not to be used. Files with relative paths are looked
 /// for below `data_directory`, or next to the job file where that is empty.
@@ -19,7 +22,8 @@ Recording read_recording(const ConfigNode& node, const Rig& rig, CouplingMode co
 /// that file.
 std::string resolved(const ConfigNode& node, const std::string& file, const std::string& base);
 
-/// A standard deviation, above zero.
+/// A standard deviation, above zero: how it is described, and how it is read.
+Amount sigma_amount(std::string_view unit);
 double read_sigma(const ConfigNode& node, std::string_view unit);
 
 }  // namespace axisfit

@@ -15,60 +15,122 @@
 namespace axisfit {
 namespace {
 
-const std::vector<std::string> kTypes{"step", "levels", "sine",    "chirp",
-                                      "prbs", "move",   "recorded"};
+/// A voltage up to the controller's limit, which the keys do not know.
+Amount voltage_up_to(const std::string& limit) {
+  return {"V", -kUnlimited, kUnlimited, "V, +-" + limit};
+}
 
-/// Reads the keys of one type of motion. Values that are wrong are reported and left at zero.
+Key offset_key(double standard) {
+  return Key::optional("offset", voltage_up_to("(limit - amplitude)"), standard,
+                       "voltage in the middle");
+}
+
+struct MotionType {
+  std::string name;
+  std::string meaning;
+  Section keys;
+};
+
+const std::vector<MotionType>& motion_types() {
+  const Amount limited = voltage_up_to("limit");
+  const Amount frequency{"Hz", 0.0, 1e4};
+  static const std::vector<MotionType> types{
+      {"step",
+       "one level from an instant on",
+       {Key::required("level", limited, "voltage"),
+        Key::optional("start", Amount{"s", 0.0, 1e6}, StepMotion().start,
+                      "instant from which on it holds")}},
+      {"levels",
+       "one level after the other",
+       {Key::required("levels", List{{limited}}, "voltages, the first from time zero"),
+        Key::required("hold", Amount{"s", 1e-4, 1e6}, "how long each is held")}},
+      {"sine",
+       "a sine of one frequency",
+       {Key::required("amplitude", limited, "largest voltage beside the offset"),
+        Key::required("frequency", Amount{"Hz", 1e-6, 1e4}, "frequency of the sine"),
+        offset_key(SineMotion().offset)}},
+      {"chirp",
+       "a sine whose frequency runs linearly",
+       {Key::required("amplitude", limited, "largest voltage beside the offset"),
+        Key::required("from", frequency, "frequency at time zero"),
+        Key::required("to", frequency, "frequency at the end of `duration`"),
+        offset_key(SineMotion().offset)}},
+      {"prbs",
+       "a pseudo-random binary sequence",
+       {Key::required("amplitude", limited, "voltage either way from the offset"),
+        Key::required("bit", Amount{"s", 1e-4, 1e6}, "how long each choice is held"),
+        offset_key(PrbsMotion().offset),
+        Key::optional("seed", Whole{}, PrbsMotion().seed,
+                      "the same one gives the same sequence on every machine")}},
+      {"move",
+       "a move of the position in a closed loop",
+       {Key::required("distance", Amount{"m", -1e3, 1e3}, "of the arm, from position zero"),
+        Key::required("speed", Amount{"m/s", 1e-6, 1e3}, "largest speed"),
+        Key::required("acceleration", Amount{"m/s^2", 1e-6, 1e5}, "also of the deceleration")}},
+      {"recorded",
+       "the command of a recording",
+       {Key::required("file", Text{},
+                      "CSV or `.mat`; a relative path starts at the folder of the motion file"),
+        Key::required("time", Map{column_keys()}, "column of the times, which must increase"),
+        Key::required("command", Map{column_keys()},
+                      "column of the command; no value beyond the limit")}}};
+  return types;
+}
+
+/// Reads the keys of one type of motion. Values that are wrong are reported.
 class MotionReader {
  public:
-  MotionReader(const ConfigNode& root, const Rig& rig) : root_(root), map_(root), rig_(rig) {}
+  MotionReader(const ConfigNode& root, const Rig& rig)
+      : root_(root), map_(root, motion_keys()), rig_(rig) {}
 
   MotionFile read() {
     MotionFile file;
-    const auto type = map_.required("type");
-    const std::size_t choice =
-        type ? type->as_choice(kTypes).value_or(kTypes.size()) : kTypes.size();
-    if (const auto duration = map_.required("duration"))
-      file.duration = duration->as_quantity("s", 1e-3, 1e6).value_or(1.0);
-    if (choice == kTypes.size()) return file;
-    const std::string& name = kTypes[choice];
+    std::optional<std::size_t> choice;
+    const auto type = map_.read("type", choice);
+    map_.read("duration", file.duration);
+    if (!choice) return file;
+    const auto& [name, meaning, keys] = motion_types()[*choice];
+    map_.describe(keys);
     if (name == "step") {
-      file.motion = StepMotion{voltage("level"), value("start", "s", 0.0, 1e6, 0.0)};
+      StepMotion motion;
+      motion.level = voltage("level", limit());
+      map_.read("start", motion.start);
+      file.motion = motion;
     } else if (name == "levels") {
       LevelsMotion motion;
-      motion.hold = value("hold", "s", 1e-4, 1e6);
+      map_.read("hold", motion.hold);
       if (const auto levels = map_.required("levels"))
         if (const auto entries = levels->as_sequence()) {
           if (entries->empty()) levels->error("levels must name at least one voltage");
           for (const ConfigNode& level : *entries)
-            motion.levels.push_back(
-                level.as_quantity("V", -rig_.controller.limit, rig_.controller.limit)
-                    .value_or(0.0));
+            motion.levels.push_back(level.as_quantity("V", -limit(), limit()).value_or(0.0));
         }
       file.motion = std::move(motion);
     } else if (name == "sine" || name == "chirp") {
       SineMotion motion;
-      motion.amplitude = voltage("amplitude");
+      motion.amplitude = voltage("amplitude", limit());
       if (name == "sine") {
-        motion.from = motion.to = value("frequency", "Hz", 1e-6, 1e4);
+        map_.read("frequency", motion.from);
+        motion.to = motion.from;
       } else {
-        motion.from = value("from", "Hz", 0.0, 1e4);
-        motion.to = value("to", "Hz", 0.0, 1e4);
+        map_.read("from", motion.from);
+        map_.read("to", motion.to);
       }
-      motion.offset = offset(motion.amplitude);
+      motion.offset = voltage("offset", limit() - std::abs(motion.amplitude));
       file.motion = motion;
     } else if (name == "prbs") {
       PrbsMotion motion;
-      motion.amplitude = voltage("amplitude");
-      motion.bit = value("bit", "s", 1e-4, 1e6);
-      motion.offset = offset(motion.amplitude);
-      if (const auto seed = map_.optional("seed"))
-        motion.seed = static_cast<std::uint64_t>(
-            seed->as_integer(0, std::numeric_limits<std::int64_t>::max()).value_or(1));
+      motion.amplitude = voltage("amplitude", limit());
+      map_.read("bit", motion.bit);
+      motion.offset = voltage("offset", limit() - std::abs(motion.amplitude));
+      map_.read("seed", motion.seed);
       file.motion = motion;
     } else if (name == "move") {
-      file.motion = MoveMotion{value("distance", "m", -1e3, 1e3), value("speed", "m/s", 1e-6, 1e3),
-                               value("acceleration", "m/s^2", 1e-6, 1e5)};
+      MoveMotion motion;
+      map_.read("distance", motion.distance);
+      map_.read("speed", motion.speed);
+      map_.read("acceleration", motion.acceleration);
+      file.motion = motion;
       if (rig_.model.structure.drive == Drive::force_source)
         type->error(
             "a move needs the slave control unit, which writes a set velocity; this axis is "
@@ -83,21 +145,11 @@ class MotionReader {
   }
 
  private:
-  double value(const char* key, std::string_view unit, double lower, double upper) {
-    const auto given = map_.required(key);
-    return given ? given->as_quantity(unit, lower, upper).value_or(0.0) : 0.0;
-  }
-  double value(const char* key, std::string_view unit, double lower, double upper,
-               double standard) {
-    const auto given = map_.optional(key);
-    return given ? given->as_quantity(unit, lower, upper).value_or(standard) : standard;
-  }
-  double voltage(const char* key) {
-    return value(key, "V", -rig_.controller.limit, rig_.controller.limit);
-  }
-  double offset(double amplitude) {
-    const double room = rig_.controller.limit - std::abs(amplitude);
-    return value("offset", "V", -room, room, 0.0);
+  double limit() const { return rig_.controller.limit; }
+
+  double voltage(const char* key, double most) {
+    const auto given = map_.given(key);
+    return given ? given->as_quantity("V", -most, most).value_or(0.0) : 0.0;
   }
 
   /// The command column of a recording.
@@ -135,6 +187,21 @@ class MotionReader {
 
 }  // namespace
 
+const Section& motion_keys() {
+  static const Section keys = [] {
+    Choice types;
+    for (const MotionType& type : motion_types())
+      types.options.push_back({type.name, type.meaning});
+    return Section{Key::required("type", types, "kind of motion, on which the other keys depend"),
+                   Key::required("duration", Amount{"s", 1e-3, 1e6}, "length of the recording")};
+  }();
+  return keys;
+}
+
+const Section& motion_keys(const std::string& type) {
+  return std::ranges::find(motion_types(), type, &MotionType::name)->keys;
+}
+
 MotionFile read_motion_file(const std::string& path, const Rig& rig) {
   Diagnostics diagnostics;
   MotionFile file;
@@ -152,36 +219,36 @@ class MotionWriter {
 
   void operator()(const StepMotion& motion) {
     begin("step");
-    set("level", motion.level, "V");
-    set("start", motion.start, "s");
+    set("level", motion.level);
+    set("start", motion.start);
   }
   void operator()(const LevelsMotion& motion) {
     begin("levels");
     out_ << YAML::Key << "levels" << YAML::Value << YAML::Flow << YAML::BeginSeq;
     for (const double level : motion.levels) out_ << with_unit(level, "V");
     out_ << YAML::EndSeq;
-    set("hold", motion.hold, "s");
+    set("hold", motion.hold);
   }
   void operator()(const SineMotion& motion) {
     const bool chirp = motion.from != motion.to;
     begin(chirp ? "chirp" : "sine");
-    set("amplitude", motion.amplitude, "V");
-    set(chirp ? "from" : "frequency", motion.from, "Hz");
-    if (chirp) set("to", motion.to, "Hz");
-    set("offset", motion.offset, "V");
+    set("amplitude", motion.amplitude);
+    set(chirp ? "from" : "frequency", motion.from);
+    if (chirp) set("to", motion.to);
+    set("offset", motion.offset);
   }
   void operator()(const PrbsMotion& motion) {
     begin("prbs");
-    set("amplitude", motion.amplitude, "V");
-    set("bit", motion.bit, "s");
-    set("offset", motion.offset, "V");
+    set("amplitude", motion.amplitude);
+    set("bit", motion.bit);
+    set("offset", motion.offset);
     out_ << YAML::Key << "seed" << YAML::Value << motion.seed;
   }
   void operator()(const MoveMotion& motion) {
     begin("move");
-    set("distance", motion.distance, "m");
-    set("speed", motion.speed, "m/s");
-    set("acceleration", motion.acceleration, "m/s^2");
+    set("distance", motion.distance);
+    set("speed", motion.speed);
+    set("acceleration", motion.acceleration);
   }
   void operator()(const RecordedMotion&) {
     throw std::logic_error("a recorded motion cannot be written as a motion file");
@@ -190,14 +257,18 @@ class MotionWriter {
  private:
   void begin(const char* type) {
     out_ << YAML::Key << "type" << YAML::Value << type;
-    set("duration", duration_, "s");
+    keys_ = &motion_keys();
+    set("duration", duration_);
+    keys_ = &motion_keys(type);
   }
-  void set(const char* key, double value, std::string_view unit) {
+  void set(const char* key, double value) {
+    const std::string& unit = std::get<Amount>(find_key(*keys_, key).form).unit;
     out_ << YAML::Key << key << YAML::Value << with_unit(value, unit);
   }
 
   YAML::Emitter& out_;
   double duration_;
+  const Section* keys_ = nullptr;
 };
 
 }  // namespace

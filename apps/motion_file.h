@@ -1,8 +1,11 @@
-// Motion files: what to run an axis through, in YAML. docs/motion-file.md has every key.
+// Motion files: what to run an axis through, in YAML. docs/motion-file.md tells of every
+// key.
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "apps/key.h"
 #include "sim/rig.h"
 
 namespace axisfit {
@@ -11,6 +14,12 @@ struct MotionFile {
   Motion motion;
   double duration = 0.0;  ///< s
 };
+
+/// The keys of a motion file that every type has.
+const Section& motion_keys();
+
+/// Those that a type has besides.
+const Section& motion_keys(const std::string& type);
 
 /// Reads a motion file for a rig. Throws ConfigError with everything that is wrong, among it a
 /// voltage beyond the rig's limit and a move for an axis without a set-velocity input.

@@ -59,6 +59,16 @@ std::string RecordingFile::where(std::size_t row) const {
                              : fmt::format("{}: row {}", path_, row + 1);
 }
 
+const Section& column_keys() {
+  static const Section keys{
+      Key::required("column", Text{}, "name of the column, or of the MATLAB variable"),
+      Key::required("unit", Text{}, "unit of the stored values"),
+      Key::optional("factor", Amount{"1", -1e12, 1e12}, 1.0,
+                    "by which the stored values are multiplied"),
+      Key::optional("sign", Choice{{{"1"}, {"-1"}}}, 0, "by which they are multiplied too")};
+  return keys;
+}
+
 std::optional<std::vector<double>> read_column(const RecordingFile& file, ConfigMap& map,
                                                std::string_view si_unit) {
   double factor = 1.0;
@@ -71,12 +81,11 @@ std::optional<std::vector<double>> read_column(const RecordingFile& file, Config
         factor = std::get<double>(conversion);
     }
   }
-  if (const auto given = map.optional("factor"))
-    factor *= given->as_number(-1e12, 1e12).value_or(1.0);
-  if (const auto sign = map.optional("sign")) {
-    static const std::vector<std::string> signs{"1", "-1"};
-    if (sign->as_choice(signs).value_or(0) == 1) factor = -factor;
-  }
+  double further_factor = 1.0;
+  std::size_t sign = 0;
+  map.read("factor", further_factor);
+  map.read("sign", sign);
+  factor *= sign == 1 ? -further_factor : further_factor;
   const auto name = map.required("column");
   const std::vector<double>* column = name ? file.column(*name) : nullptr;
   if (column == nullptr) return std::nullopt;
@@ -87,7 +96,7 @@ std::optional<std::vector<double>> read_column(const RecordingFile& file, Config
 
 std::optional<std::vector<double>> read_column(const RecordingFile& file, const ConfigNode& node,
                                                std::string_view si_unit) {
-  ConfigMap map(node);
+  ConfigMap map(node, column_keys());
   auto values = read_column(file, map, si_unit);
   map.finish();
   return values;

@@ -31,6 +31,9 @@ class RecordingFile {
   std::vector<std::size_t> lines_;              // of the rows
 };
 
+/// The keys of a column.
+const Section& column_keys();
+
 /// One column in SI units, from a map {column: name, unit: mm/s, sign: -1, factor: 2}: the stored
 /// values times factor and sign, converted from the unit. Nothing when something is wrong; that has
 /// been said. The caller finishes the map, which may have more keys.

@@ -16,6 +16,7 @@
 
 #include "sim/command.h"
 #include "sim/integrator.h"
+#include "sim/quantity.h"
 
 namespace axisfit {
 
@@ -29,6 +30,27 @@ struct ControllerSettings {
   double limit = 10.0;                  ///< V, of U either way
   double counts_per_revolution = 4000;  ///< of the encoder on the motor shaft; zero: not quantised
 };
+
+/// Calls visit(quantity, member) for every setting; the standard values are those above.
+template <class SettingsT, class Visitor>
+void visit_settings(SettingsT& c, Visitor&& visit) {
+  using Q = Quantity;
+  constexpr ControllerSettings standard;
+  visit(Q{"period", "s", "sampling period", 1e-5, 1, standard.period}, c.period);
+  visit(Q{"track_period", "s", "time between track points", 1e-5, 10, standard.track_period},
+        c.track_period);
+  visit(Q{"k_ff", "1", "speed feed-forward", 0, 100, standard.k_ff}, c.k_ff);
+  visit(Q{"k_p", "1/s", "position gain", 0, 1e5, standard.k_p}, c.k_p);
+  visit(Q{"k_i", "1/s^2", "gain of the integrated position", 0, 1e6, standard.k_i}, c.k_i);
+  visit(Q{"gain", "V s/m", "set-velocity voltage per speed", 1e-3, 1e6, standard.gain}, c.gain);
+  visit(Q{"limit", "V", "largest voltage of any motion, either way", 1e-3, 1e4, standard.limit},
+        c.limit);
+  visit(Q{"counts_per_revolution", "1",
+          "counts of the encoder per turn of the motor; 0: not "
+          "quantised",
+          0, 1e9, standard.counts_per_revolution},
+        c.counts_per_revolution);
+}
 
 /// Where the axis should be, m, at a time since the start of the motion, s.
 using Reference = std::function<double(double time)>;

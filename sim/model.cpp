@@ -27,12 +27,6 @@ bool is_used(const QuantityEntry& entry, const Structure& structure) {
   const bool backlash = structure.transmission == Transmission::backlash;
   const auto effect = effect_named(entry.group);
   if (effect && !structure.effects[*effect]) return false;
-  if (entry.group == "initial") {
-    if (entry.quantity.symbol == "y6") return structure.drive == Drive::velocity_loop;
-    if (entry.quantity.symbol == "y4" || entry.quantity.symbol == "y5") return electric;
-    if (entry.quantity.symbol == "x" || entry.quantity.symbol == "dx") return backlash;
-    return true;
-  }
   switch (entry.quantity.used_by) {
     case UsedBy::every_axis:
       return true;

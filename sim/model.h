@@ -65,14 +65,15 @@ void visit_quantities(ModelOfT& model, Visitor&& visit) {
     visit(entry.name, Quantity{"delay", "s", "offset of the instrument's clock", -1, 1, 0.0},
           instrument.delay);
   }
+  using enum UsedBy;
   constexpr Quantity kInitial[kPaperStates] = {
       {"y0", "m", "initial arm position", -1e3, 1e3, 0.0},
       {"y1", "m/s", "initial arm velocity", -1e3, 1e3, 0.0},
-      {"x", "m", "initial r_g y2 - y0, zero: pinion centred", -1, 1, 0.0},
-      {"dx", "m/s", "initial r_g y3 - y1", -1e3, 1e3, 0.0},
-      {"y4", "V", "initial preamplifier variable", -1e6, 1e6, 0.0},
-      {"y5", "V/s", "initial preamplifier rate", -1e9, 1e9, 0.0},
-      {"y6", "A", "initial motor current", -1e4, 1e4, 0.0},
+      {"x", "m", "initial r_g y2 - y0, zero: pinion centred", -1, 1, 0.0, backlash},
+      {"dx", "m/s", "initial r_g y3 - y1", -1e3, 1e3, 0.0, backlash},
+      {"y4", "V", "initial preamplifier variable", -1e6, 1e6, 0.0, electric_drive},
+      {"y5", "V/s", "initial preamplifier rate", -1e9, 1e9, 0.0, electric_drive},
+      {"y6", "A", "initial motor current", -1e4, 1e4, 0.0, velocity_loop},
   };
   for (std::size_t i = 0; i < kPaperStates; ++i) visit("initial", kInitial[i], model.initial[i]);
 }
