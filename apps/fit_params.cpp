@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -13,11 +14,14 @@
 #include "apps/axis_file.h"
 #include "apps/command_line.h"
 #include "apps/config.h"
+#include "apps/init_job.h"
 #include "apps/job_file.h"
 #include "apps/motion_file.h"
 #include "apps/output_folder.h"
 #include "apps/report_text.h"
 #include "apps/result_json.h"
+#include "apps/text_table.h"
+#include "fit/effort.h"
 
 namespace {
 
@@ -42,9 +46,11 @@ void stop_on_signals() {
 }
 
 struct Arguments {
-  std::string job;
+  std::vector<std::string> files;  // the job, or the recordings to make one for
   std::string data;
   std::string output;
+  std::string axis;
+  bool init = false;
   bool check = false;
   Wishes wishes;
   bool json = false;
@@ -54,6 +60,7 @@ struct Arguments {
 };
 
 constexpr const char* kExamples = R"(Examples:
+  fit-params --init step.csv levels.csv
   fit-params configs/jobs/paper.yaml
   fit-params configs/jobs/close-loop.yaml --close-loop
   fit-params configs/jobs/paper.yaml --check
@@ -104,14 +111,45 @@ std::string closing_text(const std::string& phase, int done, int of) {
   return of > 0 ? fmt::format("{} ({} of {} done)", phase, done, of) : phase;
 }
 
-/// What the recordings can tell, before the fit.
-int check(const Arguments& arguments, const Job& job) {
+/// What the recordings show and can tell, before the fit.
+int check(const Arguments& arguments, const JobFile& file) {
+  const Job& job = file.job;
   const Forecast found = forecast(job, draw_start(job, 0));
+  const Effort effort = expected_effort(job);
+  const std::vector<RecordingCheck> recordings = check_recordings(job);
   if (arguments.json)
-    std::cout << forecast_json(job, found).dump(2) << '\n';
+    std::cout << check_json(file, recordings, found, effort).dump(2) << '\n';
   else if (!arguments.quiet)
-    std::cout << forecast_text(job, found);
+    std::cout << recordings_text(file, recordings) << '\n'
+              << forecast_text(job, found) << '\n'
+              << effort_text(job, effort);
   if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
+  return kUsable;
+}
+
+/// A job file for recordings, and an axis file where none is given.
+int init(const Arguments& arguments) {
+  namespace fs = std::filesystem;
+  const fs::path folder = arguments.output.empty() ? "." : arguments.output;
+  const InitialJob made = initial_job(arguments.files, arguments.axis, folder.string());
+  const auto path = [&](const std::string& name) {
+    return (folder / name).lexically_normal().string();
+  };
+  for (const auto& [name, contents] : made.files)
+    if (fs::exists(path(name)))
+      throw std::runtime_error(
+          fmt::format("{} is there already and would be overwritten: move it away, or name another "
+                      "folder with --output",
+                      path(name)));
+  fs::create_directories(folder);
+  for (const auto& [name, contents] : made.files) write_file(path(name), contents);
+  if (arguments.quiet) return kUsable;
+  std::string text;
+  for (const auto& [name, contents] : made.files) text += fmt::format("Written: {}\n", path(name));
+  if (!made.guesses.empty()) text += "To look at, for nothing in the recordings says it\n";
+  for (const std::string& guess : made.guesses) text += paragraph(guess, 2);
+  const std::string job = path(made.files.back().first);
+  std::cerr << text << fmt::format("Next: fit-params {} --check\n      fit-params {}\n", job, job);
   return kUsable;
 }
 
@@ -122,7 +160,7 @@ std::vector<std::pair<std::string, std::string>> files_of(const Arguments& argum
   Rig fitted = outcome.file.rig;
   fitted.model = fitted_model(outcome.job(), outcome.fit());
   const std::string origin = fmt::format("axisfit {} from {}, starting from {}", version(),
-                                         arguments.job, outcome.file.axis_file);
+                                         arguments.files.front(), outcome.file.axis_file);
   std::vector<std::pair<std::string, std::string>> files{
       {kResultFile, json},
       {kAxisFile,
@@ -137,17 +175,27 @@ std::vector<std::pair<std::string, std::string>> files_of(const Arguments& argum
 }
 
 int run(const Arguments& arguments) {
-  JobFile file = read_job_file(arguments.job, arguments.data);
-  if (arguments.check) return check(arguments, file.job);
+  if (arguments.init) return init(arguments);
+  if (arguments.files.size() > 1)
+    throw std::runtime_error(fmt::format(
+        "one job at a time: {} is one too many (to make a job for recordings, say --init)",
+        arguments.files[1]));
+  for (const char* ending : {".csv", ".mat"})
+    if (arguments.files.front().ends_with(ending))
+      throw std::runtime_error(
+          fmt::format("{} is a recording; a job for it is made by: fit-params --init {}",
+                      arguments.files.front(), arguments.files.front()));
+  JobFile file = read_job_file(arguments.files.front(), arguments.data);
+  FitOptions& options = file.job.options;
+  if (arguments.threads) options.threads = *arguments.threads;
+  if (arguments.starts) options.starts = *arguments.starts;
+  if (arguments.seed) options.seed = *arguments.seed;
+  if (arguments.check) return check(arguments, file);
   if (!arguments.output.empty()) {
     std::vector<std::string> names{kResultFile, kAxisFile, kResidualsFile};
     if (arguments.wishes.experiment) names.emplace_back(kMotionFile);
     check_folder(arguments.output, names);
   }
-  FitOptions& options = file.job.options;
-  if (arguments.threads) options.threads = *arguments.threads;
-  if (arguments.starts) options.starts = *arguments.starts;
-  if (arguments.seed) options.seed = *arguments.seed;
 
   const Outcome outcome = [&] {
     ProgressLine line(!arguments.quiet && can_show_progress());
@@ -177,7 +225,9 @@ int main(int argc, char** argv) {
   CLI::App app{"Fits the model of a robot axis to recordings of it, as a job file describes.",
                "fit-params"};
   app.footer(kExamples);
-  app.add_option("JOB.yaml", arguments.job, "the job file (docs/job-file.md)")->required();
+  app.add_option("JOB.yaml", arguments.files,
+                 "the job file (docs/job-file.md); with --init recordings, CSV or MATLAB")
+      ->required();
   auto* close =
       app.add_flag("--close-loop", arguments.wishes.close_loop,
                    "then add the effects that the model lacks, each checked by data not fitted");
@@ -186,16 +236,29 @@ int main(int argc, char** argv) {
                                "likelihood profiles: of all parameters, or --profile=NAME,NAME");
   auto* experiment = app.add_flag("--suggest-experiment", arguments.wishes.experiment,
                                   "say which motion to record next; next-motion.yaml in --output");
-  app.add_flag("--check", arguments.check,
-               "do not fit: say what the recordings can tell of the free parameters")
-      ->excludes(close)
-      ->excludes(profile)
-      ->excludes(experiment);
-  app.add_option("--data", arguments.data, "folder of the recordings, if not the job file's");
+  auto* check = app.add_flag("--check", arguments.check,
+                             "do not fit: say what the recordings show, what they can tell of the "
+                             "free parameters, and how long the fit will take")
+                    ->excludes(close)
+                    ->excludes(profile)
+                    ->excludes(experiment);
+  auto* data =
+      app.add_option("--data", arguments.data, "folder of the recordings, if not the job file's");
   app.add_option("--output", arguments.output,
-                 "folder for result.json, fitted.yaml and residuals.csv");
+                 "folder for result.json, fitted.yaml and residuals.csv; with --init for the job");
   auto* json = app.add_flag("--json", arguments.json, "print result.json instead of the table");
   app.add_flag("--quiet", arguments.quiet, "print nothing but errors")->excludes(json);
+  auto* init = app.add_flag("--init", arguments.init,
+                            "write job.yaml, and axis.yaml, for recordings: columns, units and "
+                            "signals as their names and values tell")
+                   ->excludes(close)
+                   ->excludes(profile)
+                   ->excludes(experiment)
+                   ->excludes(check)
+                   ->excludes(data)
+                   ->excludes(json);
+  app.add_option("--axis", arguments.axis, "with --init: the axis file, if there is one")
+      ->needs(init);
   app.add_option("--threads", arguments.threads, "number of threads; default: all cores")
       ->check(CLI::Range(1, 1024));
   app.add_option("--seed", arguments.seed, "seed of the random starts; default: the job's")

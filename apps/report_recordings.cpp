@@ -1,0 +1,239 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "apps/column_guess.h"
+#include "apps/report_text.h"
+#include "apps/text_table.h"
+#include "apps/units.h"
+#include "fit/parallel.h"
+
+namespace axisfit {
+namespace {
+
+/// A number for the eye.
+std::string figure(double value) { return fmt::format("{:.4g}", value); }
+std::string figure(double value, std::string_view unit) { return with_unit(figure(value), unit); }
+
+double one_digit(double value) { return std::stod(fmt::format("{:.0e}", value)); }
+
+/// What a wrong factor usually comes from.
+struct Cause {
+  double factor;
+  std::string_view words;  ///< after "as if"
+};
+
+constexpr double kPi = std::numbers::pi;
+constexpr Cause kCauses[]{
+    {1e3, "the unit of one were a thousandth of what the job says (mm for m)"},
+    {1e6, "the unit of one were a millionth of what the job says (um for m)"},
+    {60.0, "one counted per minute where the job says per second"},
+    {6e4, "one were in mm/min where the job says m/s"},
+    {2.0 * kPi, "one counted revolutions where the job says rad"},
+    {60.0 / (2.0 * kPi), "one were in rpm where the job says rad/s"},
+    {180.0 / kPi, "one were in degrees where the job says rad"},
+    {100.0, "one were in cm where the job says m"},
+    {25.4, "one were in inches where the job says mm"},
+    {9.80665, "one were in g where the job says m/s^2"},
+};
+
+const Cause* cause_of(double ratio) {
+  for (const Cause& cause : kCauses)
+    if (std::abs(std::abs(std::log(std::abs(ratio))) - std::log(cause.factor)) < kSameUnit)
+      return &cause;
+  return nullptr;
+}
+
+/// What to write in a job for a signal that comes out `ratio` times too large.
+std::string advice(double ratio, Signal signal) {
+  const std::string name(info(signal).name);
+  static constexpr std::pair<double, std::string_view> kPrefixes[]{{1e3, "milli"}, {1e6, "micro"}};
+  for (const auto& [factor, prefix] : kPrefixes) {
+    if (std::abs(std::log(ratio / factor)) < kSameUnit) {
+      const std::string si(info(signal).unit);
+      return fmt::format("If the {} is stored in {}{}, say 'unit: {}{}'", name,
+                         prefix == "milli" ? "m" : "u", si, prefix == "milli" ? "m" : "u", si);
+    }
+  }
+  if (signal == Signal::acceleration && std::abs(std::log(ratio * 9.80665)) < kSameUnit)
+    return "If the acceleration is stored in g, say 'unit: m/s^2, factor: 9.80665'";
+  return fmt::format("Say the right unit, or 'factor: {:.4g}' of the {}", 1.0 / ratio, name);
+}
+
+std::string rate_concern(const RateCheck& rate) {
+  const double ratio = rate.found.ratio, size = std::abs(ratio);
+  const std::string name(info(rate.rate).name), of(info(rate.of).name);
+  const bool scale = std::abs(std::log(size)) > kSameUnit;
+  if (!scale && ratio > 0.0) return {};
+  std::string text = fmt::format("{} is {:.5g} times the derivative of the {}", name, ratio, of);
+  if (scale) {
+    const Cause* cause = cause_of(size);
+    text += cause ? fmt::format(", as if {}", cause->words)
+                  : ", which no unit explains: a gear between the two?";
+    text += fmt::format(". {}.", advice(size, rate.rate));
+  } else {
+    text += ".";
+  }
+  if (ratio < 0.0) text += fmt::format(" Their signs differ: say 'sign: -1' for one of them.");
+  return text;
+}
+
+/// Speed per volt that a velocity loop settles at; zero where there is none.
+double command_gain(const Model<double>& model) {
+  const auto& a = model.axis;
+  if (model.structure.drive == Drive::force_source || !(a.K_2 * a.K_t > 0.0)) return 0.0;
+  return a.K_1 * a.r_g / (a.K_2 * a.K_t);
+}
+
+bool drives_by_force(const Recording& recording, const Model<double>& model) {
+  static const std::size_t kGain = find_quantity("K_f")->index;
+  return model.structure.drive == Drive::force_source &&
+         std::ranges::any_of(recording.overrides, [](const auto& o) { return o.first == kGain; });
+}
+
+std::string header_text(const Recording& recording, const Sampling& sampling) {
+  std::string text =
+      fmt::format("{} ({}): {} samples in {} s, {} Hz", recording.name, role_name(recording, true),
+                  sampling.samples, figure(sampling.duration), figure(1.0 / sampling.interval));
+  if (sampling.jitter > 1e-3) text += fmt::format(", jitter {:.2g} %", 100.0 * sampling.jitter);
+  text += sampling.gaps == 0   ? ", no gaps"
+          : sampling.gaps == 1 ? ", one gap"
+                               : fmt::format(", {} gaps", sampling.gaps);
+  return paragraph(text);
+}
+
+}  // namespace
+
+std::vector<std::string> concerns_of(const JobFile& file, const Recording& recording,
+                                     const RecordingCheck& check) {
+  std::vector<std::string> concerns;
+  const auto say = [&](std::string text) { concerns.push_back(std::move(text)); };
+  const Sampling& sampling = check.sampling;
+  if (sampling.interval > 0.2 || sampling.interval < 2e-6)
+    say(
+        fmt::format("Samples are {} s apart. Is the unit of the time right? For milliseconds say "
+                    "'unit: ms', for microseconds 'unit: us'.",
+                    figure(sampling.interval)));
+  if (sampling.gaps > 0)
+    say(
+        fmt::format("{} of more than 1.5 sampling intervals, the largest of {} s at {} s. What the "
+                    "command did there is not known: trim the recording, or make two of it.",
+                    sampling.gaps == 1 ? "A gap" : fmt::format("{} gaps", sampling.gaps),
+                    figure(sampling.largest_gap), figure(sampling.gap_at)));
+  if (sampling.jitter > 0.1)
+    say(
+        fmt::format("Samples come unevenly, {:.2g} % off on average. If the clock is even and only "
+                    "the time stamps are not, number the samples instead; else give every sigma, "
+                    "whose estimate needs even sampling.",
+                    100.0 * sampling.jitter));
+  // A wrong unit of the time shows in every rate.
+  const bool time =
+      check.rates.size() == 2 && std::ranges::all_of(check.rates, [&](const RateCheck& r) {
+        return std::abs(std::log(std::abs(r.found.ratio))) > kSameUnit &&
+               std::abs(std::log(std::abs(r.found.ratio / check.rates.front().found.ratio))) <
+                   kSameUnit;
+      });
+  if (time) {
+    const double ratio = std::abs(check.rates.front().found.ratio);
+    say(
+        fmt::format("velocity and acceleration both are {:.5g} times a derivative: the unit of the "
+                    "time is wrong. {}",
+                    ratio,
+                    std::abs(std::log(ratio / 1e3)) < kSameUnit   ? "Say 'unit: ms'."
+                    : std::abs(std::log(ratio * 1e3)) < kSameUnit ? "Say 'unit: s'."
+                                                                  : "Say the right one."));
+  } else {
+    for (const RateCheck& rate : check.rates)
+      if (std::string concern = rate_concern(rate); !concern.empty()) say(std::move(concern));
+  }
+  const double largest = std::max(std::abs(check.command.low), std::abs(check.command.high));
+  if (!(largest > 0.0)) say("The command is zero throughout: is that its column?");
+  const double reach = command_gain(file.rig.model) * largest;
+  if (reach > 0.0 && check.speed > 0.0 &&
+      (check.speed > 3.0 * reach || check.speed < reach / 30.0)) {
+    say(
+        fmt::format("The arm gets to {} m/s, but with its largest command, {} V, the axis file "
+                    "makes {} m/s. Check the units of the command and of the {}, and K_1, K_2, K_t "
+                    "and r_g.",
+                    figure(check.speed), figure(largest), figure(reach),
+                    recording.find(Signal::velocity) ? "velocity" : "position"));
+  }
+  for (std::size_t m = 0; m < check.measurements.size(); ++m) {
+    const ValueCheck& values = check.measurements[m];
+    const Measurement& measurement = recording.measurements[m];
+    const SignalInfo& signal = info(measurement.signal);
+    if (values.high == values.low)
+      say(fmt::format("{} is constant: is that its column?", signal.name));
+    if (values.frozen > 0)
+      say(
+          fmt::format("{} is exactly the same in {} samples from {} s on, while the arm moves: it "
+                      "hangs. Trim the recording, or compare only ('fit: false').",
+                      signal.name, values.frozen, figure(values.frozen_at)));
+    if (values.clipped > 0)
+      say(
+          fmt::format("{} is exactly {} in {} samples: there it left the range of its instrument. "
+                      "Record with a wider one, or compare only ('fit: false').",
+                      signal.name, figure(values.clipped_at, signal.unit), values.clipped));
+    if (measurement.noise == NoiseSource::given && values.noise > 0.0 &&
+        (values.noise > 3.0 * measurement.sigma || values.noise < measurement.sigma / 10.0))
+      say(fmt::format(
+          "{} scatters by {} from sample to sample, and its sigma says {}. Without a "
+          "sigma the scatter is taken.",
+          signal.name, figure(values.noise, signal.unit), figure(measurement.sigma, signal.unit)));
+  }
+  return concerns;
+}
+
+std::string recordings_text(const JobFile& file, const std::vector<RecordingCheck>& checks) {
+  std::string text = "What the recordings show\n";
+  for (std::size_t r = 0; r < checks.size(); ++r) {
+    const Recording& recording = file.job.recordings[r];
+    const RecordingCheck& check = checks[r];
+    text += header_text(recording, check.sampling);
+    const bool force = drives_by_force(recording, file.rig.model);
+    std::vector<std::vector<std::string>> rows{
+        {"", "lowest", "highest", "unit", "sigma", "noise", "grid", ""}};
+    rows.push_back({force ? "drive_force" : "command", figure(check.command.low),
+                    figure(check.command.high), force ? "N" : "V", "", "", "",
+                    fmt::format("{} switches", check.switches)});
+    const double largest = std::max(std::abs(check.command.low), std::abs(check.command.high));
+    if (!force && largest >= file.rig.controller.limit && check.at_largest > 0.01)
+      rows.back().back() =
+          fmt::format("{:.0f} % of the time at its limit", 100.0 * check.at_largest);
+    for (std::size_t m = 0; m < check.measurements.size(); ++m) {
+      const ValueCheck& values = check.measurements[m];
+      const Measurement& measurement = recording.measurements[m];
+      std::string remark = measurement.fitted ? "" : "not fitted";
+      for (const RateCheck& rate : check.rates)
+        if (rate.rate == measurement.signal)
+          remark = fmt::format("{:.4g} x d({})/dt", rate.found.ratio, info(rate.of).name);
+      const SignalInfo& signal = info(measurement.signal);
+      rows.push_back({std::string(signal.name), figure(values.low), figure(values.high),
+                      std::string(signal.unit), fmt::format("{:.2g}", measurement.sigma),
+                      fmt::format("{:.2g}", values.noise),
+                      values.grid > 0.0 ? fmt::format("{:.3g}", values.grid) : "none", remark});
+    }
+    text += aligned(rows, {Set::left, Set::right, Set::right, Set::left, Set::right, Set::right,
+                           Set::right, Set::left});
+    for (const std::string& concern : concerns_of(file, recording, check))
+      text += paragraph("! " + concern, 2);
+  }
+  return text;
+}
+
+std::string effort_text(const Job& job, const Effort& effort) {
+  const int threads = thread_count(job.options.threads);
+  const std::string time = effort.expected < 1.0 ? "about a second"
+                           : effort.expected < 90.0
+                               ? fmt::format("about {:g} s", one_digit(effort.expected))
+                               : fmt::format("about {:g} min", one_digit(effort.expected / 60.0));
+  return paragraph(fmt::format(
+      "The fit will take {} on this machine with {} thread{}; if the model does not explain the "
+      "recordings, up to ten times that.",
+      time, threads, threads == 1 ? "" : "s"));
+}
+
+}  // namespace axisfit
