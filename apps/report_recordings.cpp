@@ -20,64 +20,56 @@ std::string figure(double value, std::string_view unit) { return with_unit(figur
 
 double one_digit(double value) { return std::stod(fmt::format("{:.0e}", value)); }
 
-/// What a wrong factor usually comes from.
+/// Where a rate that is too large or too small by a factor usually comes from, in a job that does
+/// not say so.
 struct Cause {
+  Signal rate;
   double factor;
-  std::string_view words;  ///< after "as if"
+  std::string_view too_large, too_small;  ///< sentences
 };
 
 constexpr double kPi = std::numbers::pi;
 constexpr Cause kCauses[]{
-    {1e3, "the unit of one were a thousandth of what the job says (mm for m)"},
-    {1e6, "the unit of one were a millionth of what the job says (um for m)"},
-    {60.0, "one counted per minute where the job says per second"},
-    {6e4, "one were in mm/min where the job says m/s"},
-    {2.0 * kPi, "one counted revolutions where the job says rad"},
-    {60.0 / (2.0 * kPi), "one were in rpm where the job says rad/s"},
-    {180.0 / kPi, "one were in degrees where the job says rad"},
-    {100.0, "one were in cm where the job says m"},
-    {25.4, "one were in inches where the job says mm"},
-    {9.80665, "one were in g where the job says m/s^2"},
+    {Signal::velocity, 1e3,
+     "Say mm/s for m/s if the velocity is stored so, or m for mm of the position.",
+     "Say m/s for mm/s if the velocity is stored so, or mm for m of the position."},
+    {Signal::velocity, 1e6,
+     "Say um/s for m/s if the velocity is stored so, or m for um of the position.",
+     "Say m/s for um/s if the velocity is stored so, or um for m of the position."},
+    {Signal::velocity, 60.0, "The velocity is per minute: say m/min for m/s.",
+     "The velocity is per second: say m/s for m/min."},
+    {Signal::velocity, 6e4, "The velocity is per minute: say mm/min for m/s.",
+     "The velocity is per second: say m/s for mm/min."},
+    {Signal::velocity, 30.0 / kPi, "As rpm for rad/s: multiply the velocity by 0.10472.",
+     "As rad/s for rpm: multiply the velocity by 9.5493."},
+    {Signal::velocity, 180.0 / kPi, "As degrees for radians: multiply the velocity by 0.017453.",
+     "As radians for degrees: multiply the velocity by 57.296."},
+    {Signal::acceleration, 1e3,
+     "Say mm/s^2 for m/s^2 if the acceleration is stored so, or m/s for mm/s of the velocity.",
+     "Say m/s^2 for mm/s^2 if the acceleration is stored so, or mm/s for m/s of the velocity."},
+    {Signal::acceleration, 9.80665, "It is not in g: no factor 9.80665.",
+     "It is in g: say 'unit: m/s^2, factor: 9.80665'."},
+    {Signal::acceleration, 60.0, "The velocity is per second: say m/s for m/min.",
+     "The velocity is per minute: say m/min for m/s."},
 };
-
-const Cause* cause_of(double ratio) {
-  for (const Cause& cause : kCauses)
-    if (std::abs(std::abs(std::log(std::abs(ratio))) - std::log(cause.factor)) < kSameUnit)
-      return &cause;
-  return nullptr;
-}
-
-/// What to write in a job for a signal that comes out `ratio` times too large.
-std::string advice(double ratio, Signal signal) {
-  const std::string name(info(signal).name);
-  static constexpr std::pair<double, std::string_view> kPrefixes[]{{1e3, "milli"}, {1e6, "micro"}};
-  for (const auto& [factor, prefix] : kPrefixes) {
-    if (std::abs(std::log(ratio / factor)) < kSameUnit) {
-      const std::string si(info(signal).unit);
-      return fmt::format("If the {} is stored in {}{}, say 'unit: {}{}'", name,
-                         prefix == "milli" ? "m" : "u", si, prefix == "milli" ? "m" : "u", si);
-    }
-  }
-  if (signal == Signal::acceleration && std::abs(std::log(ratio * 9.80665)) < kSameUnit)
-    return "If the acceleration is stored in g, say 'unit: m/s^2, factor: 9.80665'";
-  return fmt::format("Say the right unit, or 'factor: {:.4g}' of the {}", 1.0 / ratio, name);
-}
 
 std::string rate_concern(const RateCheck& rate) {
   const double ratio = rate.found.ratio, size = std::abs(ratio);
-  const std::string name(info(rate.rate).name), of(info(rate.of).name);
-  const bool scale = std::abs(std::log(size)) > kSameUnit;
-  if (!scale && ratio > 0.0) return {};
-  std::string text = fmt::format("{} is {:.5g} times the derivative of the {}", name, ratio, of);
-  if (scale) {
-    const Cause* cause = cause_of(size);
-    text += cause ? fmt::format(", as if {}", cause->words)
-                  : ", which no unit explains: a gear between the two?";
-    text += fmt::format(". {}.", advice(size, rate.rate));
-  } else {
-    text += ".";
+  const std::string_view name = info(rate.rate).name, of = info(rate.of).name;
+  const bool scaled = std::abs(std::log(size)) > kSameUnit;
+  if (!scaled && ratio > 0.0) return {};
+  std::string text = fmt::format("{} is {:.5g} times the derivative of the {}.", name, ratio, of);
+  if (scaled) {
+    const auto* cause = std::ranges::find_if(kCauses, [&](const Cause& c) {
+      return c.rate == rate.rate &&
+             std::abs(std::abs(std::log(size)) - std::log(c.factor)) < kSameUnit;
+    });
+    text += " ";
+    text += cause == std::end(kCauses) ? "No unit explains that: a gear between the two?"
+            : size > 1.0               ? cause->too_large
+                                       : cause->too_small;
   }
-  if (ratio < 0.0) text += fmt::format(" Their signs differ: say 'sign: -1' for one of them.");
+  if (ratio < 0.0) text += " Their signs differ: say 'sign: -1' for one of them.";
   return text;
 }
 
@@ -118,11 +110,11 @@ std::vector<std::string> concerns_of(const JobFile& file, const Recording& recor
                     "'unit: ms', for microseconds 'unit: us'.",
                     figure(sampling.interval)));
   if (sampling.gaps > 0)
-    say(
-        fmt::format("{} of more than 1.5 sampling intervals, the largest of {} s at {} s. What the "
-                    "command did there is not known: trim the recording, or make two of it.",
-                    sampling.gaps == 1 ? "A gap" : fmt::format("{} gaps", sampling.gaps),
-                    figure(sampling.largest_gap), figure(sampling.gap_at)));
+    say(fmt::format(
+        "{} {} s at {} s. What the command did there is not known: trim the recording, "
+        "or make two of it.",
+        sampling.gaps == 1 ? "A gap of" : fmt::format("{} gaps, the largest of", sampling.gaps),
+        figure(sampling.largest_gap), figure(sampling.gap_at)));
   if (sampling.jitter > 0.1)
     say(
         fmt::format("Samples come unevenly, {:.2g} % off on average. If the clock is even and only "

@@ -295,7 +295,8 @@ TEST_F(CommandLineTest, WhatLooksWrongInTheRecordingsIsToldBeforeTheFit) {
         {folder_.write("wrong.yaml", replaced(rubbing_job(false), from, to)), "--check", "--json"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     std::string all;
-    for (const Json& concern : Json::parse(outcome.out).at("recordings")[0].at("concerns"))
+    const Json json = Json::parse(outcome.out);
+    for (const Json& concern : json.at("recordings")[0].at("concerns"))
       all += concern.get<std::string>() + "\n";
     return all;
   };
@@ -311,7 +312,7 @@ TEST_F(CommandLineTest, WhatLooksWrongInTheRecordingsIsToldBeforeTheFit) {
             std::string::npos);
   EXPECT_NE(concerns("unit: s}", "unit: min}").find("Is the unit of the time right?"),
             std::string::npos);
-  EXPECT_NE(concerns("sigma: 2 mm/s", "sigma: 0.02 mm/s").find("velocity scatters by 0.002"),
+  EXPECT_NE(concerns("sigma: 2 mm/s", "sigma: 0.02 mm/s").find("velocity scatters by 0.001"),
             std::string::npos);
 }
 
