@@ -14,9 +14,10 @@
 #include "apps/job_file.h"
 #include "apps/output_folder.h"
 #include "apps/recording_guess.h"
-#include "apps/text_table.h"
+#include "apps/starter_axis.h"
 #include "apps/units.h"
 #include "apps/version.h"
+#include "apps/yaml_text.h"
 #include "fit/estimate.h"
 #include "fit/force_balance.h"
 #include "fit/forecast.h"
@@ -30,23 +31,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kJobName = "job.yaml";
 constexpr const char* kAxisName = "axis.yaml";
-constexpr std::string_view kGuessed = "GUESSED: ";
 constexpr const char* kOnlyRatios = "only the ratios of the others to it show in a motion";
-
-/// Text of a file in a comment: of one line, whatever the file says.
-std::string harmless(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
-  return text;
-}
-
-/// Lines "# text" below one another.
-std::string comment(const std::string& text, std::size_t indent) {
-  std::string lines = paragraph(harmless(text), indent + 2);
-  for (std::size_t at = 0; at < lines.size(); at = lines.find('\n', at) + 1)
-    lines[at + indent] = '#';
-  return lines;
-}
 
 std::string scalar(const std::string& text) {
   YAML::Emitter out;
@@ -67,9 +52,6 @@ std::string column_map(const GuessedColumn& column, const std::string& unit,
   out << YAML::EndMap;
   return out.c_str();
 }
-
-/// Two digits: more would pretend to knowledge.
-double rough(double value) { return std::stod(fmt::format("{:.2g}", value)); }
 
 /// The signal that a kind is measured as.
 std::optional<Signal> signal_of(Kind kind) {
@@ -104,16 +86,12 @@ struct Input {
   double gain = 1.0;  ///< by which the column's values are multiplied besides
 };
 
-std::optional<Input> force_input(const RecordingGuess& recording) {
-  static const Input kInputs[]{
-      {"drive_force", Kind::force, false, "N"}, {"drive_force", Kind::force, true, "N"},
-      {"command", Kind::current, false},        {"command", Kind::current, true},
-      {"command", Kind::command, false},        {"command", Kind::motor_voltage, false},
-      {"command", Kind::set_velocity, false}};
-  for (const Input& input : kInputs)
-    if (recording.find(input.kind, input.wanted)) return input;
-  return std::nullopt;
-}
+// What a force source may be driven by, the nearest to a force first.
+const std::vector<Input> kForceInputs{
+    {"drive_force", Kind::force, false, "N"}, {"drive_force", Kind::force, true, "N"},
+    {"command", Kind::current, false},        {"command", Kind::current, true},
+    {"command", Kind::command, false},        {"command", Kind::motor_voltage, false},
+    {"command", Kind::set_velocity, false}};
 
 std::optional<Input> velocity_input(const RecordingGuess& recording) {
   for (const Kind kind : {Kind::set_velocity, Kind::command})
@@ -123,6 +101,10 @@ std::optional<Input> velocity_input(const RecordingGuess& recording) {
   if (recording.find(Kind::position, true) && recording.find(Kind::position))
     return Input{"position_reference", Kind::position, true, "m"};
   return std::nullopt;
+}
+
+bool has_input(const RecordingGuess& recording, const Input& input) {
+  return recording.find(input.kind, input.wanted) != nullptr;
 }
 
 struct Source {
@@ -151,15 +133,16 @@ class Initialiser {
       diagnostics.throw_if_any();
       structure_ = rig->model.structure;
     }
+    choose_inputs();
     drop_what_nothing_drives();
     turn_signs();
-    if (axis_.empty()) write_axis();
+    if (axis_.empty()) start_axis();
     list_candidates();
     choose_free();
     collect_guesses();
     InitialJob result{{}, std::move(guesses_)};
-    if (axis_.empty()) result.files.emplace_back(kAxisName, axis_text_);
-    result.files.emplace_back(kJobName, job_text(axis_.empty() ? kAxisName : relative(axis_)));
+    if (starter_) result.files.emplace_back(kAxisName, starter_->text);
+    result.files.emplace_back(kJobName, job_text(starter_ ? kAxisName : relative(axis_)));
     return result;
   }
 
@@ -212,7 +195,10 @@ class Initialiser {
     const RecordingGuess& first = sources_.front().guess;
     const bool loop =
         velocity_input(first) && (first.find(Kind::set_velocity) || first.find(Kind::tachometer) ||
-                                  first.find(Kind::preamplifier_voltage) || !force_input(first));
+                                  first.find(Kind::preamplifier_voltage) ||
+                                  std::ranges::none_of(kForceInputs, [&](const Input& input) {
+                                    return has_input(first, input);
+                                  }));
     structure_.drive = loop ? Drive::velocity_loop : Drive::force_source;
     structure_.transmission = loop ? Transmission::backlash : Transmission::rigid;
   }
@@ -225,10 +211,26 @@ class Initialiser {
     });
   }
 
-  void drop_what_nothing_drives() {
+  /// One input for all recordings of a force source, since K_f belongs to it: one that all have, or
+  /// else the first of them.
+  void choose_inputs() {
+    if (!force_source()) {
+      for (Source& source : sources_) source.input = velocity_input(source.guess);
+      return;
+    }
+    const auto all = std::ranges::find_if(kForceInputs, [&](const Input& input) {
+      return std::ranges::all_of(sources_,
+                                 [&](const Source& s) { return has_input(s.guess, input); });
+    });
+    const auto first = std::ranges::find_if(
+        kForceInputs, [&](const Input& input) { return has_input(sources_.front().guess, input); });
+    const auto chosen = all != kForceInputs.end() ? all : first;
     for (Source& source : sources_)
-      source.input = force_source() ? force_input(source.guess) : velocity_input(source.guess);
-    std::string unusable;
+      if (chosen != kForceInputs.end() && has_input(source.guess, *chosen)) source.input = *chosen;
+  }
+
+  void drop_what_nothing_drives() {
+    std::vector<std::string> unusable;
     std::erase_if(sources_, [&](const Source& source) {
       const bool driven = source.input.has_value();
       if (driven && has_measured(source)) return false;
@@ -236,29 +238,17 @@ class Initialiser {
       for (const GuessedColumn& c : source.guess.columns) found.push_back(c.column);
       for (const std::string& name : source.guess.unused)
         found.push_back(name + " (not understood)");
-      unusable += fmt::format(
-          "{}: no column {}; it has {}. Rename the column, for example to {}, and try again.\n",
+      unusable.push_back(harmless(fmt::format(
+          "{}: no column {}; it has {}. Rename the column, for example to {}, and try again.",
           source.guess.path, driven ? "tells how the axis moved" : "tells what drove the axis",
           found.empty() ? "the time alone" : fmt::format("{}", fmt::join(found, ", ")),
           driven           ? "position_mm or velocity_mps"
           : force_source() ? "current_A, force_N or command_V"
-                           : "command_V");
+                           : "command_V")));
       return true;
     });
-    if (sources_.empty()) {
-      unusable.pop_back();
-      throw std::runtime_error(harmless_lines(unusable));
-    }
-    if (!unusable.empty()) {
-      unusable.pop_back();
-      guesses_.push_back("Left out. " + unusable);
-    }
-  }
-
-  static std::string harmless_lines(const std::string& text) {
-    std::string result;
-    for (const char c : text) result += c == '\n' ? c : harmless(std::string(1, c)).front();
-    return result;
+    if (sources_.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(unusable, "\n")));
+    for (const std::string& text : unusable) guesses_.push_back("Left out: " + text);
   }
 
   static std::vector<double> driving(const Source& source) {
@@ -273,6 +263,41 @@ class Initialiser {
     const std::vector<double> none;
     return force_balance(source.guess.time.values, position ? position->values : none,
                          velocity ? velocity->values : none, driving(source));
+  }
+
+  /// The axis file that is missing.
+  void start_axis() {
+    const Source& first = sources_.front();
+    if (!force_source()) {
+      starter_ = velocity_loop_starter(first.file);
+      guesses_.push_back(
+          "the axis is one with a velocity loop, with the values of a published axis");
+      return;
+    }
+    const GuessedColumn* velocity = first.guess.find(Kind::velocity);
+    DrivenMass seen;
+    seen.column = input_of(first).column;
+    seen.input = drives_in_newtons(first)             ? DrivenMass::Input::force
+                 : first.input->kind == Kind::current ? DrivenMass::Input::current
+                                                      : DrivenMass::Input::unknown;
+    seen.largest_input = largest(driving(first));
+    if (velocity) seen.largest_speed = largest(velocity->values);
+    seen.balance = balance_of(first);
+    starter_ = mass_starter(first.file, seen);
+    structure_ = starter_->structure;
+    if (seen.input != DrivenMass::Input::force)
+      guesses_.push_back(
+          "the gain of the drive, K_f in axis.yaml: M, B_a and the frictions are multiples of it");
+  }
+
+  static bool drives_in_newtons(const Source& source) {
+    return source.input->key == std::string_view("drive_force");
+  }
+
+  static double largest(const std::vector<double>& values) {
+    double size = 0.0;
+    for (const double x : values) size = std::max(size, std::abs(x));
+    return size;
   }
 
   /// An input that acts against the motion is recorded with the other sign.
@@ -300,100 +325,6 @@ class Initialiser {
     }
   }
 
-  // The axis file
-
-  void write_axis() {
-    const Source& first = sources_.front();
-    const std::string origin = comment(
-        fmt::format(
-            "Written by axisfit {} --init, for {}. It is a start, not a description of your "
-            "axis: what the job does not fit, take from data sheets.",
-            version(), first.file),
-        0);
-    if (!force_source()) {
-      axis_text_ = fmt::format(
-          "{}#\n"
-          "# GUESSED: all of it. The recordings look like those of a velocity loop, so these\n"
-          "# are the values of a published one. Put yours; docs/axis-file.md.\n#\n{}",
-          origin, paper_axis());
-      guesses_.push_back(
-          "the axis is one with a velocity loop, with the values of a published axis");
-      return;
-    }
-    const std::vector<double> force = driving(first);
-    for (const double f : force) largest_force_ = std::max(largest_force_, std::abs(f));
-    if (!(largest_force_ > 0.0)) largest_force_ = 1.0;
-    const bool newtons = first.input->key == std::string_view("drive_force");
-    const auto balance = balance_of(first);
-    const bool sound = balance && balance->mass > 0.0 && balance->correlation > 0.3;
-    double mass = sound ? balance->mass : 1.0;
-    // Without the gain of the drive the mass is only known as a multiple of it.
-    double gain = 1.0;
-    while (!newtons && mass * gain < 0.1 && gain < 1e6) gain *= 10.0;
-    mass = std::clamp(rough(mass * gain), 1e-3, 1e5);
-    const double most = largest_force_ * gain;
-    const double speed = check_speed(first);
-    double viscous = sound && balance->viscous > 0.0 ? balance->viscous * gain
-                                                     : 0.1 * most / std::max(speed, 1e-3);
-    viscous = std::clamp(rough(viscous), 1e-6, 1e6);
-    const double coulomb =
-        sound && balance->coulomb > 0.0 ? rough(std::min(balance->coulomb * gain, most)) : 0.0;
-    const double constant = sound ? -rough(std::clamp(balance->constant * gain, -most, most)) : 0.0;
-    largest_force_ = most;
-    const std::string column = harmless(input_of(first).column);
-    for (const char* effect : {"coulomb_friction", "constant_force"})
-      structure_.effects.set(*effect_named(effect));
-    const std::string how = sound ? "fitted by the job; the start is from a force balance"
-                                  : "GUESSED: fitted by the job";
-    std::string gain_comment;
-    if (newtons) {
-      gain_comment = comment("Has no part where the recordings hold the force itself.", 2);
-    } else {
-      gain_comment = comment(
-          fmt::format("{}newtons for each {} of {}. Motion shows only the ratios of the mass and "
-                      "the frictions to it, so that it is not fitted: put {} here, and M, B_a, "
-                      "F_c and F_0 come out right.",
-                      kGuessed, unit_of_input(first), column,
-                      first.input->kind == Kind::current
-                          ? "torque constant / pinion radius, or 2 pi torque constant / spindle "
-                            "lead,"
-                          : "the gain of the drive"),
-          2);
-      guesses_.push_back(
-          "the gain of the drive, K_f in axis.yaml: M, B_a and the frictions are multiples of it");
-    }
-    axis_text_ = fmt::format(
-        "{}#\n"
-        "# One mass with viscous and Coulomb friction that a force moves: the least that a\n"
-        "# driven axis has. What it lacks fit-params tells, and --close-loop adds. All\n"
-        "# keys: docs/axis-file.md.\n"
-        "name: starter axis\n"
-        "drive: force_source   # {} moves it\n"
-        "transmission: rigid   # motor and arm move as one; backlash needs a motor\n"
-        "parameters:\n{}"
-        "  K_f: {}\n"
-        "  M: {}     # {}\n"
-        "  B_a: {}   # likewise\n"
-        "effects:\n"
-        "  coulomb_friction: {{F_c: {}}}   # likewise\n"
-        "  constant_force: {{F_0: {}}}     # likewise; gravity, or an offset of the drive\n",
-        origin, column, gain_comment, with_unit(gain, "N/V"), with_unit(mass, "kg"), how,
-        with_unit(viscous, "N s/m"), with_unit(coulomb, "N"), with_unit(constant, "N"));
-  }
-
-  static std::string unit_of_input(const Source& source) {
-    return source.input->kind == Kind::current ? "ampere" : "volt (or unit)";
-  }
-
-  static double check_speed(const Source& source) {
-    if (const GuessedColumn* velocity = source.guess.find(Kind::velocity)) {
-      double speed = 0.0;
-      for (const double v : velocity->values) speed = std::max(speed, std::abs(v));
-      return speed;
-    }
-    return 1.0;
-  }
-
   // What is free
 
   void list_candidates() {
@@ -411,26 +342,24 @@ class Initialiser {
     for (const QuantityEntry& entry : quantity_list()) {
       if (!effect_named(entry.group) || !is_used(entry, structure_) || entry.quantity.shape)
         continue;
-      const double most = 2.0 * rough(largest_force_);
-      const bool force = axis_.empty() && entry.quantity.unit == "N";
+      const bool force = starter_ && entry.quantity.unit == "N";
+      const double most = force ? 2.0 * starter_->largest_force : 0.0;
       add(entry.name, force ? fmt::format("{{bounds: [{}, {}]}}",
                                           with_unit(entry.quantity.lower < 0.0 ? -most : 0.0, "N"),
                                           with_unit(most, "N"))
                             : "{}");
     }
-    if (axis_.empty() && !force_source()) add("K_1");
+    if (starter_ && !force_source()) add("K_1");
     // An encoder that rounds down reads half a step low.
     const RecordingGuess& first = sources_.front().guess;
     const GuessedColumn* position = first.find(Kind::position);
     const bool offset = position && !force_source() && !is_rounded_away(*position, first);
     if (const double grid = offset ? quantum(position->values) : 0.0; grid > 0.0)
-      add("position.bias", fmt::format("{{bounds: [{}, {}]}}", with_unit(-rough(grid), "m"),
-                                       with_unit(rough(grid), "m")));
-    const bool newtons = std::ranges::any_of(
-        sources_, [](const Source& s) { return s.input->key == std::string_view("drive_force"); });
-    if (!force_source() || newtons) return;
+      add("position.bias", fmt::format("{{bounds: [{}, {}]}}", with_unit(-two_digits(grid), "m"),
+                                       with_unit(two_digits(grid), "m")));
+    if (!force_source() || std::ranges::any_of(sources_, drives_in_newtons)) return;
     add("K_f");
-    if (axis_.empty()) candidates_.back().left_out = kOnlyRatios;
+    if (starter_) candidates_.back().left_out = kOnlyRatios;
   }
 
   /// Whether the noise of a position is below the steps of its encoder, while a velocity tells of
@@ -441,37 +370,35 @@ class Initialiser {
            noise_from_differences(position.values) < quantum(position.values);
   }
 
-  /// Takes out one after the other what the recordings leave open.
+  /// Takes out one after the other what the recordings leave open, the least wanted first.
   void choose_free() {
-    const auto draft = [&] { return read_draft().job; };
     for (;;) {
-      const auto free = std::ranges::count(candidates_, std::string(), &Candidate::left_out);
-      const Job job = draft();
+      const Job job = read_draft().job;
       const Forecast found = forecast(job, draw_start(job, 0));
       if (!found.finite) {
         guesses_.push_back(
-            "what the recordings can tell is not known: with the values of the axis "
-            "file the simulation does not get through them");
+            "what the recordings can tell is not known: with the values of the axis file the "
+            "simulation does not get through them");
         return;
       }
-      if (free == 1) return;
+      if (job.free.size() == 1) return;
+      Candidate* last = nullptr;
+      bool unseen = false;
       std::size_t index = 0;
-      Candidate* worst = nullptr;
       for (Candidate& candidate : candidates_) {
         if (!candidate.left_out.empty()) continue;
         const ParameterUncertainty& u = found.uncertainty.parameters[index];
-        const bool unseen = std::ranges::count(found.together.without_influence, index) > 0;
         if (!u.determined || u.weak) {
-          worst = &candidate;
-          reason_ = unseen ? "no recorded signal shows it" : "these recordings leave it open";
+          last = &candidate;
+          unseen = std::ranges::count(found.together.without_influence, index) > 0;
         }
         ++index;
       }
-      if (worst == nullptr) return;
-      const std::string_view need = excitation_needed(worst->name);
-      worst->left_out = worst->name == "K_f"
-                            ? kOnlyRatios
-                            : reason_ + (need.empty() ? "" : fmt::format("; it needs {}", need));
+      if (last == nullptr) return;
+      const std::string_view need = excitation_needed(last->name);
+      last->left_out = unseen ? "no recorded signal shows it" : "these recordings leave it open";
+      if (!need.empty()) last->left_out += fmt::format("; it needs {}", need);
+      if (last->name == "K_f") last->left_out = kOnlyRatios;
     }
   }
 
@@ -487,8 +414,8 @@ class Initialiser {
     } const remover{folder};
     fs::create_directories(folder);
     std::string axis = kAxisName;
-    if (axis_.empty())
-      write_file((folder / axis).string(), axis_text_);
+    if (starter_)
+      write_file((folder / axis).string(), starter_->text);
     else
       axis = fs::absolute(axis_).string();
     write_file((folder / kJobName).string(), job_text(axis));
@@ -627,17 +554,15 @@ class Initialiser {
                "whatever the fit. So the simulation is held to the recording, and the "
                "parameters are those that predict best.",
                2) +
-           fmt::format("  coupling: {{fixed: {} 1/s}}\n", rough(0.3 / found.interval));
+           fmt::format("  coupling: {{fixed: {} 1/s}}\n", two_digits(0.3 / found.interval));
   }
 
   std::string axis_, folder_;
   std::vector<Source> sources_;
   Structure structure_;
-  std::string axis_text_;
-  double largest_force_ = 0.0;
+  std::optional<StarterAxis> starter_;  ///< none where an axis file is given
   std::vector<Candidate> candidates_;
   std::vector<std::string> guesses_;
-  std::string reason_;
 };
 
 }  // namespace

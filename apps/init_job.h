@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,8 +21,5 @@ struct InitialJob {
 /// Throws std::runtime_error where the recordings make no job.
 InitialJob initial_job(const std::vector<std::string>& recordings, const std::string& axis,
                        const std::string& folder);
-
-/// The axis file of the paper's axis, from which one with a velocity loop starts.
-std::string_view paper_axis();
 
 }  // namespace axisfit

@@ -8,6 +8,7 @@
 #include <map>
 #include <ranges>
 
+#include "apps/yaml_text.h"
 #include "fit/noise.h"
 #include "fit/recording_check.h"
 #include "sim/table.h"
@@ -96,13 +97,15 @@ class Guesser {
   void find_time() {
     for (const auto& [name, values] : file_.columns()) {
       const auto guess = guess_column(name);
-      if (!guess || guess->kind != Kind::time || !usable(values)) continue;
+      if (!guess || guess->kind != Kind::time || !usable(values) || !is_harmless(name)) continue;
       if (time_.raw == nullptr || guess->rank > time_.rank) set_time(name, values, *guess);
     }
     if (time_.raw != nullptr) return;
     // One that increases at an even pace, as nothing else does.
     for (const auto& [name, values] : file_.columns()) {
-      if (!usable(values) || !increases(values) || sampling(values).jitter > 1e-3) continue;
+      if (!usable(values) || !is_harmless(name) || !increases(values) ||
+          sampling(values).jitter > 1e-3)
+        continue;
       set_time(name, values, {});
       time_.guess("no name says time; this column increases at an even pace");
       return;
@@ -128,7 +131,7 @@ class Guesser {
     for (const auto& [name, values] : file_.columns()) {
       if (&values == time_.raw) continue;
       const auto guess = guess_column(name);
-      if (!guess || guess->kind == Kind::time || !usable(values) ||
+      if (!guess || guess->kind == Kind::time || !usable(values) || !is_harmless(name) ||
           values.size() != time_.raw->size()) {
         unused_.push_back(name);
         continue;

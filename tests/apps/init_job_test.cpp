@@ -160,6 +160,35 @@ TEST_F(InitJobTest, NamesCannotBreakOutOfTheFile) {
   EXPECT_EQ(file.job.recordings[0].measurements.size(), 1u);
 }
 
+TEST_F(InitJobTest, WhatIsNoTextIsNotUsed) {
+  // A micro sign and a degree sign as Latin-1 has them, a line that Unicode breaks, and a bell.
+  Table table = renamed(driven(), {{"t_s", 1.0},
+                                   {"i_A", 1.0},
+                                   {"x_m", 1.0},
+                                   {"v [\xB5m/s]", 1e6},
+                                   {"a\u2028free: \xB0\a", 1.0}});
+  folder_.write("a.csv", table);
+  make({"a.csv"});
+  EXPECT_EQ(read().job.recordings[0].measurements.size(), 1u);
+  EXPECT_NE(folder_.read("job.yaml").find("# Not used: a?free: ??, v [?m/s]\n"), std::string::npos)
+      << folder_.read("job.yaml");
+}
+
+TEST_F(InitJobTest, OneInputServesAllRecordings) {
+  // What a current moves says nothing of what a force does: the force is not in both.
+  Table both = renamed(
+      driven(), {{"t_s", 1.0}, {"force_N", 60.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
+  both.columns.push_back({"i_A", both.columns[1].values});
+  for (double& i : both.columns.back().values) i /= 60.0;
+  folder_.write("a.csv", both);
+  both.columns.erase(both.columns.begin() + 1);
+  folder_.write("b.csv", both);
+  make({"a.csv", "b.csv"});
+  const JobFile file = read();
+  ASSERT_EQ(file.job.recordings.size(), 2u);
+  expect_the_driven_mass(fitted(file), 1.0 / 60.0);
+}
+
 TEST_F(InitJobTest, MatlabVariablesAreColumnsToo) {
   mat_t* mat = Mat_CreateVer(folder_.path("run.mat").c_str(), nullptr, MAT_FT_MAT5);
   ASSERT_NE(mat, nullptr);
