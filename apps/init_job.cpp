@@ -93,12 +93,14 @@ const std::vector<Input> kForceInputs{
     {"command", Kind::command, false},        {"command", Kind::motor_voltage, false},
     {"command", Kind::set_velocity, false}};
 
-std::optional<Input> velocity_input(const RecordingGuess& recording) {
+/// What a velocity loop is driven by. A position that is asked for counts only where the controller
+/// is known, which makes the command of it.
+std::optional<Input> velocity_input(const RecordingGuess& recording, bool known_controller) {
   for (const Kind kind : {Kind::set_velocity, Kind::command})
     if (recording.find(kind)) return Input{"command", kind};
   if (recording.find(Kind::velocity, true))
     return Input{"command", Kind::velocity, true, "V", ControllerSettings().gain};
-  if (recording.find(Kind::position, true) && recording.find(Kind::position))
+  if (known_controller && recording.find(Kind::position, true) && recording.find(Kind::position))
     return Input{"position_reference", Kind::position, true, "m"};
   return std::nullopt;
 }
@@ -193,12 +195,12 @@ class Initialiser {
   /// By what the first recording has of a kind that only one drive makes.
   void choose_drive() {
     const RecordingGuess& first = sources_.front().guess;
-    const bool loop =
-        velocity_input(first) && (first.find(Kind::set_velocity) || first.find(Kind::tachometer) ||
-                                  first.find(Kind::preamplifier_voltage) ||
-                                  std::ranges::none_of(kForceInputs, [&](const Input& input) {
-                                    return has_input(first, input);
-                                  }));
+    const bool loop = velocity_input(first, false) &&
+                      (first.find(Kind::set_velocity) || first.find(Kind::tachometer) ||
+                       first.find(Kind::preamplifier_voltage) ||
+                       std::ranges::none_of(kForceInputs, [&](const Input& input) {
+                         return has_input(first, input);
+                       }));
     structure_.drive = loop ? Drive::velocity_loop : Drive::force_source;
     structure_.transmission = loop ? Transmission::backlash : Transmission::rigid;
   }
@@ -215,7 +217,14 @@ class Initialiser {
   /// else the first of them.
   void choose_inputs() {
     if (!force_source()) {
-      for (Source& source : sources_) source.input = velocity_input(source.guess);
+      for (Source& source : sources_) {
+        source.input = velocity_input(source.guess, !axis_.empty());
+        if (!source.input || source.input->kind != Kind::velocity) continue;
+        GuessedColumn& column = *source.guess.find(Kind::velocity, true);
+        column.reasons.push_back(fmt::format(
+            "a velocity that is asked for, as a command of {:g} V for 1 m/s", source.input->gain));
+        column.guessed = true;
+      }
       return;
     }
     const auto all = std::ranges::find_if(kForceInputs, [&](const Input& input) {
@@ -239,7 +248,8 @@ class Initialiser {
       for (const std::string& name : source.guess.unused)
         found.push_back(name + " (not understood)");
       unusable.push_back(harmless(fmt::format(
-          "{}: no column {}; it has {}. Rename the column, for example to {}, and try again.",
+          "{}: no column {}; it has {}. If one of them does, call it {}, for example; if not, "
+          "record it.",
           source.guess.path, driven ? "tells how the axis moved" : "tells what drove the axis",
           found.empty() ? "the time alone" : fmt::format("{}", fmt::join(found, ", ")),
           driven           ? "position_mm or velocity_mps"
@@ -506,13 +516,9 @@ class Initialiser {
       const auto factor = unit_factor(unit, si_unit(input.kind));
       written.factor *= std::get<double>(factor);
       unit = "V";
-      written.reasons.push_back(
-          source.input->kind == Kind::velocity
-              ? fmt::format("a velocity that is asked for, as a command of {:g} V for 1 m/s",
-                            source.input->gain)
-              : "the command of a force source; a job counts it in V, whatever it is, and K_f in "
-                "N/V");
-      written.guessed = written.guessed || source.input->kind == Kind::velocity;
+      if (source.input->kind != Kind::velocity)
+        written.reasons.push_back(
+            "the command of a force source; a job counts it in V, whatever it is, and K_f in N/V");
     }
     return reasons_text(written, 6) +
            fmt::format("      {}: {}\n", source.input->key, column_map(written, unit));

@@ -18,7 +18,9 @@ std::string harmless(const std::string& text) {
     const std::string_view rest = std::string_view(result).substr(i);
     const bool control = rest[0] == '\xC2' && static_cast<unsigned char>(rest[1]) < 0xA0;
     const bool separator = rest.starts_with("\u2028") || rest.starts_with("\u2029");
-    if (control || separator) result.replace(i, control ? 2 : 3, "?");
+    if (!control && !separator) continue;
+    result[i] = '?';
+    result.erase(i + 1, control ? 1 : 2);
   }
   return result;
 }

@@ -229,6 +229,29 @@ TEST_F(InitJobTest, RecordingsOfOneNameGetDifferentOnes) {
   EXPECT_NE(file.job.recordings[0].name, file.job.recordings[1].name);
 }
 
+TEST_F(InitJobTest, AVelocityThatIsAskedForIsACommand) {
+  Table table = record_levels(AXISFIT_CONFIGS "/axes/x.yaml", {{6.0, -4.0, 2.0}, 0.2}, 0.6,
+                              {Signal::velocity}, 500.0);
+  table.columns[1].name = "velocity setpoint [mm/s]";
+  for (double& x : table.columns[1].values) x *= 100.0;  // 10 V for 1 m/s
+  folder_.write("a.csv", table);
+  const InitialJob made = make({"a.csv"});
+  EXPECT_EQ(made.guesses.size(), 2u);
+  const Schedule command = read().job.recordings[0].command;
+  EXPECT_NEAR(command.values.front(), 6.0, 1e-9);
+}
+
+TEST_F(InitJobTest, APositionThatIsAskedForNeedsTheController) {
+  Table table = record_levels(AXISFIT_CONFIGS "/axes/x.yaml", {{6.0, -4.0, 2.0}, 0.2}, 0.6,
+                              {Signal::position}, 500.0);
+  table.columns[1].name = "reference_position_m";
+  folder_.write("a.csv", table);
+  EXPECT_THROW(make({"a.csv"}), std::runtime_error);
+  make({"a.csv"}, AXISFIT_CONFIGS "/axes/x.yaml");
+  EXPECT_NE(folder_.read("job.yaml").find("position_reference: {column: reference_position_m"),
+            std::string::npos);
+}
+
 TEST_F(InitJobTest, SaysWhatIsMissing) {
   const auto message = [&](const std::string& header) {
     std::string contents = header + "\n";
@@ -243,14 +266,14 @@ TEST_F(InitJobTest, SaysWhatIsMissing) {
     return std::string("no error");
   };
   EXPECT_EQ(message("time_s,pos_mm"),
-            "a.csv: no column tells what drove the axis; it has pos_mm. Rename the column, for "
-            "example to current_A, force_N or command_V, and try again.");
+            "a.csv: no column tells what drove the axis; it has pos_mm. If one of them does, "
+            "call it current_A, force_N or command_V, for example; if not, record it.");
   EXPECT_EQ(message("time_s,iq"),
-            "a.csv: no column tells how the axis moved; it has iq. Rename the column, for example "
-            "to position_mm or velocity_mps, and try again.");
+            "a.csv: no column tells how the axis moved; it has iq. If one of them does, "
+            "call it position_mm or velocity_mps, for example; if not, record it.");
   EXPECT_EQ(message("foo,bar"),
-            "a.csv: no column tells what drove the axis; it has bar (not understood). Rename the "
-            "column, for example to current_A, force_N or command_V, and try again.");
+            "a.csv: no column tells what drove the axis; it has bar (not understood). If one of "
+            "them does, call it current_A, force_N or command_V, for example; if not, record it.");
   EXPECT_TRUE(folder_.names().count("job.yaml") == 0);
 }
 
