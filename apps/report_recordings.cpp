@@ -104,11 +104,6 @@ std::vector<std::string> concerns_of(const JobFile& file, const Recording& recor
   std::vector<std::string> concerns;
   const auto say = [&](std::string text) { concerns.push_back(std::move(text)); };
   const Sampling& sampling = check.sampling;
-  if (sampling.interval > 0.2 || sampling.interval < 2e-6)
-    say(
-        fmt::format("Samples are {} s apart. Is the unit of the time right? For milliseconds say "
-                    "'unit: ms', for microseconds 'unit: us'.",
-                    figure(sampling.interval)));
   if (sampling.gaps > 0)
     say(fmt::format(
         "{} {} s at {} s. What the command did there is not known: trim the recording, "
@@ -138,6 +133,11 @@ std::vector<std::string> concerns_of(const JobFile& file, const Recording& recor
                     : std::abs(std::log(ratio * 1e3)) < kSameUnit ? "Say 'unit: s'."
                                                                   : "Say the right one."));
   } else {
+    if (sampling.interval > 0.2 || sampling.interval < 2e-6)
+      say(
+          fmt::format("Samples are {} s apart. Is the unit of the time right? For milliseconds say "
+                      "'unit: ms', for microseconds 'unit: us'.",
+                      figure(sampling.interval)));
     for (const RateCheck& rate : check.rates)
       if (std::string concern = rate_concern(rate); !concern.empty()) say(std::move(concern));
   }
@@ -193,15 +193,14 @@ std::string recordings_text(const JobFile& file, const std::vector<RecordingChec
                     fmt::format("{} switches", check.switches)});
     const double largest = std::max(std::abs(check.command.low), std::abs(check.command.high));
     if (!force && largest >= file.rig.controller.limit && check.at_largest > 0.01)
-      rows.back().back() =
-          fmt::format("{:.0f} % of the time at its limit", 100.0 * check.at_largest);
+      rows.back().back() = fmt::format("at limit {:.0f} %", 100.0 * check.at_largest);
     for (std::size_t m = 0; m < check.measurements.size(); ++m) {
       const ValueCheck& values = check.measurements[m];
       const Measurement& measurement = recording.measurements[m];
       std::string remark = measurement.fitted ? "" : "not fitted";
       for (const RateCheck& rate : check.rates)
         if (rate.rate == measurement.signal)
-          remark = fmt::format("{:.4g} x d({})/dt", rate.found.ratio, info(rate.of).name);
+          remark = fmt::format("{:.4g} x d/dt", rate.found.ratio);
       const SignalInfo& signal = info(measurement.signal);
       rows.push_back({std::string(signal.name), figure(values.low), figure(values.high),
                       std::string(signal.unit), fmt::format("{:.2g}", measurement.sigma),

@@ -286,6 +286,13 @@ TEST_F(CommandLineTest, WhatCanBeDeterminedIsToldBeforeTheFit) {
     EXPECT_GT(parameter.at("standard_error"), 0.0);
     for (const Json& shown : parameter.at("shown")) EXPECT_GT(shown.at("rms_over_noise"), 0.0);
   }
+  const auto evaluations = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {job(), "--check", "--json", "--threads", "1"});
+    const Json timed = Json::parse(fit(std::move(more)).out);
+    EXPECT_GT(timed.at("evaluation_time_s"), 0.0);
+    return timed.at("expected_time_s").get<double>() / timed.at("evaluation_time_s").get<double>();
+  };
+  EXPECT_GT(evaluations({"--starts", "40"}), 10.0 * evaluations({}));
   EXPECT_EQ(fit({job(), "--check", "--profile"}).exit_code, 2);
 }
 
