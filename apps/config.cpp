@@ -66,8 +66,8 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// The offset of the first byte that is not UTF-8 (RFC 3629: no overlong forms, no surrogates), or
-// npos.
+}  // namespace
+
 std::size_t find_invalid_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[i + k]); };
@@ -93,6 +93,8 @@ std::size_t find_invalid_utf8(std::string_view text) {
   }
   return std::string_view::npos;
 }
+
+namespace {
 
 // Reads the decimal number at the start of `text` and returns what follows it. Nothing when there
 // is none or when it may be meant otherwise: 010 is octal in YAML 1.1, 0,5 and 1_000 are numbers

@@ -246,6 +246,10 @@ std::optional<ConfigNode> ConfigMap::read(std::string_view key, T& value) {
   return node;
 }
 
+/// The offset of the first byte that is not UTF-8 (RFC 3629: no overlong forms, no surrogates), or
+/// npos.
+std::size_t find_invalid_utf8(std::string_view text);
+
 /// The text of a configuration file, with the lines of a comment first.
 std::string with_comment(const std::string& comment, const std::string& yaml);
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "apps/axis_file.h"
 #include "apps/command_line.h"
 #include "apps/config.h"
+#include "apps/init_job.h"
 #include "apps/job_file.h"
 #include "apps/motion_file.h"
 #include "apps/output_folder.h"
@@ -22,6 +24,7 @@
 #include "apps/result_json.h"
 #include "apps/terminal.h"
 #include "apps/text_table.h"
+#include "fit/effort.h"
 
 namespace {
 
@@ -48,11 +51,13 @@ void stop_on_signals() {
 }
 
 struct Arguments {
-  std::string command;  ///< as one would type it
-  std::string job;
+  std::string command;             // as one would type it
+  std::vector<std::string> files;  // the job, or the recordings to make one for
   std::string data;
   std::string output;
   std::string from;
+  std::string axis;
+  bool init = false;
   bool check = false;
   Wishes wishes;
   bool json = false;
@@ -62,6 +67,7 @@ struct Arguments {
 };
 
 constexpr const char* kExamples = R"(Examples:
+  fit-params --init step.csv levels.csv
   fit-params configs/jobs/paper.yaml
   fit-params configs/jobs/close-loop.yaml --close-loop
   fit-params configs/jobs/paper.yaml --check
@@ -93,15 +99,46 @@ std::string for_stdout(const std::string& report) {
   return takes_colour(STDOUT_FILENO) ? coloured(report) : report;
 }
 
-/// What the recordings can tell, before the fit.
-int check(const Arguments& arguments, const Job& job, std::optional<ProgressLine>& line) {
+/// What the recordings show and can tell, before the fit.
+int check(const Arguments& arguments, const JobFile& file, std::optional<ProgressLine>& line) {
+  const Job& job = file.job;
   line->tell({"looking at what the recordings can tell"});
   const Forecast found = forecast(job, draw_start(job, 0));
+  const Effort effort = expected_effort(job);
+  const std::vector<RecordingCheck> recordings = check_recordings(job);
   line.reset();
   if (arguments.json)
-    print(forecast_json(job, found).dump(2) + "\n");
+    print(check_json(file, recordings, found, effort).dump(2) + "\n");
   else if (!arguments.quiet)
-    print(for_stdout(forecast_text(job, found)));
+    print(for_stdout(recordings_text(file, recordings) + "\n" + forecast_text(job, found) + "\n" +
+                     effort_text(job, effort)));
+  return kUsable;
+}
+
+/// A job file for recordings, and an axis file where none is given.
+int init(const Arguments& arguments, std::optional<ProgressLine>& line) {
+  namespace fs = std::filesystem;
+  const fs::path folder = arguments.output.empty() ? "." : arguments.output;
+  const InitialJob made = initial_job(arguments.files, arguments.axis, folder.string());
+  const auto path = [&](const std::string& name) {
+    return (folder / name).lexically_normal().string();
+  };
+  line.reset();
+  for (const auto& [name, contents] : made.files)
+    if (fs::exists(path(name)))
+      throw std::runtime_error(
+          fmt::format("{} is there already and would be overwritten: move it away, or name another "
+                      "folder with --output",
+                      path(name)));
+  fs::create_directories(folder);
+  for (const auto& [name, contents] : made.files) write_file(path(name), contents);
+  if (arguments.quiet) return kUsable;
+  std::string text;
+  for (const auto& [name, contents] : made.files) text += fmt::format("Written: {}\n", path(name));
+  if (!made.guesses.empty()) text += "To look at, for nothing in the recordings says it\n";
+  for (const std::string& guess : made.guesses) text += paragraph(guess, 2);
+  const std::string job = path(made.files.back().first);
+  std::cerr << text << fmt::format("Next: fit-params {} --check\n      fit-params {}\n", job, job);
   return kUsable;
 }
 
@@ -136,15 +173,15 @@ std::vector<std::pair<std::string, std::string>> files_of(const Arguments& argum
   Rig fitted = outcome.file.rig;
   fitted.model = fitted_model(outcome.job(), outcome.fit());
   const std::string origin = fmt::format("axisfit {} from {}, starting from {}", version(),
-                                         arguments.job, outcome.file.axis_file);
+                                         arguments.files.front(), outcome.file.axis_file);
   std::vector<std::pair<std::string, std::string>> files{
       {kResultFile, json},
       {kAxisFile,
        format_axis_file(fitted, fmt::format("Fitted by {}.\n{}", origin, verdict_of(outcome)))},
       {kResidualsFile, residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis)},
-      {kReportFile,
-       report_page(outcome, {arguments.command, arguments.job, text_of(arguments.job),
-                             outcome.file.axis_file, text_of(outcome.file.axis_file)})}};
+      {kReportFile, report_page(outcome, {arguments.command, arguments.files.front(),
+                                          text_of(arguments.files.front()), outcome.file.axis_file,
+                                          text_of(outcome.file.axis_file)})}};
   if (const Experiment* next = next_experiment(outcome)) {
     files.emplace_back(
         kMotionFile, format_motion_file({next->motion, next->duration},
@@ -160,16 +197,14 @@ std::string advice(const Arguments& arguments) {
                       "Nothing is written: with --output FOLDER the result is kept, also when "
                       "stopped, and --from FOLDER/fitted.yaml goes on from it.");
   const std::string& folder = arguments.output;
-  std::string command = "fit-params " + quoted(arguments.job);
+  std::string command = "fit-params " + quoted(arguments.files.front());
   if (!arguments.data.empty()) command += " --data " + quoted(arguments.data);
   if (arguments.wishes.close_loop) command += " --close-loop";
   command +=
       fmt::format(" --from {} --output {}", quoted(folder + "/" + kAxisFile), quoted(folder));
   return "\n" +
          paragraph(fmt::format(
-             "What was finished is in {0}/{1}, {0}/{2} and {0}/{3}. To go on from "
-             "its values{4}:",
-             folder, kResultFile, kAxisFile, kResidualsFile,
+             "What was finished is in {}. To go on from its values{}:", folder,
              arguments.wishes.close_loop ? ", with the search for effects begun anew" : "")) +
          "  " + command + "\n";
 }
@@ -177,18 +212,28 @@ std::string advice(const Arguments& arguments) {
 int run(const Arguments& arguments) {
   std::optional<ProgressLine> line(std::in_place, !arguments.quiet && is_terminal(STDERR_FILENO));
   line->tell({"reading the recordings"});
-  JobFile file = read_job_file(arguments.job, arguments.data);
+  if (arguments.init) return init(arguments, line);
+  if (arguments.files.size() > 1)
+    throw std::runtime_error(fmt::format(
+        "one job at a time: {} is one too many (to make a job for recordings, say --init)",
+        arguments.files[1]));
+  const std::string& job = arguments.files.front();
+  for (const char* ending : {".csv", ".mat"})
+    if (job.ends_with(ending))
+      throw std::runtime_error(fmt::format(
+          "{} is a recording; a job for it is made by: fit-params --init {}", job, quoted(job)));
+  JobFile file = read_job_file(job, arguments.data);
   if (!arguments.from.empty()) begin_at(arguments.from, file.job);
-  if (arguments.check) return check(arguments, file.job, line);
+  FitOptions& options = file.job.options;
+  if (arguments.threads) options.threads = *arguments.threads;
+  if (arguments.starts) options.starts = *arguments.starts;
+  if (arguments.seed) options.seed = *arguments.seed;
+  if (arguments.check) return check(arguments, file, line);
   if (!arguments.output.empty()) {
     std::vector<std::string> names{kResultFile, kAxisFile, kResidualsFile, kReportFile};
     if (arguments.wishes.experiment) names.emplace_back(kMotionFile);
     check_folder(arguments.output, names);
   }
-  FitOptions& options = file.job.options;
-  if (arguments.threads) options.threads = *arguments.threads;
-  if (arguments.starts) options.starts = *arguments.starts;
-  if (arguments.seed) options.seed = *arguments.seed;
 
   const Outcome outcome = find_outcome(std::move(file), arguments.wishes,
                                        [&](const Progress& progress) { line->tell(progress); });
@@ -215,7 +260,9 @@ int main(int argc, char** argv) {
   CLI::App app{"Fits the model of a robot axis to recordings of it, as a job file describes.",
                "fit-params"};
   app.footer(kExamples);
-  app.add_option("JOB.yaml", arguments.job, "the job file (docs/job-file.md)")->required();
+  app.add_option("JOB.yaml", arguments.files,
+                 "the job file (docs/job-file.md); with --init recordings, CSV or MATLAB")
+      ->required();
   auto* close =
       app.add_flag("--close-loop", arguments.wishes.close_loop,
                    "then add the effects that the model lacks, each checked by data not fitted");
@@ -224,21 +271,37 @@ int main(int argc, char** argv) {
                                "likelihood profiles: of all parameters, or --profile=NAME,NAME");
   auto* experiment = app.add_flag("--suggest-experiment", arguments.wishes.experiment,
                                   "say which motion to record next; next-motion.yaml in --output");
-  app.add_flag("--check", arguments.check,
-               "do not fit: say what the recordings can tell of the free parameters")
-      ->excludes(close)
-      ->excludes(profile)
-      ->excludes(experiment);
-  app.add_option("--data", arguments.data, "folder of the recordings, if not the job file's")
-      ->type_name("FOLDER");
-  app.add_option("--from", arguments.from,
-                 "begin at the values of this axis file, such as a fitted.yaml")
-      ->type_name("AXIS.yaml");
+  auto* check = app.add_flag("--check", arguments.check,
+                             "do not fit: say what the recordings show, what they can tell of the "
+                             "free parameters, and how long the fit will take")
+                    ->excludes(close)
+                    ->excludes(profile)
+                    ->excludes(experiment);
+  auto* data =
+      app.add_option("--data", arguments.data, "folder of the recordings, if not the job file's")
+          ->type_name("FOLDER");
+  auto* from = app.add_option("--from", arguments.from,
+                              "begin at the values of this axis file, such as a fitted.yaml")
+                   ->type_name("AXIS.yaml");
   app.add_option("--output", arguments.output,
-                 "folder for report.html, result.json, fitted.yaml and residuals.csv")
+                 "folder for report.html, result.json, fitted.yaml and residuals.csv; with --init "
+                 "for the job")
       ->type_name("FOLDER");
   auto* json = app.add_flag("--json", arguments.json, "print result.json instead of the table");
   app.add_flag("--quiet", arguments.quiet, "print nothing but errors")->excludes(json);
+  auto* init = app.add_flag("--init", arguments.init,
+                            "write job.yaml, and axis.yaml, for recordings: columns, units and "
+                            "signals as their names and values tell")
+                   ->excludes(close)
+                   ->excludes(profile)
+                   ->excludes(experiment)
+                   ->excludes(check)
+                   ->excludes(data)
+                   ->excludes(from)
+                   ->excludes(json);
+  app.add_option("--axis", arguments.axis, "with --init: the axis file, if there is one")
+      ->needs(init)
+      ->type_name("AXIS.yaml");
   app.add_option("--threads", arguments.threads, "number of threads; default: all cores")
       ->check(CLI::Range(1, 1024));
   app.add_option("--seed", arguments.seed, "seed of the random starts; default: the job's")

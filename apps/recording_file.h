@@ -21,6 +21,9 @@ class RecordingFile {
   /// what there is.
   const std::vector<double>* column(const ConfigNode& name) const;
 
+  /// All columns by name; those of a MATLAB file may differ in length and hold what is not finite.
+  const std::map<std::string, std::vector<double>>& columns() const { return columns_; }
+
   /// "file:17" or "file: row 17", for messages about the row with this index.
   std::string where(std::size_t row) const;
 

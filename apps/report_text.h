@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "apps/outcome.h"
+#include "fit/effort.h"
 #include "fit/forecast.h"
+#include "fit/recording_check.h"
 
 namespace axisfit {
 
@@ -48,6 +50,16 @@ std::string suggestion_text(const Outcome& outcome);
 
 /// What the recordings of a job can tell of its parameters, before the fit.
 std::string forecast_text(const Job& job, const Forecast& forecast);
+
+/// What the recordings show by themselves: sampling, ranges, noise, and what looks wrong.
+std::string recordings_text(const JobFile& file, const std::vector<RecordingCheck>& checks);
+
+/// What looks wrong with a recording, and what to do about it: a sentence or two each.
+std::vector<std::string> concerns_of(const JobFile& file, const Recording& recording,
+                                     const RecordingCheck& check);
+
+/// How long the fit will take.
+std::string effort_text(const Job& job, const Effort& effort);
 
 /// Cells of one row about a missing force: name, rms, noise, per cent of the drive force, cutoff.
 std::vector<std::string> force_cells(const std::string& name, const MissingForce& force);

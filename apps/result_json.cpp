@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "apps/report_text.h"
 #include "apps/version.h"
 
 namespace axisfit {
@@ -320,6 +321,52 @@ Json loop_json(const Outcome& outcome) {
   return json;
 }
 
+Json recording_check_json(const JobFile& file, const Recording& recording,
+                          const RecordingCheck& check) {
+  const Sampling& sampling = check.sampling;
+  Json signals = Json::array();
+  for (std::size_t m = 0; m < check.measurements.size(); ++m) {
+    const ValueCheck& values = check.measurements[m];
+    const Measurement& measurement = recording.measurements[m];
+    signals.push_back({{"name", info(measurement.signal).name},
+                       {"unit", info(measurement.signal).unit},
+                       {"lowest", values.low},
+                       {"highest", values.high},
+                       {"sigma", measurement.sigma},
+                       {"sigma_source", noise_name(measurement.noise)},
+                       {"noise", values.noise},
+                       {"grid", values.grid},
+                       {"frozen_samples", values.frozen},
+                       {"frozen_at_s", optional(values.frozen > 0, values.frozen_at)},
+                       {"clipped_samples", values.clipped},
+                       {"clipped_at", optional(values.clipped > 0, values.clipped_at)}});
+  }
+  return {{"name", recording.name},
+          {"role", role_name(recording, true)},
+          {"samples", sampling.samples},
+          {"start_s", recording.times.front()},
+          {"end_s", recording.times.back()},
+          {"interval_s", sampling.interval},
+          {"jitter", sampling.jitter},
+          {"gaps", sampling.gaps},
+          {"largest_gap_s", optional(sampling.gaps > 0, sampling.largest_gap)},
+          {"largest_gap_at_s", optional(sampling.gaps > 0, sampling.gap_at)},
+          {"command",
+           {{"lowest", check.command.low},
+            {"highest", check.command.high},
+            {"switches", check.switches},
+            {"share_of_time_at_largest", check.at_largest}}},
+          {"signals", std::move(signals)},
+          {"rates", list(check.rates,
+                         [](const RateCheck& rate) {
+                           return Json{{"signal", info(rate.rate).name},
+                                       {"of", info(rate.of).name},
+                                       {"ratio", rate.found.ratio},
+                                       {"correlation", rate.found.correlation}};
+                         })},
+          {"concerns", concerns_of(file, recording, check)}};
+}
+
 }  // namespace
 
 Json result_json(const Outcome& outcome) {
@@ -383,7 +430,12 @@ Json result_json(const Outcome& outcome) {
   return json;
 }
 
-nlohmann::ordered_json forecast_json(const Job& job, const Forecast& forecast) {
+Json check_json(const JobFile& file, const std::vector<RecordingCheck>& checks,
+                const Forecast& forecast, const Effort& effort) {
+  const Job& job = file.job;
+  Json recordings = Json::array();
+  for (std::size_t r = 0; r < checks.size(); ++r)
+    recordings.push_back(recording_check_json(file, job.recordings[r], checks[r]));
   const ParameterSpace space(job);
   Json parameters = Json::array();
   for (std::size_t i = 0; i < space.size() && forecast.finite; ++i) {
@@ -403,9 +455,9 @@ nlohmann::ordered_json forecast_json(const Job& job, const Forecast& forecast) {
                           {"standard_error", optional(u.determined, u.standard_error)},
                           {"shown", std::move(shown)}});
   }
-  Json json{{"schema_version", kSchemaVersion},
-            {"version", version()},
-            {"finite", forecast.finite},
+  Json json{{"schema_version", kSchemaVersion},    {"version", version()},
+            {"recordings", std::move(recordings)}, {"evaluation_time_s", effort.evaluation},
+            {"expected_time_s", effort.expected},  {"finite", forecast.finite},
             {"parameters", std::move(parameters)}};
   json.update(together_json(space, forecast.uncertainty.correlation, forecast.together));
   return json;

@@ -398,7 +398,13 @@ TEST_F(CommandLineTest, NoLoopIsClosedAroundAnUnusableFit) {
 TEST_F(CommandLineTest, WhatCanBeDeterminedIsToldBeforeTheFit) {
   const Outcome text = fit({job(), "--check"});
   EXPECT_EQ(text.exit_code, 0);
-  EXPECT_TRUE(text.out.starts_with("What these recordings can tell")) << text.out;
+  EXPECT_TRUE(
+      text.out.starts_with("What the recordings show\nshort (fit): 151 samples in 0.3 s, "
+                           "500 Hz, no gaps\n"))
+      << text.out;
+  EXPECT_NE(text.out.find("\nWhat these recordings can tell"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("\nThe fit will take about a second on this machine"), std::string::npos);
+  EXPECT_EQ(text.out.find("\n  ! "), std::string::npos) << text.out;  // nothing looks wrong
   EXPECT_EQ(text.out.find("chi-square"), std::string::npos);
   const Json json = Json::parse(fit({job(), "--check", "--json"}).out);
   ASSERT_FALSE(json.at("parameters").empty());
@@ -407,7 +413,77 @@ TEST_F(CommandLineTest, WhatCanBeDeterminedIsToldBeforeTheFit) {
     EXPECT_GT(parameter.at("standard_error"), 0.0);
     for (const Json& shown : parameter.at("shown")) EXPECT_GT(shown.at("rms_over_noise"), 0.0);
   }
+  const auto evaluations = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {job(), "--check", "--json", "--threads", "1"});
+    const Json timed = Json::parse(fit(std::move(more)).out);
+    EXPECT_GT(timed.at("evaluation_time_s"), 0.0);
+    return timed.at("expected_time_s").get<double>() / timed.at("evaluation_time_s").get<double>();
+  };
+  EXPECT_GT(evaluations({"--starts", "40"}), 10.0 * evaluations({}));
   EXPECT_EQ(fit({job(), "--check", "--profile"}).exit_code, 2);
+}
+
+TEST_F(CommandLineTest, WhatLooksWrongInTheRecordingsIsToldBeforeTheFit) {
+  const auto concerns = [&](const std::string& from, const std::string& to) {
+    const Outcome outcome = fit(
+        {folder_.write("wrong.yaml", replaced(rubbing_job(false), from, to)), "--check", "--json"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    std::string all;
+    const Json json = Json::parse(outcome.out);
+    for (const Json& concern : json.at("recordings")[0].at("concerns"))
+      all += concern.get<std::string>() + "\n";
+    return all;
+  };
+  write_rubbing_mass(folder_);
+  EXPECT_EQ(concerns("fit: false", "fit: true"), "");
+  EXPECT_NE(concerns("unit: m/s, sigma", "unit: km/s, sigma").find("acceleration is 0.00"),
+            std::string::npos);
+  EXPECT_NE(concerns("unit: m/s, sigma", "unit: m/s, sign: -1, sigma").find("say 'sign: -1'"),
+            std::string::npos);
+  EXPECT_NE(concerns("column: acceleration_mps2, unit: m/s^2",
+                     "column: acceleration_mps2, unit: m/s^2, factor: 0.1019716")
+                .find("factor: 9.80665"),
+            std::string::npos);
+  EXPECT_NE(concerns("unit: s}", "unit: min}").find("Is the unit of the time right?"),
+            std::string::npos);
+  EXPECT_NE(concerns("sigma: 2 mm/s", "sigma: 0.02 mm/s").find("velocity scatters by 0.001"),
+            std::string::npos);
+}
+
+TEST_F(CommandLineTest, AJobIsMadeForRecordings) {
+  const std::string results = folder_.path("new");
+  write_rubbing_mass(folder_);
+  const Outcome made =
+      fit({"--init", folder_.path("fitted.csv"), folder_.path("judged.csv"), "--output", results});
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(made.out, "");
+  EXPECT_EQ(folder_.names("new"), (Names{"axis.yaml", "job.yaml"}));
+  EXPECT_TRUE(
+      folder_.without_path(made.err).starts_with("Written: new/axis.yaml\nWritten: new/job.yaml\n"))
+      << made.err;
+  EXPECT_TRUE(folder_.without_path(made.err).ends_with("      fit-params new/job.yaml\n"));
+  EXPECT_EQ(fit({results + "/job.yaml", "--check"}).exit_code, 0);
+  EXPECT_EQ(fit({results + "/job.yaml"}).exit_code, 0);
+
+  // What is there stays.
+  const std::string before = folder_.read("new/job.yaml");
+  const Outcome again = fit({"--init", folder_.path("judged.csv"), "--output", results});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_EQ(folder_.without_path(again.err),
+            "new/axis.yaml is there already and would be overwritten: move it away, or name "
+            "another folder with --output\n");
+  EXPECT_EQ(folder_.read("new/job.yaml"), before);
+
+  // With an axis file there is none to write; and a recording is no job.
+  const Outcome given =
+      fit({"--init", folder_.path("fitted.csv"), "--axis", folder_.path("plain.yaml"), "--output",
+           folder_.path("given"), "--quiet"});
+  EXPECT_EQ(given.exit_code, 0);
+  EXPECT_EQ(given.err, "");
+  EXPECT_EQ(folder_.names("given"), Names{"job.yaml"});
+  EXPECT_EQ(fit({folder_.path("fitted.csv")}).exit_code, 2);
+  EXPECT_EQ(fit({"--init", folder_.path("fitted.csv"), "--check"}).exit_code, 2);
+  EXPECT_EQ(fit({job(), "--axis", folder_.path("plain.yaml")}).exit_code, 2);
 }
 
 TEST_F(CommandLineTest, ProfilesAreOfParametersThatAreFitted) {
