@@ -132,8 +132,11 @@ async function startReport() {
     document.addEventListener("keydown", (event) => {
       if (event.key === "Escape") report.reset();
     });
+    // What is wider than its frame is scrolled by keys too.
+    for (const frame of document.querySelectorAll(".scroll")) frame.tabIndex = 0;
     const problems = await report.start(data);
-    if (report.charts.length) bar.after(element("p", {className: "hint", textContent: HINT}));
+    if (report.charts.length)
+      document.querySelector("main").prepend(element("p", {className: "hint", textContent: HINT}));
     if (problems.length)
       say(`Shown as still pictures: ${problems.join("; ")}.`);
   } catch (error) {
