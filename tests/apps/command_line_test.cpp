@@ -307,7 +307,7 @@ TEST_F(CommandLineTest, CtrlCKeepsWhatIsFinished) {
   // How to go on is for the user, not for who reads the result; and it works.
   EXPECT_EQ(stopped.out.find("--from"), std::string::npos);
   const std::string results = outputs_.path("results"), axis = results + "/fitted.yaml";
-  EXPECT_NE(stopped.err.find(results + "/result.json"), std::string::npos) << stopped.err;
+  EXPECT_NE(stopped.err.find("What was finished is in"), std::string::npos) << stopped.err;
   EXPECT_NE(stopped.err.find("\n  fit-params " + folder_.path("job.yaml") + " --from " + axis +
                              " --output " + results + "\n"),
             std::string::npos)
@@ -524,7 +524,7 @@ TEST_F(CommandLineTest, ResultsServeBothPrograms) {
   const std::string results = folder_.path("results");
   const Outcome first = fit({job(), "--output", results, "--json"});
   ASSERT_EQ(first.exit_code, 0);
-  EXPECT_EQ(folder_.names("results"), (Names{"fitted.yaml", "residuals.csv", "result.json"}));
+  EXPECT_EQ(folder_.names("results"), (Names{"fitted.yaml", "report.html", "residuals.csv", "result.json"}));
   EXPECT_EQ(folder_.read("results/result.json"), first.out);
   EXPECT_TRUE(folder_.read("results/residuals.csv").starts_with("recording,time_s,velocity_"));
   const Json found = Json::parse(first.out);
