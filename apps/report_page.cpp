@@ -57,13 +57,13 @@ class Page {
       : outcome_(outcome), run_(run), job_(outcome.job()), fit_(outcome.fit()), charts_(outcome) {}
 
   std::string text() {
-    const Html main = section("verdict", "Verdict", verdict()) +
-                      section("recordings", "Measured and simulated", recordings()) +
-                      section("parameters", "Parameters", parameters()) +
-                      section("residual", "Residual", residual()) +
-                      section("loop", "Closing the loop", loop()) +
-                      section("convergence", "Convergence", convergence()) +
-                      section("repeat", "To repeat it", repeat());
+    Html main = section("verdict", "Verdict", verdict());
+    main += section("recordings", "Measured and simulated", recordings());
+    main += section("parameters", "Parameters", parameters());
+    main += section("residual", "Residual", residual());
+    main += section("loop", "Closing the loop", loop());
+    main += section("convergence", "Convergence", convergence());
+    main += section("repeat", "To repeat it", repeat());
     const ReportAssets& assets = report_assets();
     std::string data = charts_.data().dump();
     for (std::size_t at = 0; (at = data.find('<', at)) != std::string::npos;)
@@ -189,10 +189,7 @@ class Page {
   }
 
   Html recordings() {
-    Html all = paragraph_of(
-        "Drag over a chart to zoom all of them, double-click or press Escape to see everything "
-        "again.");
-    if (report_assets().script.empty()) all = {};
+    Html all;
     for (std::size_t r = 0; r < job_.recordings.size(); ++r) {
       const Recording& recording = job_.recordings[r];
       all +=

@@ -49,17 +49,19 @@ class Chart {
       const drawn = style ?? (spec.kind === "points" ? "dots" : "line");
       return {label, role, style: drawn, xs, ys, sorted: isSorted(xs), shown: true};
     }));
-    return new Chart(figure, spec, series, linked);
+    const events = await Promise.all((spec.events ?? []).map(async ({kind, text, at}) =>
+        Array.from(await columns.values(at), (time) => ({at: time, kind, text}))));
+    return new Chart(figure, spec, series, events.flat(), linked);
   }
 
-  constructor(figure, spec, series, linked) {
+  constructor(figure, spec, series, events, linked) {
     this.figure = figure;
     this.spec = spec;
     this.series = series;
     this.linked = linked;
     this.phases = spec.phases ?? [];
     this.bands = spec.bands ?? [];
-    const events = [...(spec.events ?? [])].sort((a, b) => a.at - b.at);
+    events.sort((a, b) => a.at - b.at);
     this.events = {list: events, times: events.map((e) => e.at)};
     this.ticks = {x: {places: [], labels: []}, y: {places: [], labels: []}};
     // Points anywhere in the plane are read by their distance, others by their x.
@@ -165,7 +167,9 @@ class Chart {
     this.spoken = element("p", {className: "unseen", ariaLive: "polite"});
     this.keys = this.series.map((s, i) => this.makeKey(s, i));
     this.legend = element("div", {className: "legend"}, ...this.keys.map((k) => k.button),
-                          ...this.eventKeys(), this.at, this.note);
+                          ...this.eventKeys());
+    this.reading = element("div", {className: "reading"}, this.at,
+                           ...this.keys.map((k) => k.reading), this.note);
     this.plot = element("div", {
       className: "plot",
       tabIndex: 0,
@@ -189,8 +193,8 @@ class Chart {
         }));
     this.tools = element("div", {className: "tools", role: "group", ariaLabel: `Tools: ${title}`},
                          ...zoom, element("span", {className: "gap"}), ...saves);
-    this.live = element("div", {className: "chart-live"}, this.tools, this.legend, this.plot,
-                        this.spoken);
+    this.live = element("div", {className: "chart-live"}, this.tools, this.legend,
+                        this.reading, this.plot, this.spoken);
     this.figure.append(this.live);
   }
 
@@ -200,7 +204,7 @@ class Chart {
     swatch.style.color = `var(--${series.role})`;
     const key = element("button", {type: "button", className: "key", ariaPressed: "true",
                                    title: "Show or hide"},
-                        swatch, series.label, value);
+                        swatch, series.label);
     key.onclick = () => {
       series.shown = !series.shown;
       key.ariaPressed = String(series.shown);
@@ -208,7 +212,8 @@ class Chart {
     };
     const dot = element("span", {className: "dot", hidden: true});
     dot.style.color = `var(--${series.role})`;
-    return {button: key, value, dot};
+    const reading = element("span", {hidden: true}, `${series.label} `, value);
+    return {button: key, reading, value, dot};
   }
 
   /** The kinds of events and phases that there are, with their colours. */
@@ -394,8 +399,8 @@ class Chart {
     }
     this.point(xs[i], this.scattered ? null : undefined, true);
     this.spoken.textContent =
-        [this.at.textContent, ...this.keys.map((k) => k.button.textContent), this.note.textContent]
-            .filter(Boolean).join(", ");
+        [this.at, ...this.keys.map((k) => k.reading).filter((r) => !r.hidden), this.note]
+            .map((part) => part.textContent).filter(Boolean).join(", ");
   }
 
   placesOfPoints() {
@@ -416,8 +421,9 @@ class Chart {
     const samples = inView ? this.samplesAt(x, y) : [];
     const found = samples.find((s) => s);
     this.cursor = found?.x;
-    this.keys.forEach(({value, dot}, i) => {
+    this.keys.forEach(({reading, value, dot}, i) => {
       const sample = samples[i];
+      reading.hidden = !sample;
       value.textContent = sample ? `${sample.y}` : "";
       dot.hidden = !sample;
       if (sample) {

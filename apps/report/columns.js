@@ -35,22 +35,19 @@ async function inflated(base64) {
  * A column as integers over a power of ten, NaN where there is no value. The quotient of two such
  * numbers is the double nearest to the decimal, so 3 steps of 0.1 print as 0.3.
  */
-async function decodedColumn({length, start, interval, step, data}) {
+async function decodedColumn({length, start = 0, interval, step, data}) {
+  const from = asDecimal(start);
+  const by = asDecimal(data === undefined ? interval : step);
+  const places = Math.max(from.places, by.places);
+  const first = from.integer * 10 ** (places - from.places);
+  const each = by.integer * 10 ** (places - by.places);
+  const multiples = data === undefined ? null : unshuffled(await inflated(data), length);
   const integers = new Float64Array(length);
-  if (data === undefined) {
-    const from = asDecimal(start);
-    const by = asDecimal(interval);
-    const places = Math.max(from.places, by.places);
-    const first = from.integer * 10 ** (places - from.places);
-    const each = by.integer * 10 ** (places - by.places);
-    for (let i = 0; i < length; i++) integers[i] = first + i * each;
-    return {integers, places};
+  for (let i = 0; i < length; i++) {
+    const multiple = multiples ? multiples[i] : i;
+    integers[i] = multiple === NO_VALUE ? NaN : first + multiple * each;
   }
-  const unit = asDecimal(step);
-  const multiples = unshuffled(await inflated(data), length);
-  for (let i = 0; i < length; i++)
-    integers[i] = multiples[i] === NO_VALUE ? NaN : multiples[i] * unit.integer;
-  return {integers, places: unit.places};
+  return {integers, places};
 }
 
 /** The values of a column, less those of another where one is given. */

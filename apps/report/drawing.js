@@ -351,12 +351,12 @@ function drawBackground(surface, {phases, bands}, frame) {
       const x = Math.max(toX(from), left);
       const end = Math.min(toX(to), left + width);
       if (end > x)
-        surface.rectangle(x, top, end - x, height, {colour: colour(kind), opacity: 0.16});
+        surface.rectangle(x, top, end - x, height, {colour: colour(kind), opacity: 0.1});
     }
     for (const {from, to} of bands) {
       const y = toY(Math.max(from, to));
       surface.rectangle(
-          left, y, width, toY(Math.min(from, to)) - y, {colour: colour("band"), opacity: 0.16});
+          left, y, width, toY(Math.min(from, to)) - y, {colour: colour("band"), opacity: 0.1});
     }
   });
 }

@@ -58,14 +58,12 @@ export function pageData({samples = SAMPLES, recordings = ["step", HOSTILE[1]]} 
     const end = r ? samples : Math.round(samples * 0.93);  // the simulation gives up
     const simulated = add(ringing.slice(0, end), 1e-5);
     const velocity = add(ringing.map((v) => v + 0.004 * normal()), 1e-4);
-    const events = [];
-    for (let i = 0; i < samples; i++)
-      if (ringing[i] > 0.25 !== ringing[i - 1] > 0.25 && i)
-        events.push({
-          at: Number(times[i].toFixed(5)),
-          kind: ringing[i] > 0.25 ? "contact" : "separation",
-          text: ringing[i] > 0.25 ? "teeth touch" : "teeth part",
-        });
+    const crossings = (up) => add(times.filter((_, i) =>
+        i && (ringing[i] > 0.25) === up && (ringing[i - 1] > 0.25) !== up), 1e-5);
+    const events = [
+      {kind: "contact", text: "teeth touch", at: crossings(true)},
+      {kind: "separation", text: "teeth part", at: crossings(false)},
+    ];
     const phases = [0, 1, 2, 3].flatMap((k) => [
       {from: 1.25 * k + 0.8, to: 1.25 * k + 1.25, kind: "rest", text: "at rest"},
       {from: 1.25 * k + 0.02, to: 1.25 * k + 0.06, kind: "limit", text: "V_c at its limit"},

@@ -112,10 +112,22 @@ describe("any report", () => {
     assert.deepEqual(await charts(), before);
   });
 
+  test("reading values moves nothing", async () => {
+    for (const {id} of (await charts()).filter((c) => c.time).slice(0, 6)) {
+      const over = page.locator(`${selectorOf(id)} .u-over`);
+      await over.scrollIntoViewIfNeeded();
+      const box = await over.boundingBox();
+      await page.mouse.move(box.x + 0.4 * box.width, box.y + 0.5 * box.height);
+      assert.notEqual(await page.locator(`${selectorOf(id)} .at`).textContent(), "");
+      assert.deepEqual(await over.boundingBox(), box, id);
+    }
+  });
+
   test("a double click resets", async () => {
     const before = await charts();
     const first = before.find((c) => c.time);
     await drag(first.id, 0.3, 0.5);
+    assert.notDeepEqual(await charts(), before);
     await page.locator(`${selectorOf(first.id)} .u-over`).dblclick();
     assert.deepEqual(await charts(), before);
   });
