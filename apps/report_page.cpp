@@ -83,8 +83,9 @@ class Page {
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:">
 <style>{1}</style></head>
-<body><header><h1>{0}</h1><nav aria-label="Sections">{2}</nav></header>
-<main>{3}</main>
+<body><a class="skip" href="#main">To the content</a>
+<header><h1>{0}</h1><nav aria-label="Sections">{2}</nav></header>
+<main id="main">{3}</main>
 <footer>axisfit {4}</footer>{5}
 </body></html>
 )",
