@@ -28,7 +28,7 @@ std::string gain_comment(const DrivenMass& seen) {
   return comment(
       fmt::format("{}newtons for each {} of {}. Motion shows only the ratios of the mass and the "
                   "frictions to it, so that it is not fitted: put {} here, and M, B_a, F_c and F_0 "
-                  "come out right.",
+                  "come out right. Multiply their initial values alike, and --check is right, too.",
                   kGuessed, current ? "ampere" : "volt (or what its unit is)", seen.column,
                   current ? "torque constant / pinion radius, or 2 pi torque constant / spindle "
                             "lead,"
