@@ -346,18 +346,23 @@ class Initialiser {
       const QuantityEntry* quantity = find_quantity(name);
       if (is_used(*quantity, structure_)) candidates_.push_back({name, entry});
     };
-    for (const std::string& name : kWanted) add(name);
+    // Wherever the user's K_f takes them.
+    const bool any_gain = starter_ && starter_->gain_guessed;
+    const auto bounds = [](double lower, double upper, std::string_view unit) {
+      return fmt::format("{{bounds: [{}, {}]}}", with_unit(lower, unit), with_unit(upper, unit));
+    };
+    for (const std::string& name : kWanted) {
+      const Quantity& q = find_quantity(name)->quantity;
+      add(name, any_gain ? bounds(std::max(q.lower, 1e-3), q.upper, q.unit) : "{}");
+    }
     std::erase_if(candidates_,
                   [&](const Candidate& c) { return force_source() && c.name == "F_s"; });
     for (const QuantityEntry& entry : quantity_list()) {
       if (!effect_named(entry.group) || !is_used(entry, structure_) || entry.quantity.shape)
         continue;
       const bool force = starter_ && entry.quantity.unit == "N";
-      const double most = force ? 2.0 * starter_->largest_force : 0.0;
-      add(entry.name, force ? fmt::format("{{bounds: [{}, {}]}}",
-                                          with_unit(entry.quantity.lower < 0.0 ? -most : 0.0, "N"),
-                                          with_unit(most, "N"))
-                            : "{}");
+      const double most = force ? (any_gain ? 1e4 : 2.0) * starter_->largest_force : 0.0;
+      add(entry.name, force ? bounds(entry.quantity.lower < 0.0 ? -most : 0.0, most, "N") : "{}");
     }
     if (starter_ && !force_source()) add("K_1");
     // An encoder that rounds down reads half a step low.
@@ -365,8 +370,7 @@ class Initialiser {
     const GuessedColumn* position = first.find(Kind::position);
     const bool offset = position && !force_source() && !is_rounded_away(*position, first);
     if (const double grid = offset ? quantum(position->values) : 0.0; grid > 0.0)
-      add("position.bias", fmt::format("{{bounds: [{}, {}]}}", with_unit(-two_digits(grid), "m"),
-                                       with_unit(two_digits(grid), "m")));
+      add("position.bias", bounds(-two_digits(grid), two_digits(grid), "m"));
     if (!force_source() || std::ranges::any_of(sources_, drives_in_newtons)) return;
     add("K_f");
     if (starter_) candidates_.back().left_out = kOnlyRatios;
@@ -454,7 +458,9 @@ class Initialiser {
         version(), kJobName, kJobName, scalar(axis));
     for (std::size_t i = 0; i < sources_.size(); ++i)
       text += recording_text(sources_[i], sources_.size() > 1 && i + 1 == sources_.size());
-    text += "free:   # initial values are those of the axis file\n";
+    text +=
+        fmt::format("free:   # initial values are those of the axis file{}\n",
+                    starter_ && starter_->gain_guessed ? "; bounds leave room for any K_f" : "");
     for (const Candidate& c : candidates_) {
       if (c.left_out.empty())
         text += fmt::format("  {}: {}\n", c.name, c.entry);
@@ -551,16 +557,22 @@ class Initialiser {
   std::string fit_text() const {
     // A mass that a force drives is an open integral: free running it drifts away from the
     // recording whatever the fit.
-    const GuessedColumn* position = sources_.front().guess.find(Kind::position);
+    const RecordingGuess& first = sources_.front().guess;
+    const GuessedColumn *position = first.find(Kind::position),
+                        *velocity = first.find(Kind::velocity);
     if (!force_source() || position == nullptr) return {};
-    const Sampling found = sampling(sources_.front().guess.time.values);
+    const std::vector<double> none;
+    const double rate =
+        telling_coupling(first.time.values, position->values, velocity ? velocity->values : none);
     return "fit:\n" +
            comment(
                "The position is an open integral of the force: free running it drifts away "
                "whatever the fit. So the simulation is held to the recording, and the "
-               "parameters are those that predict best.",
+               "parameters are those that predict best. At this rate a hundredth of the "
+               "acceleration, were it missing, would show as ten times the noise; a firmer "
+               "hold hides more.",
                2) +
-           fmt::format("  coupling: {{fixed: {} 1/s}}\n", two_digits(0.3 / found.interval));
+           fmt::format("  coupling: {{fixed: {} 1/s}}\n", two_digits(rate));
   }
 
   std::string axis_, folder_;

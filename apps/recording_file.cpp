@@ -20,7 +20,10 @@ RecordingFile::RecordingFile(const std::string& path) : path_(path) {
     for (IgnoredVariable& v : mat.ignored) ignored_.emplace(std::move(v.name), std::move(v.kind));
   } else {
     Table table = read_csv(path);
-    for (Column& c : table.columns) columns_.emplace(std::move(c.name), std::move(c.values));
+    for (Column& c : table.columns) {
+      units_.emplace(c.name, std::move(c.unit));
+      columns_.emplace(std::move(c.name), std::move(c.values));
+    }
     lines_ = std::move(table.lines);
   }
 }
@@ -52,6 +55,11 @@ const std::vector<double>* RecordingFile::column(const ConfigNode& node) const {
                          fmt::join(names, ", "),
                          more > 0 ? fmt::format(" and {} more", more) : ""));
   return nullptr;
+}
+
+std::string RecordingFile::unit(const std::string& column) const {
+  const auto found = units_.find(column);
+  return found == units_.end() ? std::string() : found->second;
 }
 
 std::string RecordingFile::where(std::size_t row) const {

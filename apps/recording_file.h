@@ -24,12 +24,16 @@ class RecordingFile {
   /// All columns by name; those of a MATLAB file may differ in length and hold what is not finite.
   const std::map<std::string, std::vector<double>>& columns() const { return columns_; }
 
+  /// What a row of units below the header says of a column; empty where there is none.
+  std::string unit(const std::string& column) const;
+
   /// "file:17" or "file: row 17", for messages about the row with this index.
   std::string where(std::size_t row) const;
 
  private:
   std::string path_;
   std::map<std::string, std::vector<double>> columns_;
+  std::map<std::string, std::string> units_;
   std::map<std::string, std::string> ignored_;  // variable, why it is no column
   std::vector<std::size_t> lines_;              // of the rows
 };

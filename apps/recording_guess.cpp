@@ -94,9 +94,15 @@ class Guesser {
            std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
   }
 
+  /// What the header says of a column, with a row of units below the names as if they held them.
+  std::optional<ColumnGuess> heading(const std::string& name) const {
+    const std::string unit = file_.unit(name);
+    return guess_column(unit.empty() ? name : fmt::format("{} [{}]", name, unit));
+  }
+
   void find_time() {
     for (const auto& [name, values] : file_.columns()) {
-      const auto guess = guess_column(name);
+      const auto guess = heading(name);
       if (!guess || guess->kind != Kind::time || !usable(values) || !is_harmless(name)) continue;
       if (time_.raw == nullptr || guess->rank > time_.rank) set_time(name, values, *guess);
     }
@@ -130,7 +136,7 @@ class Guesser {
   void find_columns() {
     for (const auto& [name, values] : file_.columns()) {
       if (&values == time_.raw) continue;
-      const auto guess = guess_column(name);
+      const auto guess = heading(name);
       if (!guess || guess->kind == Kind::time || !usable(values) || !is_harmless(name) ||
           values.size() != time_.raw->size()) {
         unused_.push_back(name);
@@ -186,7 +192,7 @@ class Guesser {
                        : interval <= 1e4 ? "us"
                                          : "ns";
     time_.take(*stored_unit(Kind::time, text));
-    time_.guess(fmt::format("no unit in the name; a sample each {:.4g}, in {} that is {:.4g} Hz",
+    time_.guess(fmt::format("no unit in the header; a sample each {:.4g}, in {} that is {:.4g} Hz",
                             interval, text, 1.0 / (interval * time_.size)));
   }
 
@@ -241,7 +247,7 @@ class Guesser {
                 velocity ? "the velocity" : "the derivative of the position");
     } else if (acceleration->size == 0.0) {
       acceleration->take(*stored_unit(Kind::acceleration, "m/s^2"));
-      acceleration->guess("no unit in the name, and no velocity shows it");
+      acceleration->guess("no unit in the header, and no velocity shows it");
     }
   }
 
@@ -256,7 +262,7 @@ class Guesser {
       rate.reason(fmt::format("{}, as {} should be", measured, rate.named));
     } else if (rate.size > 0.0) {
       const StoredUnit* unit = unit_of_size(rate.column.kind, size);
-      rate.guess(fmt::format("though its name says {} it is {}: {}", rate.named, measured,
+      rate.guess(fmt::format("though the header says {} it is {}: {}", rate.named, measured,
                              unit ? fmt::format("taken as {}", unit->text)
                                   : fmt::format("a factor of {:.4g} makes them agree", size)));
       unit ? rate.take(*unit) : rate.take(rounded(size));
@@ -290,7 +296,8 @@ class Guesser {
     }
     const char* text = position ? (range < 10.0 ? "m" : "mm") : (range < 10.0 ? "m/s" : "mm/s");
     column.take(*stored_unit(column.column.kind, text));
-    column.guess(fmt::format("no unit in the name; values up to {:.4g}, taken as {}", range, text));
+    column.guess(
+        fmt::format("no unit in the header; values up to {:.4g}, taken as {}", range, text));
   }
 
   void size_other(Unsized& column) {
@@ -300,7 +307,7 @@ class Guesser {
       column.column.unit = measured->column.unit;
       column.column.factor = measured->column.factor;
       column.size = measured->size;
-      column.guess(fmt::format("no unit in the name; as {}", measured->column.column));
+      column.guess(fmt::format("no unit in the header; as {}", measured->column.column));
       return;
     }
     if (kind == Kind::position || kind == Kind::velocity) {
@@ -308,7 +315,7 @@ class Guesser {
       return;
     }
     column.take(stored_units(kind).front());
-    column.guess(fmt::format("no unit in the name, taken as {}", column.column.unit));
+    column.guess(fmt::format("no unit in the header, taken as {}", column.column.unit));
   }
 
   /// What there is to say of units that a job cannot write.

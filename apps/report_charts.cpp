@@ -1,6 +1,7 @@
 #include "apps/report_charts.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -18,6 +19,19 @@ using Values = std::vector<double>;
 double resolution(const Measurement& m) { return 0.01 * m.sigma; }
 
 std::string signal_name(const Measurement& m) { return std::string(info(m.signal).name); }
+
+/// "Velocity of step"
+std::string title_of(const Measurement& m, const Recording& recording) {
+  std::string name = signal_name(m);
+  name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+  return fmt::format("{} of {}", name, recording.name);
+}
+
+/// Whether values are told apart better by their logarithms.
+bool spans_a_decade(const std::vector<double>& values) {
+  const auto [least, most] = std::ranges::minmax(values);
+  return most > 10.0 * least;
+}
 std::string unit_of(const Measurement& m) { return std::string(info(m.signal).unit); }
 
 /// Stretches of time in which a condition holds, from what holds from each instant on. Those that
@@ -193,23 +207,25 @@ Html ReportCharts::overview() {
   const Measurement& m = recording.measurements[worst.measurement];
   const RecordingCharts& r = recordings_[worst.recording];
   const ChartAxis y{signal_name(m), unit_of(m)};
-  const auto measured = r.measured[worst.measurement], simulated = r.simulated[worst.measurement];
+  const auto measured = r.measured[worst.measurement];
   if (outcome_.loop && outcome_.loop->models.size() > 1) {
-    Chart chart = over_time(
-        worst.recording, "before-after",
-        fmt::format("What was left of the {} of {}, before and after", y.label, recording.name),
-        {"residual", y.unit});
-    const auto first =
-        columns_.add(before.fit.recordings[worst.recording].prediction.simulated[worst.measurement],
-                     resolution(m));
-    chart.series = {{"before", "reference", r.times, measured, Drawn::line, first},
-                    {"after", "residual", r.times, measured, Drawn::line, simulated}};
+    const auto judged = [&](const FitResult& fit) {
+      return columns_.add(fit.recordings[worst.recording].judged().simulated[worst.measurement],
+                          resolution(m));
+    };
+    const bool held = outcome_.fit().recordings[worst.recording].held.has_value();
+    Chart chart =
+        over_time(worst.recording, "before-after",
+                  fmt::format("What was left of the {} of {}, before and after{}", y.label,
+                              recording.name, held ? ", of the simulation held to it" : ""),
+                  {"residual", y.unit});
+    chart.series = {{"before", "reference", r.times, measured, Drawn::line, judged(before.fit)},
+                    {"after", "residual", r.times, measured, Drawn::line, judged(outcome_.fit())}};
     return add(std::move(chart));
   }
-  Chart chart =
-      over_time(worst.recording, "overview", fmt::format("{} of {}", y.label, recording.name), y);
+  Chart chart = over_time(worst.recording, "overview", title_of(m, recording), y);
   chart.series = {{"measured", "measured", r.times, measured},
-                  {"simulated", "simulated", r.times, simulated}};
+                  {"simulated", "simulated", r.times, r.simulated[worst.measurement]}};
   return add(std::move(chart));
 }
 
@@ -222,7 +238,7 @@ Html ReportCharts::traces(std::size_t recording) {
     const Measurement& measurement = data.measurements[m];
     const std::string name = signal_name(measurement), unit = unit_of(measurement);
     const std::string of = fmt::format("{} of {}", name, data.name);
-    Chart trace = over_time(recording, "trace-" + name, of, {name, unit});
+    Chart trace = over_time(recording, "trace-" + name, title_of(measurement, data), {name, unit});
     trace.series = {{"measured", "measured", r.times, r.measured[m]},
                     {"simulated", "simulated", r.times, r.simulated[m]}};
     all += add(std::move(trace));
@@ -426,13 +442,12 @@ Html ReportCharts::convergence() {
   const ChartAxis over{"iterations"};
   if (iterations.size() > 1) {
     const auto at = columns_.add(std::move(iterations), 1.0);
-    all += add(
-        {.id = "cost",
-         .title = "Cost at the end of each stage",
-         .x = over,
-         .y = {"reduced cost", "", true},
-         .series = {{"cost", "measured", at,
-                     columns_.add_for_log(std::move(cost)), Drawn::steps}}});
+    all += add({.id = "cost",
+                .title = "Cost at the end of each stage",
+                .x = over,
+                .y = {"reduced cost", "", spans_a_decade(cost)},
+                .series = {{"cost", "measured", at, columns_.add_for_log(std::move(cost)),
+                            Drawn::steps}}});
     if (std::ranges::any_of(rate, [](double r) { return r > 0.0; }))
       all += add({.id = "coupling",
                   .title = "How firmly the simulation is held to the data",
@@ -448,13 +463,12 @@ Html ReportCharts::convergence() {
     std::ranges::sort(ends);
     Values number(ends.size());
     std::iota(number.begin(), number.end(), 1.0);
-    all += add(
-        {.id = "starts",
-         .title = "Where the starts ended, best first",
-         .x = {"start"},
-         .y = {"reduced cost", "", true},
-         .series = {{"reduced cost", "measured", columns_.add(std::move(number), 1.0),
-                     columns_.add_for_log(std::move(ends)), Drawn::dots}}});
+    all += add({.id = "starts",
+                .title = "Where the starts ended, best first",
+                .x = {"start"},
+                .y = {"reduced cost", "", spans_a_decade(ends)},
+                .series = {{"reduced cost", "measured", columns_.add(std::move(number), 1.0),
+                            columns_.add_for_log(std::move(ends)), Drawn::dots}}});
   }
   return all;
 }

@@ -114,9 +114,10 @@ class Page {
   }
 
   Html verdict() {
-    Html all = html(R"(<p class="verdict {}">{}</p>)", judgement(), verdict_of(outcome_));
+    Html words = paragraph_of(verdict_of(outcome_));
     if (!outcome_.loop && outcome_.diagnosis)
-      all += paragraph_of(residual_verdict(job_, *outcome_.diagnosis));
+      words += paragraph_of(residual_verdict(job_, *outcome_.diagnosis));
+    Html all = html(R"(<div class="verdict {}">{}</div>)", judgement(), words);
     for (const Separation& s : outcome_.separations) all += paragraph_of(s.words);
     if (outcome_.interrupted)
       all += paragraph_of("Stopped before all that was asked for was finished.");
@@ -248,8 +249,8 @@ class Page {
                   number_cell(u.has_interval() ? with_digits_of(u.lower, error) + " to " +
                                                      with_digits_of(u.upper, error)
                                                : "-") +
-                  cell(std::string(quantity.unit)) + number_cell(number(initial_of(i))) +
-                  cell(interval_bar(i)) + cell(badge(u)));
+                  html(R"(<td class="unit">{}</td>)", std::string(quantity.unit)) +
+                  number_cell(number(initial_of(i))) + cell(interval_bar(i)) + cell(badge(u)));
     }
     Html all = table({"Parameter", "#value", "#standard error", "#95 % interval", "Unit",
                       "#initial", "Between the bounds", "Verdict"},

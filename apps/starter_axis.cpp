@@ -28,7 +28,7 @@ std::string gain_comment(const DrivenMass& seen) {
   return comment(
       fmt::format("{}newtons for each {} of {}. Motion shows only the ratios of the mass and the "
                   "frictions to it, so that it is not fitted: put {} here, and M, B_a, F_c and F_0 "
-                  "come out right.",
+                  "come out right. Multiply their initial values alike, and --check is right, too.",
                   kGuessed, current ? "ampere" : "volt (or what its unit is)", seen.column,
                   current ? "torque constant / pinion radius, or 2 pi torque constant / spindle "
                             "lead,"
@@ -51,13 +51,15 @@ StarterAxis velocity_loop_starter(const std::string& recording) {
 StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
   const bool sound = seen.balance && seen.balance->mass > 0.0 && seen.balance->correlation > 0.3;
   const ForceBalance balance = sound ? *seen.balance : ForceBalance{.mass = 1.0};
+  const bool gain_guessed = seen.input != DrivenMass::Input::force;
   double gain = 1.0;
-  if (seen.input != DrivenMass::Input::force)
+  if (gain_guessed)
     while (balance.mass * gain < 0.1 && gain < 1e6) gain *= 10.0;
   const double input = seen.largest_input > 0.0 ? seen.largest_input : 1.0;
 
   StarterAxis starter;
   starter.structure = {Drive::force_source, Transmission::rigid, {}};
+  starter.gain_guessed = gain_guessed;
   for (const char* effect : {"coulomb_friction", "constant_force"})
     starter.structure.effects.set(*effect_named(effect));
   const double most = starter.largest_force = two_digits(input * gain);
@@ -88,7 +90,7 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
             : "GUESSED, for the recording has no balance of impulses; fitted by the job.",
       with_unit(within(balance.mass * gain, 1e-3, 1e5), "kg"),
       with_unit(within(viscous, 1e-6, 1e6), "N s/m"),
-      with_unit(within(balance.coulomb * gain, 0.0, most), "N"),
+      with_unit(within(std::max(balance.coulomb * gain, 0.01 * most), 0.0, most), "N"),
       with_unit(within(-balance.constant * gain, -most, most), "N"));
   return starter;
 }

@@ -14,6 +14,7 @@ struct StarterAxis {
   std::string text;  ///< of the axis file; what is guessed in it is marked
   Structure structure;
   double largest_force = 0.0;  ///< N, of the drive, either way; of a force source alone
+  bool gain_guessed = false;   ///< K_f is the user's to put, and what is fitted goes with it
 };
 
 /// The axis file of the paper's axis.

@@ -150,6 +150,34 @@ std::optional<RateRatio> rate_ratio(std::span<const double> times, std::span<con
   return best;
 }
 
+double telling_coupling(std::span<const double> times, std::span<const double> position,
+                        std::span<const double> velocity) {
+  constexpr double kMissing = 0.01, kAboveNoise = 10.0;
+  const bool of_velocity = !velocity.empty();
+  const std::span<const double> values = of_velocity ? velocity : position;
+  const std::size_t n = times.size();
+  // Over stretches, so that noise hardly counts.
+  const std::size_t stretch = std::max<std::size_t>(1, n / 200);
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = stretch; i + stretch < n; i += stretch, ++count) {
+    const double before = times[i] - times[i - stretch], after = times[i + stretch] - times[i];
+    const double change = of_velocity ? values[i + stretch] - values[i]
+                                      : (values[i + stretch] - values[i]) / after -
+                                            (values[i] - values[i - stretch]) / before;
+    squares += std::pow(change / (of_velocity ? after : 0.5 * (before + after)), 2);
+  }
+  const double acceleration =
+      std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, count)));
+  const double moved = kAboveNoise * noise_from_differences(values);
+  const double rate =
+      of_velocity ? kMissing * acceleration / moved : std::sqrt(kMissing * acceleration / moved);
+  const Sampling found = sampling(times);
+  const double firmest = 0.3 / found.interval;
+  return std::isfinite(rate) ? std::clamp(rate, std::min(10.0 / found.duration, firmest), firmest)
+                             : firmest;
+}
+
 RecordingCheck check_recording(const Recording& recording) {
   RecordingCheck check;
   check.sampling = sampling(recording.times);

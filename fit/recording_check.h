@@ -54,6 +54,14 @@ struct RateRatio {
 std::optional<RateRatio> rate_ratio(std::span<const double> times, std::span<const double> values,
                                     std::span<const double> rate);
 
+/// How firmly to hold a simulation to the recording (a fixed coupling, job.h) so that what its
+/// model lacks shows: at this rate a hundredth of the acceleration that the axis usually has would
+/// move it by ten times the noise. A firmer hold hides more and feeds the noise into the
+/// simulation; a looser one lets it drift. 1/s to the velocity, or where that is empty rad/s to the
+/// position.
+double telling_coupling(std::span<const double> times, std::span<const double> position,
+                        std::span<const double> velocity);
+
 /// Two signals of a recording of which one is the rate of the other.
 struct RateCheck {
   Signal rate = Signal::velocity, of = Signal::position;

@@ -259,12 +259,12 @@ class Chart {
         {
           ...this.size(),
           legend: {show: false},
-          padding: [4, 10, 0, 0],
+          padding: [8, 16, 0, 0],
           scales: {x: scale("x"), y: scale("y")},
           series: [{}, {scale: "y", paths: () => null, points: {show: false}}],
           axes: [
             axis("x", {size: 24, gap: 6, labelSize: 20, space: 70}),
-            axis("y", {size: 50, gap: 8, labelSize: 18, space: 32}),
+            axis("y", {size: 58, gap: 8, labelSize: 18, space: 32}),
           ],
           cursor: {
             y: this.scattered,

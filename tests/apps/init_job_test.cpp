@@ -122,6 +122,39 @@ TEST_F(InitJobTest, UnitsAndSignsComeFromNamesAndDerivatives) {
   expect_the_driven_mass(fitted(read()), 1.0 / 60.0);
 }
 
+TEST_F(InitJobTest, ARowOfUnitsCountsAsTheNames) {
+  folder_.write(
+      "plain.csv",
+      renamed(driven(), {{"t", 1e3}, {"iq", 1e3}, {"pos", 1e6}, {"vel", 1e3}, {"acc", 1.0}}));
+  std::string text = folder_.read("plain.csv");
+  text.insert(text.find('\n') + 1, "ms,mA,[\xC2\xB5m],,g\n");
+  folder_.write("a.csv", text);
+  make({"a.csv"});
+  const std::string job = folder_.read("job.yaml");
+  for (const char* line :
+       {"time: {column: t, unit: ms}", "command: {column: iq, unit: V, factor: 0.001}",
+        "position: {column: pos, unit: um}", "velocity: {column: vel, unit: mm/s}"})
+    EXPECT_NE(job.find(line), std::string::npos) << line << '\n' << job;
+  // What the row says is checked as what a name says.
+  EXPECT_NE(job.find("though the header says g it is"), std::string::npos) << job;
+  expect_the_driven_mass(fitted(read()), 1.0 / 60.0);
+}
+
+TEST_F(InitJobTest, TheUsersGainIsAllThatABentScrewNeeds) {
+  make({AXISFIT_TESTDATA "/screw/bent-sweep.csv", AXISFIT_TESTDATA "/screw/bent-move.csv"});
+  std::string axis = folder_.read("axis.yaml");
+  const std::string guessed = "K_f: 1 N/V";
+  ASSERT_NE(axis.find(guessed), std::string::npos) << axis;
+  axis.replace(axis.find(guessed), guessed.size(), "K_f: 113.0973 N/V");
+  folder_.write("axis.yaml", axis);
+  const FitResult result = estimate(read().job);
+  ASSERT_TRUE(result.usable) << result.verdict;
+  EXPECT_NEAR(result.parameters[0].value, 85.687, 0.01 * 85.687);  // bent by what is missing
+  EXPECT_NEAR(result.parameters[1].value, 258.96, 0.05 * 258.96);
+  // Held as firmly as the samples allow, the simulation follows 6 N that the model lacks.
+  EXPECT_GT(result.reduced_chi_square, 10.0);
+}
+
 TEST_F(InitJobTest, NothingButShortNamesIsEnough) {
   folder_.write(
       "a.csv",

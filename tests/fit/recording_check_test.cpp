@@ -56,6 +56,25 @@ TEST(SamplingTest, TellsGapsFromJitter) {
   EXPECT_LT(sampling(moving().times).jitter, 1e-9);
 }
 
+TEST(TellingCouplingTest, ShowsAHundredthOfTheAccelerationAboveTheNoise) {
+  const Recording recording = moving();
+  const auto &position = recording.measurements[0].values,
+             &velocity = recording.measurements[1].values;
+  // An acceleration of 0.1 kRate^2 / sqrt(2), noise of 1e-5 m and 2e-3 m/s.
+  const double missing = 0.01 * 0.1 * kRate * kRate / std::sqrt(2.0);
+  EXPECT_NEAR(telling_coupling(recording.times, position, {}), std::sqrt(missing / 1e-4), 1.0);
+  // The loosest: ten times in two seconds.
+  EXPECT_NEAR(missing / 2e-2, 2.4, 0.1);
+  EXPECT_NEAR(telling_coupling(recording.times, {}, velocity), 10.0 / 2.0, 0.1);
+  // The firmest: with next to no noise all shows.
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> noise(0.0, 4e-8);
+  std::vector<double> clean;
+  for (const double t : recording.times)
+    clean.push_back(0.1 * std::sin(kRate * t) + noise(generator));
+  EXPECT_NEAR(telling_coupling(recording.times, clean, {}), 0.3 / kInterval, 1e-6);
+}
+
 TEST(RateRatioTest, FindsFactorAndSignThroughNoiseAndBias) {
   const Recording recording = moving();
   for (const double factor : {1.0, 1000.0, -1.0 / 9.80665}) {
