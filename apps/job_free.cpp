@@ -69,6 +69,9 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
   const bool positive = entry.group.empty() && quantity.standard != 0.0 && quantity.lower >= 0.0;
   parameter.logarithmic =
       scale ? *scale == 0 : (bounds ? bounds->first > 0.0 : positive && parameter.initial > 0.0);
+  for (const Recording& r : job.recordings)
+    if (const auto reason = ignored_by_coupling(entry, job.options.coupling, r); !reason.empty())
+      return node.error(reason);
   const auto add = [&](double initial, std::optional<std::size_t> recording) {
     FreeParameter p = parameter;
     p.initial = initial;

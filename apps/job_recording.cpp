@@ -10,6 +10,7 @@
 #include "apps/axis_file.h"
 #include "apps/recording_file.h"
 #include "apps/units.h"
+#include "fit/continuation.h"
 #include "fit/initial_state.h"
 #include "fit/noise.h"
 #include "fit/rest.h"
@@ -299,6 +300,13 @@ class RecordingReader {
           "the recording the role validate");
     if (coupling_ == CouplingMode::fixed && !held)
       signals_node.error("a fixed coupling needs a recorded position or velocity");
+    Model<double> model = rig_.model;
+    const auto member = members(model);
+    for (const auto& [quantity, value] : recording.overrides) *member[quantity] = value;
+    for (const QuantityEntry& entry : quantity_list())
+      if (const auto reason = ignored_by_coupling(entry, coupling_, recording);
+          !reason.empty() && *member[entry.index] != 0.0)
+        signals_node.error(reason);
     if (recording.initial_state == InitialState::data && !held)
       signals_node.error("initial_state: data needs a recorded position or velocity");
   }
@@ -370,6 +378,16 @@ const Section& recording_keys() {
 Recording read_recording(const ConfigNode& node, const Rig& rig, CouplingMode coupling,
                          const std::string& data_directory) {
   return RecordingReader(rig, coupling, data_directory).read(node);
+}
+
+std::string ignored_by_coupling(const QuantityEntry& entry, CouplingMode coupling,
+                                const Recording& recording) {
+  if (!is_ignored(entry, coupling) || !recording.find(*signal_by_name(entry.group))) return {};
+  return fmt::format(
+      "a fixed coupling holds the simulation to the recorded {} as if that had no {}: leave {} out "
+      "and {}use coupling: continuation",
+      entry.group, entry.quantity.symbol, entry.name,
+      entry.quantity.symbol == "delay" ? "fit T_d, which delays the whole motion, or " : "");
 }
 
 std::string resolved(const ConfigNode& node, const std::string& file, const std::string& base) {

@@ -18,6 +18,11 @@ const Section& recording_keys();
 Recording read_recording(const ConfigNode& node, const Rig& rig, CouplingMode coupling,
                          const std::string& data_directory);
 
+/// Why a fixed coupling leaves a quantity no part in a recording: the lag or delay of the signal
+/// that the simulation is held to. Empty where it has one.
+std::string ignored_by_coupling(const QuantityEntry& entry, CouplingMode coupling,
+                                const Recording& recording);
+
 /// The path of a file named in a configuration file: relative to `base`, or else to the folder of
 /// that file.
 std::string resolved(const ConfigNode& node, const std::string& file, const std::string& base);

@@ -121,6 +121,13 @@ double last_coupling_rate(const Job& job) {
   return job.options.coupling == CouplingMode::fixed ? first_coupling_rate(job) : 0.0;
 }
 
+bool is_ignored(const QuantityEntry& entry, CouplingMode coupling) {
+  const auto signal = signal_by_name(entry.group);
+  return coupling == CouplingMode::fixed &&
+         (signal == Signal::position || signal == Signal::velocity) &&
+         (entry.quantity.symbol == "lag" || entry.quantity.symbol == "delay");
+}
+
 ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
                                     const Eigen::VectorXd& start,
                                     const std::function<void(const Stage&)>& progress) {

@@ -33,6 +33,10 @@ double first_coupling_rate(const Job& job);
 /// The rate at which the fit ends: zero unless the job fixes the coupling.
 double last_coupling_rate(const Job& job);
 
+/// Whether a coupling that lasts to the end takes this quantity to be zero: the lag or delay of a
+/// position or velocity. A simulation that is held to a late signal is late itself.
+bool is_ignored(const QuantityEntry& entry, CouplingMode coupling);
+
 /// Fits from u, through all stages of job.options.coupling. `progress` is told of every stage.
 ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
                                     const Eigen::VectorXd& u,

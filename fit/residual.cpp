@@ -16,9 +16,14 @@ SimulationOutcome run(const Job& job, const Recording& recording, const Model<T>
                       std::vector<ModeChange>* modes = nullptr) {
   IntegratorOptions options = recording_options(recording.times, job.options.step);
   options.modes = modes;
+  // The velocity of a force source turns where its command switches, at samples: there its chords
+  // are the curve.
+  const bool curved_velocity = model.structure.drive != Drive::force_source;
   const auto series = [&](Signal signal) {
     const Measurement* m = coupling.active() ? recording.find(signal) : nullptr;
-    return m == nullptr ? std::vector<double>{} : recorder.refined(m->values);
+    if (m == nullptr) return std::vector<double>{};
+    const bool curved = signal == Signal::position || curved_velocity;
+    return recorder.refined(curved ? target_corners(recording.times, m->values) : m->values);
   };
   const std::vector<double> velocity = series(Signal::velocity),
                             position = series(Signal::position);
@@ -57,6 +62,12 @@ Prediction predict(const Job& job, const ParameterSpace& space, std::size_t inde
   const Model<double> model = model_at(job, space, u, index);
   Recorder<double> recorder(model.instruments, signals, recording.times);
   Prediction prediction;
+  // The force is the sample's: that of the target is periodic between samples, and not zero at
+  // them.
+  const auto measured = [&](Signal signal) {
+    const Measurement* m = recording.find(signal);
+    return m == nullptr ? 0.0 : m->values[prediction.samples.size()];
+  };
   const SimulationOutcome outcome = run(
       job, recording, model, coupling, recorder,
       [&](const Integrator<double>& axis) {
@@ -69,7 +80,9 @@ Prediction predict(const Job& job, const ParameterSpace& space, std::size_t inde
              model.structure.transmission == Transmission::rigid
                  ? drive
                  : equations.gear_force(axis.mode(), y),
-             coupling.active() ? equations.coupling_force(y, axis.input().target) : 0.0});
+             coupling.active() ? equations.coupling_force(y, Target{measured(Signal::velocity),
+                                                                    measured(Signal::position)})
+                               : 0.0});
       },
       &prediction.modes);
   for (std::size_t m = 0; m < signals.size(); ++m)

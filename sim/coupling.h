@@ -4,6 +4,9 @@
 // minimum) and the diagnosis its missing force (the force that had to be added).
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "sim/axis.h"
 
 namespace axisfit {
@@ -43,5 +46,15 @@ struct TargetOf {
   }
 };
 using Target = TargetOf<double>;
+
+/// The corners of a target that runs linearly between samples of a smooth curve f at these times
+/// (s, increasing), and that is right in the mean.
+///
+/// The chord over an interval h is off by f'' h^2 / 12 on average, towards the inside of the curve:
+/// a simulation that is held to it firmly reads as if it were lighter. Weighted by a hat over the
+/// two intervals beside a sample, h1 and h2, chords are off by f'' (h1^3 + h2^3) / 24, and
+/// corners that are lower by d by d (h1 + h2) / 2. So d = f'' (h1^2 - h1 h2 + h2^2) / 12, with f''
+/// from divided differences: for even sampling a twelfth of the second difference.
+std::vector<double> target_corners(std::span<const double> times, std::span<const double> values);
 
 }  // namespace axisfit

@@ -9,8 +9,8 @@
 
 namespace axisfit {
 
-/// What a coupled simulation is held to: measured values at the instants of the simulation.
-/// A series that the coupling does not use may be empty.
+/// What a coupled simulation is held to: measured values at the instants of the simulation, those of
+/// a curve as target_corners(). A series that the coupling does not use may be empty.
 struct Measured {
   std::span<const double> velocity;  ///< m/s
   std::span<const double> position;  ///< m

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fit/continuation.h"
 #include "sim/effects/effects.h"
 
 namespace axisfit {
@@ -182,6 +183,9 @@ std::vector<Candidate> catalogue(const Job& job, const Scales& scales) {
     // A part of an effect that needs another part of it, as a second harmonic the first.
     const auto effect = effect_named(entry.name);
     if (entry.strengths[0] == "F_s2" && !job.model.structure.effects[*effect]) continue;
+    // The offset of a force source is a constant force by another name: no recording decides.
+    if (entry.name == "command_offset" && job.model.structure.drive == Drive::force_source)
+      continue;
     offer(std::move(candidate));
   }
   Candidate dead_time{"dead_time", "drive", "dead time of the command", {}, {}, {{}}};
@@ -193,10 +197,7 @@ std::vector<Candidate> catalogue(const Job& job, const Scales& scales) {
     for (const std::string_view part : {"bias", "gain", "lag", "delay"}) {
       const std::string name = std::string(signal.name) + "." + std::string(part);
       const QuantityEntry* entry = find_quantity(name);
-      // A simulation that is held to a late signal to the end is late itself.
-      const bool held = job.options.coupling == CouplingMode::fixed &&
-                        (signal.signal == Signal::position || signal.signal == Signal::velocity);
-      if (held && (part == "lag" || part == "delay")) continue;
+      if (is_ignored(*entry, job.options.coupling)) continue;
       Candidate candidate{name,           "sensor", std::string(entry->quantity.meaning),
                           {entry->index}, {},       {{}}};
       if (part == "lag") candidate.probes = later;

@@ -712,6 +712,25 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
   }
 }
 
+// The signal that holds the simulation to the end is taken to be on time.
+TEST_F(JobFileTest, RefusesALateSignalThatHoldsTheSimulation) {
+  const std::string fixed = std::string(kJob) + "fit: {coupling: {fixed: 300 1/s}}\n";
+  const std::string message =
+      "a fixed coupling holds the simulation to the recorded velocity as if that had no ";
+  EXPECT_EQ(errors(replaced(fixed, "M: {}", "velocity.delay: {}")),
+            "job.yaml:9:19: " + message +
+                "delay: leave velocity.delay out and fit T_d, which delays the whole motion, or "
+                "use coupling: continuation");
+  EXPECT_EQ(errors(replaced(fixed, "M: {}", "velocity.lag: {}")),
+            "job.yaml:9:17: " + message +
+                "lag: leave velocity.lag out and use coupling: continuation");
+  EXPECT_EQ(errors(replaced(fixed, "    signals:", "    set: {velocity.lag: 1 ms}\n    signals:")),
+            "job.yaml:7:7: " + message +
+                "lag: leave velocity.lag out and use coupling: continuation");
+  EXPECT_NO_THROW(read(replaced(fixed, "M: {}", "position.delay: {}")));
+  EXPECT_NO_THROW(read(replaced(kJob, "M: {}", "velocity.delay: {}")));
+}
+
 TEST_F(JobFileTest, MistakesInARecordingNameItsLine) {
   folder_.write("data.csv", "t_ms,u,v\n0,0,1\n1,0,2\n\n3,0,4\n");
   EXPECT_EQ(errors(kJob).substr(0, 27), "job.yaml:3:11: data.csv:4: ");

@@ -59,6 +59,15 @@ TEST(Catalogue, HasEveryEffectOfTheList) {
   });
 }
 
+// Or the loop leaves both undecided, and can accept neither.
+TEST(Catalogue, HasOneConstantForceOfAForceSource) {
+  Job job = job_with({Signal::velocity});
+  EXPECT_NE(find(catalogue(job, scales()), "command_offset"), nullptr);
+  job.model = slide();
+  EXPECT_NE(find(catalogue(job, scales()), "constant_force"), nullptr);
+  EXPECT_EQ(find(catalogue(job, scales()), "command_offset"), nullptr);
+}
+
 TEST(Catalogue, EntriesAreComplete) {
   const auto list = catalogue(job_with({Signal::velocity, Signal::position}), scales());
   const auto& quantities = quantity_list();

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iostream>
+#include <numbers>
 
 #include "tests/fit/example.h"
 
@@ -134,6 +136,80 @@ TEST(RecordingCost, HuberCountsOutliersLinearly) {
   const double robust = evaluate(squares, u).residuals[300];
   EXPECT_GT(plain, 90.0);
   EXPECT_NEAR(robust * robust, 2.0 * 3.0 * plain - 9.0, 1e-9);
+}
+
+/// Relative errors of M and B_a that a fit finds in exact samples of an axis, `interval` s apart,
+/// while it is held firmly to the signal. The command is a chirp from 1 to 17 Hz in fine stairs.
+std::pair<double, double> errors_when_held(const Model<double>& truth, Signal signal, double rate,
+                                           double interval, double jitter = 0.0) {
+  constexpr double kDuration = 2.0, kStair = 1e-4;
+  Job job;
+  job.model = truth;
+  job.options.threads = 1;
+  job.options.coupling = CouplingMode::fixed;
+  job.options.coupling_rate = rate;
+  Recording& recording = job.recordings.emplace_back();
+  recording.name = "fit";
+  const int samples = static_cast<int>(std::lround(kDuration / interval));
+  std::mt19937_64 generator(1);
+  for (int i = 0; i <= samples; ++i)
+    recording.times.push_back(interval * (i + jitter * (2.0 * uniform(generator) - 1.0)));
+  for (int i = 0; i * kStair < kDuration; ++i) {
+    const double t = (i + 0.5) * kStair;
+    recording.command.times.push_back(i * kStair);
+    recording.command.values.push_back(4.0 *
+                                       std::sin(2.0 * std::numbers::pi * (1.0 + 4.0 * t) * t));
+  }
+  Measurement& m = recording.measurements.emplace_back();
+  m.signal = signal;
+  m.sigma = 1e-5;
+  m.noise = NoiseSource::given;
+  simulate(truth, recording.command, recording.times,
+           [&](std::size_t, const Integrator<double>& axis) {
+             m.values.push_back(
+                 reading(axis.equations(), signal, axis.mode(), axis.state(), axis.input()));
+           });
+  job.free = {free_parameter("M", 1.3 * truth.axis.M), free_parameter("B_a", 1.5 * truth.axis.B_a)};
+  const FitResult fit = estimate(job);
+  EXPECT_TRUE(fit.usable);
+  return {fit.parameters[0].value / truth.axis.M - 1.0,
+          fit.parameters[1].value / truth.axis.B_a - 1.0};
+}
+
+/// The quick slide, with a friction that shows in two seconds.
+Model<double> rubbing_slide() {
+  Model<double> model = slide();
+  model.axis.B_a = 300.0;
+  return model;
+}
+
+// Chords between the samples would make M heavier by 1.8 % at 4 ms and 0.44 % at 2 ms.
+TEST(HeldFirmly, ToAnExactPositionFindsTheTruthToFourthOrder) {
+  const auto [mass, friction] = errors_when_held(rubbing_slide(), Signal::position, 100.0, 4e-3);
+  const auto [finer_mass, finer_friction] =
+      errors_when_held(rubbing_slide(), Signal::position, 100.0, 2e-3);
+  std::cout << "M " << mass << " and " << finer_mass << ", B_a " << friction << " and "
+            << finer_friction << "\n";
+  EXPECT_LT(std::abs(mass), 4e-4);
+  EXPECT_LT(std::abs(friction), 4e-4);
+  EXPECT_NEAR(mass / finer_mass, 16.0, 2.0);
+  EXPECT_NEAR(friction / finer_friction, 16.0, 2.0);
+}
+
+TEST(HeldFirmly, FindsItInUnevenSamplesToo) {
+  const auto [mass, friction] =
+      errors_when_held(rubbing_slide(), Signal::position, 100.0, 4e-3, 0.3);
+  std::cout << "M " << mass << ", B_a " << friction << "\n";
+  EXPECT_LT(std::abs(mass), 1e-3);
+  EXPECT_LT(std::abs(friction), 1e-3);
+}
+
+// Chords would make B_a smaller by 9.8 %.
+TEST(HeldFirmly, ToAnExactVelocityFindsTheTruth) {
+  const auto [mass, friction] = errors_when_held(motor_axis(), Signal::velocity, 200.0, 2e-3);
+  std::cout << "M " << mass << ", B_a " << friction << "\n";
+  EXPECT_LT(std::abs(mass), 1e-3);
+  EXPECT_LT(std::abs(friction), 1e-2);
 }
 
 TEST(CouplingFor, TakesVelocityThenPosition) {

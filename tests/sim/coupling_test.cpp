@@ -52,6 +52,42 @@ double rms(const std::vector<double>& values) {
 const Coupling kCouplings[] = {Coupling::to_velocity(30.0, false),
                                Coupling::to_velocity(1000.0, true), Coupling::to_position(100.0)};
 
+// A parabola: the line through the corners is right in the mean over each interval of an even
+// sampling, and over all of them of an uneven one.
+TEST(TargetCorners, AreRightInTheMean) {
+  const auto square = [](double t) { return t * t; };
+  const auto mean_error = [&](const std::vector<double>& times) {
+    std::vector<double> values;
+    for (const double t : times) values.push_back(square(t));
+    const auto corners = target_corners(times, values);
+    std::vector<double> errors;  // of the integral over each interval
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      const double a = times[i - 1], b = times[i];
+      errors.push_back(0.5 * (corners[i - 1] + corners[i]) * (b - a) - (b * b * b - a * a * a) / 3);
+    }
+    return errors;
+  };
+  for (const double e : mean_error({0.0, 0.1, 0.2, 0.3, 0.4})) EXPECT_NEAR(e, 0.0, 1e-15);
+  const auto uneven = mean_error({0.0, 0.1, 0.25, 0.3, 0.4, 0.6});
+  EXPECT_NEAR(std::accumulate(uneven.begin(), uneven.end(), 0.0), 0.0, 1e-15);
+}
+
+TEST(TargetCorners, StayNearTheSamplesBesideAGap) {
+  // 10 ms at rest, nothing for a second, 10 ms at rest a metre on.
+  std::vector<double> times, values;
+  for (int i = 0; i <= 20; ++i) {
+    times.push_back(1e-3 * i + (i > 10 ? 1.0 : 0.0));
+    values.push_back(i > 10 ? 1.0 : 0.0);
+  }
+  const auto corners = target_corners(times, values);
+  for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(corners[i], values[i], 2e-6);
+}
+
+TEST(TargetCorners, OfTwoSamplesAreTheSamples) {
+  const std::vector<double> times{0.0, 1.0}, values{2.0, 3.0};
+  EXPECT_EQ(target_corners(times, values), values);
+}
+
 TEST(Coupling, DoesNothingToAModelThatIsRight) {
   const Model<double> model = paper_axis();
   for (const Coupling& coupling : kCouplings) {
