@@ -42,7 +42,7 @@ TEST(EmpsTest, FitAgreesWithThePublishedEstimates) {
     EXPECT_TRUE(p.uncertainty.determined) << p.name;
   }
   ASSERT_EQ(value.size(), 4u);
-  EXPECT_NEAR(value.at("M"), 95.1089, 0.03 * 95.1089);
+  EXPECT_NEAR(value.at("M"), 95.1089, 0.005 * 95.1089);
   EXPECT_NEAR(value.at("B_a"), 203.5034, 0.03 * 203.5034);
   EXPECT_NEAR(value.at("coulomb_friction.F_c"), 20.3935, 0.03 * 20.3935);
   EXPECT_NEAR(value.at("constant_force.F_0"), 3.1648, 0.10 * 3.1648);

@@ -721,12 +721,12 @@ TEST_F(JobFileTest, RefusesALateSignalThatHoldsTheSimulation) {
             "job.yaml:9:19: " + message +
                 "delay: leave velocity.delay out and fit T_d, which delays the whole motion, or "
                 "use coupling: continuation");
-  EXPECT_EQ(errors(replaced(fixed, "M: {}", "velocity.lag: {}")),
-            "job.yaml:9:17: " + message +
-                "lag: leave velocity.lag out and use coupling: continuation");
-  EXPECT_EQ(errors(replaced(fixed, "    signals:", "    set: {velocity.lag: 1 ms}\n    signals:")),
-            "job.yaml:7:7: " + message +
-                "lag: leave velocity.lag out and use coupling: continuation");
+  EXPECT_EQ(
+      errors(replaced(fixed, "M: {}", "velocity.lag: {}")),
+      "job.yaml:9:17: " + message + "lag: leave velocity.lag out and use coupling: continuation");
+  EXPECT_EQ(
+      errors(replaced(fixed, "    signals:", "    set: {velocity.lag: 1 ms}\n    signals:")),
+      "job.yaml:7:7: " + message + "lag: leave velocity.lag out and use coupling: continuation");
   EXPECT_NO_THROW(read(replaced(fixed, "M: {}", "position.delay: {}")));
   EXPECT_NO_THROW(read(replaced(kJob, "M: {}", "velocity.delay: {}")));
 }

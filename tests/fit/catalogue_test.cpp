@@ -193,7 +193,7 @@ TEST(Catalogue, OffersNothingThatTheStructureDoesNotUse) {
   for (const char* name :
        {"cogging_torque", "torque_ripple", "torque_droop", "force_over_motor_angle"})
     EXPECT_EQ(find(list, name), nullptr) << name;
-  for (const char* name : {"torque_fade", "drive_lag", "command_offset", "dead_time"})
+  for (const char* name : {"torque_fade", "drive_lag", "dead_time"})
     EXPECT_NE(find(list, name), nullptr) << name;
   for (const Candidate& c : list) {
     Structure structure = job.model.structure;

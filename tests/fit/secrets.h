@@ -87,7 +87,6 @@ inline std::vector<Secret> secrets() {
   };
   // With M free as well it would be the same twice.
   secret("added_mass").free = {"B_a"};
-  secret("constant_force").twin = "command_offset";
   secret("cogging_torque").motor = secret("torque_ripple").motor = true;
   secret("cogging_torque").twin = "periodic_force";
   secret("velocity.gain").twin = "acceleration.gain";
