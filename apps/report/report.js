@@ -1,7 +1,7 @@
 // Makes the charts of report.html live.
 //
 // C++ writes the page: all text, tables and a static SVG of every chart, and the data as JSON in
-// <script id="charts">. CMake puts uPlot and the files of this folder, wrapped in one strict
+// <script> named charts. CMake puts uPlot and the files of this folder, wrapped in one strict
 // function, at its end:
 //   columns.js  decodes the columns of numbers, exactly
 //   drawing.js  draws traces, dots, events, phases and bands, on a canvas or as SVG
