@@ -326,12 +326,14 @@ std::optional<ConfigNode> ConfigNode::parse(std::string contents, const std::str
     source->error(error.mark, too_deep());
     return std::nullopt;
   } catch (const YAML::Exception& error) {
-    source->error(error.mark, "not valid YAML: " + error.msg);
+    const bool tab = error.msg.find("tab") != std::string::npos;
+    source->error(error.mark, "not valid YAML: " + error.msg + (tab ? "; indent with blanks" : ""));
     return std::nullopt;
   }
   if (documents.size() > 1) {
     source->error(documents[1].Mark(),
                   "only one document is allowed; remove the '---' above and what follows it");
+    return std::nullopt;
   }
   const YAML::Node root = documents.empty() ? YAML::Node(YAML::NodeType::Null) : documents.front();
   if (!ConfigCheck(*source).run(root)) return std::nullopt;

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 #include <signal.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -36,10 +38,16 @@ constexpr const char* kResidualsFile = "residuals.csv";
 constexpr const char* kReportFile = "report.html";
 constexpr const char* kMotionFile = "next-motion.yaml";
 
-enum ExitCode { kUsable = 0, kNoUsableFit = 3, kInterrupted = 130 };  // besides kBadInput
+enum ExitCode {  // besides kBadInput
+  kUsable = 0,
+  kNoUsableFit = 3,
+  kOutOfTime = 124,  // as that of timeout(1)
+  kInterrupted = 130,
+};
 
 // The first signal ends the work, a second one the program.
 StopFlag stop_flag = false;
+StopFlag out_of_time = false;  // that was the time limit
 static_assert(StopFlag::is_always_lock_free);
 
 void stop_on_signals() {
@@ -49,6 +57,20 @@ void stop_on_signals() {
   };
   for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
 }
+
+void stop_after(double seconds) {
+  struct sigaction action = {};
+  action.sa_handler = [](int) { out_of_time = !stop_flag.exchange(true); };
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGALRM, &action, nullptr);
+  const double whole = std::floor(seconds);
+  const itimerval once{{0, 0},
+                       {static_cast<time_t>(whole),
+                        static_cast<suseconds_t>(std::ceil(999'999.0 * (seconds - whole)))}};
+  setitimer(ITIMER_REAL, &once, nullptr);
+}
+
+int exit_code_of_stop() { return out_of_time ? kOutOfTime : kInterrupted; }
 
 struct Arguments {
   std::string command;             // as one would type it
@@ -75,9 +97,11 @@ constexpr const char* kExamples = R"(Examples:
   fit-params configs/jobs/paper.yaml --suggest-experiment --output results
   fit-params configs/jobs/paper.yaml --output results --starts 20 --seed 7
   fit-params configs/jobs/emps.yaml --data ~/Downloads/EMPS
+  fit-params job.yaml --starts 1000 --time-limit 60 --output results
   fit-params job.yaml --json | jq '.parameters[] | {name, value}'
 
-Exit codes: 0 usable fit, 2 bad input, 3 no usable fit, 130 stopped by Ctrl-C.)";
+Exit codes: 0 usable fit, 2 bad input, 3 no usable fit, 124 stopped by the time
+limit, 130 by Ctrl-C.)";
 
 /// Begins at the values of another axis, as far as it has them, instead of the job's initial ones.
 void begin_at(const std::string& axis_file, Job& job) {
@@ -190,7 +214,7 @@ std::vector<std::pair<std::string, std::string>> files_of(const Arguments& argum
   return files;
 }
 
-/// How to go on after Ctrl-C.
+/// How to go on after Ctrl-C or the time limit.
 std::string advice(const Arguments& arguments) {
   if (arguments.output.empty())
     return "\n" + paragraph(
@@ -235,8 +259,9 @@ int run(const Arguments& arguments) {
     check_folder(arguments.output, names);
   }
 
-  const Outcome outcome = find_outcome(std::move(file), arguments.wishes,
-                                       [&](const Progress& progress) { line->tell(progress); });
+  Outcome outcome = find_outcome(std::move(file), arguments.wishes,
+                                 [&](const Progress& progress) { line->tell(progress); });
+  outcome.out_of_time = outcome.interrupted && out_of_time;
   const std::string json = result_json(outcome).dump(2) + "\n";
   line.reset();
 
@@ -248,7 +273,7 @@ int run(const Arguments& arguments) {
   if (!arguments.output.empty()) write_folder(arguments.output, files_of(arguments, outcome, json));
   if (outcome.interrupted) {
     if (!arguments.quiet) std::cerr << advice(arguments);
-    return kInterrupted;
+    return exit_code_of_stop();
   }
   return outcome.fit().usable ? kUsable : kNoUsableFit;
 }
@@ -309,18 +334,29 @@ int main(int argc, char** argv) {
   app.add_option("--starts", arguments.starts,
                  "number of starts, the first from the initial values; default: the job's")
       ->check(CLI::Range(1, 1000000));
+  app.add_option("--time-limit", arguments.wishes.time_limit,
+                 "stop after so many seconds and keep what is finished, as by Ctrl-C")
+      ->check(CLI::Range(0.001, 1e8))
+      ->excludes(init)
+      ->excludes(check)
+      ->type_name("SECONDS");
   return run_program(app, argc, argv, [&] {
     arguments.command = typed(argc, argv);
     for (std::istringstream names(profiles); std::getline(names, profiles, ',');)
       arguments.wishes.profiles.push_back(profiles);
     arguments.wishes.stop = &stop_flag;
+    stop_flag = arguments.init || arguments.check;  // there is nothing to keep
     stop_on_signals();
+    if (arguments.wishes.time_limit) stop_after(*arguments.wishes.time_limit);
     try {
       return run(arguments);
     } catch (const Interrupted&) {
       if (!arguments.quiet)
-        std::cerr << "Stopped before a fit was finished: there is nothing to keep. Begin anew.\n";
-      return static_cast<int>(kInterrupted);
+        std::cerr << fmt::format(
+            "Stopped{} before a fit was finished: there is nothing to keep. {}\n",
+            out_of_time ? " by the time limit" : "",
+            out_of_time ? "Give it more time." : "Begin anew.");
+      return exit_code_of_stop();
     }
   });
 }

@@ -83,6 +83,7 @@ class JobReader {
       // What refers to the axis can only be checked with one.
       if (model && recordings) read_recordings(*recordings);
       if (model && free) read_free(*free, result_.job);
+      if (free && diagnostics_.empty()) check_freedom(*free);
       map.finish();
     }
     diagnostics_.throw_if_any();
@@ -166,6 +167,7 @@ class JobReader {
       result_.job.recordings.push_back(
           read_recording(entry, result_.rig, result_.job.options.coupling, data_directory_));
       any_fit = any_fit || result_.job.recordings.back().role == Role::fit;
+      check_length(entry, result_.job.recordings.back());
     }
     for (const Recording& recording : result_.job.recordings)
       if (!names.insert(recording.name).second)
@@ -173,6 +175,42 @@ class JobReader {
                                recording.name));
     if (!any_fit && diagnostics_.empty())
       node.error("no recording has the role fit: at least one must");
+  }
+
+  /// Whether there is more to fit to than parameters.
+  void check_freedom(const ConfigNode& node) const {
+    std::size_t values = 0, parameters = result_.job.free.size();
+    for (const Recording& r : result_.job.recordings)
+      for (const Measurement& m : r.measurements)
+        for (std::size_t i = 0; i < m.values.size(); ++i) values += r.fits(m, i);
+    for (const FreeParameter& p : result_.job.free) values += p.prior.has_value();
+    if (values <= parameters)
+      node.error(
+          fmt::format("{} values, priors included, do not determine {} parameters: fit "
+                      "fewer, or to more samples",
+                      values, parameters));
+  }
+
+  /// What takes so many steps is a mistake in the times, or would be fitted for days.
+  void check_length(const ConfigNode& node, const Recording& recording) const {
+    constexpr double kStepsBetweenSamples = 1e6, kSteps = 1e8;
+    const std::vector<double>& times = recording.times;
+    const double step = result_.job.options.step;
+    if (times.size() < 2) return;
+    std::size_t longest = 1;
+    for (std::size_t i = 2; i < times.size(); ++i)
+      if (times[i] - times[i - 1] > times[longest] - times[longest - 1]) longest = i;
+    const double gap = times[longest] - times[longest - 1], all = times.back() - times.front();
+    if (gap > kStepsBetweenSamples * step)
+      node.error(fmt::format(
+          "'{}' has no sample for {:.6g} s, from {:.9g} s on: trim it to one side of that; or is "
+          "the unit of the time wrong?",
+          recording.name, gap, times[longest - 1]));
+    else if (all > kSteps * step)
+      node.error(fmt::format(
+          "'{}' lasts {:.6g} s: too long to be simulated in steps of {:g} s; trim it, or give fit "
+          "a longer step; or is the unit of the time wrong?",
+          recording.name, all, step));
   }
 
   std::string path_;

@@ -57,10 +57,16 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
   if (const auto given = map.optional("prior")) {
     ConfigMap prior(*given, keys_below(keys, "prior"));
     parameter.prior.emplace();
-    prior.read("mean", parameter.prior->mean);
+    std::optional<double> mean;
+    prior.read("mean", mean);
     if (const auto sigma = prior.required("sigma"))
       parameter.prior->sigma = read_sigma(*sigma, quantity.unit);
     prior.finish();
+    if (mean && bounds && (*mean < bounds->first || *mean > bounds->second))
+      node.error(fmt::format("the prior of {} expects {}, outside its bounds, {} to {}", entry.name,
+                             rounded(*mean, quantity.unit), rounded(bounds->first, quantity.unit),
+                             rounded(bounds->second, quantity.unit)));
+    parameter.prior->mean = mean.value_or(parameter.initial);
   }
   map.finish();
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <ranges>
 
@@ -155,11 +156,21 @@ class RecordingReader {
       command_times.push_back((*times)[i]);
       commands.push_back((*input)[i]);
     }
-    recording.command = schedule_from_samples(command_times, commands);
     recording.times = trimmed(*times, *times, trim);
+    // Effects of the time mean that of the recording, and at 1.7e9 s a double is too coarse to
+    // step on.
+    if (constexpr double kDay = 86400.0; std::abs(times->front()) > kDay) {
+      for (double& t : command_times) t -= times->front();
+      for (double& t : recording.times) t -= times->front();
+    }
+    recording.command = schedule_from_samples(command_times, commands);
     if (recording.times.size() < 10) {
+      const std::size_t left = recording.times.size();
+      const std::string samples = fmt::format("{} sample{}", left, left == 1 ? "" : "s");
       trim_node.value_or(time_node).error(
-          fmt::format("{} samples are too few: at least 10 must be left", recording.times.size()));
+          trim_node ? fmt::format("{} of {}, from {:g} s to {:g} s, are left: at least 10 must be",
+                                  samples, times->size(), times->front(), times->back())
+                    : fmt::format("the recording has {}: at least 10 are needed", samples));
       recording.times = {0.0, 1.0};
       return;
     }

@@ -120,6 +120,12 @@ Outcome find_outcome(JobFile file, const Wishes& wishes, const ProgressReport& p
   return outcome;
 }
 
+std::string stop_reason(const Outcome& outcome) {
+  return outcome.out_of_time
+             ? fmt::format(" by the time limit of {:g} s", outcome.wishes.time_limit.value())
+             : "";
+}
+
 bool has_noise_from(const Job& job, NoiseSource source) {
   return std::ranges::any_of(job.recordings, [&](const Recording& r) {
     return std::ranges::find(r.measurements, source, &Measurement::noise) != r.measurements.end();

@@ -43,6 +43,7 @@ struct Wishes {
   std::vector<std::string> profiles{};  ///< of these parameters; "all": of all
   bool experiment = false;              ///< suggest the next one
   const StopFlag* stop = nullptr;       ///< ends early, with what is finished
+  std::optional<double> time_limit{};   ///< s, after which something sets it
 };
 
 struct Outcome {
@@ -57,6 +58,7 @@ struct Outcome {
   std::vector<Separation> separations;   ///< of the loop's undecided effects, pair by pair
   std::optional<Suggestion> suggestion;  ///< of the next experiment, where it was asked for
   bool interrupted = false;              ///< not all that was asked for was finished
+  bool out_of_time = false;              ///< because of the time limit
   double wall_time = 0.0;                ///< s
 
   /// The final model's: the result of the loop, or else the declared one.
@@ -73,6 +75,9 @@ const Experiment* next_experiment(const Outcome& outcome);
 
 /// Whether the fit can be used, and what a closed loop says of it.
 std::string verdict_of(const Outcome& outcome);
+
+/// " by the time limit of 60 s", or nothing: to follow "stopped".
+std::string stop_reason(const Outcome& outcome);
 
 /// Fits the job, looks for what it lacks and, where asked, adds that. Throws std::runtime_error
 /// when a wish names a parameter that is not fitted, and Interrupted when it is stopped before one

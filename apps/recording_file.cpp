@@ -33,10 +33,17 @@ const std::vector<double>* RecordingFile::column(const ConfigNode& node) const {
   if (!name) return nullptr;
   if (const auto found = columns_.find(*name); found != columns_.end()) {
     const std::vector<double>& values = found->second;
-    const auto gap = std::ranges::find_if_not(values, [](double x) { return std::isfinite(x); });
-    if (gap == values.end()) return &values;
-    node.error(fmt::format("{}: '{}' is not finite there: cut the recording or fill the gap",
-                           where(static_cast<std::size_t>(gap - values.begin())), *name));
+    // Beyond this squares of sums overflow.
+    constexpr double kLargest = 1e100;
+    const auto bad =
+        std::ranges::find_if_not(values, [](double x) { return std::abs(x) <= kLargest; });
+    if (bad == values.end()) return &values;
+    const std::string place = where(static_cast<std::size_t>(bad - values.begin()));
+    node.error(std::isfinite(*bad)
+                   ? fmt::format("{}: '{}' is {:g} there, which nothing can be: remove the row",
+                                 place, *name, *bad)
+                   : fmt::format("{}: '{}' is not finite there: cut the recording or fill the gap",
+                                 place, *name));
     return nullptr;
   }
   if (const auto ignored = ignored_.find(*name); ignored != ignored_.end()) {
@@ -45,7 +52,9 @@ const std::vector<double>* RecordingFile::column(const ConfigNode& node) const {
     return nullptr;
   }
   std::vector<std::string> names;
-  for (const auto& [existing, values] : columns_) names.push_back(existing);
+  constexpr std::size_t kLetters = 60;
+  for (const auto& [existing, values] : columns_)
+    names.push_back(existing.size() > kLetters ? existing.substr(0, kLetters) + "..." : existing);
   const std::string near = nearest(*name, names);
   constexpr std::size_t kNamed = 30;
   const std::size_t more = names.size() - std::min(names.size(), kNamed);
@@ -91,7 +100,8 @@ std::optional<std::vector<double>> read_column(const RecordingFile& file, Config
   }
   double further_factor = 1.0;
   std::size_t sign = 0;
-  map.read("factor", further_factor);
+  if (const auto given = map.read("factor", further_factor); given && further_factor == 0.0)
+    given->error("factor must not be zero: nothing of the column would be left");
   map.read("sign", sign);
   factor *= sign == 1 ? -further_factor : further_factor;
   const auto name = map.required("column");
@@ -116,7 +126,7 @@ std::optional<std::vector<double>> read_times(const RecordingFile& file, const C
     const double before = (*times)[i - 1], time = (*times)[i];
     if (time > before) continue;
     node.error(
-        fmt::format("{}: time {:.12g} s does not come after {:.12g} s: samples must be in "
+        fmt::format("{}: time {:.15g} s does not come after {:.15g} s: samples must be in "
                     "the order of time, each once",
                     file.where(i), time, before));
     return std::nullopt;

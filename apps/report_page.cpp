@@ -120,7 +120,8 @@ class Page {
     Html all = html(R"(<div class="verdict {}">{}</div>)", judgement(), words);
     for (const Separation& s : outcome_.separations) all += paragraph_of(s.words);
     if (outcome_.interrupted)
-      all += paragraph_of("Stopped before all that was asked for was finished.");
+      all += paragraph_of(fmt::format("Stopped{} before all that was asked for was finished.",
+                                      stop_reason(outcome_)));
     const auto determined = std::ranges::count_if(
         fit_.parameters, [](const ParameterResult& p) { return p.uncertainty.determined; });
     const bool closed = outcome_.loop && outcome_.loop->models.size() > 1;

@@ -176,7 +176,8 @@ std::string report_text(const Outcome& outcome) {
     const int starts = std::max(1, job.options.starts);
     return text + "\n" +
            paragraph(fmt::format(
-               "Stopped before all was finished: this is the result of {}{}.",
+               "Stopped{} before all was finished: this is the result of {}{}.",
+               stop_reason(outcome),
                starts > 1 ? fmt::format("{} of {} starts", outcome.first.starts.size(), starts)
                           : "the fit",
                outcome.loop ? ", and of the effects accepted so far" : ""));

@@ -387,6 +387,7 @@ Json result_json(const Outcome& outcome) {
       {"status", text(fit.status)},
       {"usable", fit.usable},
       {"interrupted", outcome.interrupted},
+      {"out_of_time", outcome.out_of_time},
       {"verdict", fit.verdict},
       {"message", fit.message},
       {"axis", outcome.file.rig.name},

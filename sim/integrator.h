@@ -370,7 +370,8 @@ bool Integrator<T>::meets_guard(const State<double>& from, int level, double len
   constexpr double kSmooth = 0.5;  // rad
   const bool halved = !by_series && fine < ladder.last && flow_->oscillation * piece > kSmooth;
   to = from;
-  for (long i = 0; i < pieces && steps_ <= options_.step_budget; ++i, ++steps_) {
+  for (long i = 0; i < pieces && steps_ <= options_.step_budget; ++i) {
+    ++steps_;  // also one that meets a guard: a search without end has to end
     State<double> middle;
     if (halved) middle = step(view, to, fine + 1);
     to = by_series ? step_by(view, to, piece) : step(view, to, fine);
@@ -458,9 +459,10 @@ template <class T>
 bool Integrator<T>::advance_to(const T& end) {
   const double last = value_of(end);
   const double negligible = 1e-9 * options_.step;
-  const int event_limit =
+  // As a floating-point number: an interval of days has more than an int can count.
+  const double event_limit =
       events_ +
-      options_.event_limit * (1 + static_cast<int>((last - value_of(input_.time)) / options_.step));
+      options_.event_limit * (1.0 + std::floor((last - value_of(input_.time)) / options_.step));
   int search = 0;  // level of the search for an event; 0: no search under way
   while (true) {
     const double remaining = last - value_of(input_.time);

@@ -1,6 +1,7 @@
 // The axis along a command, read at given instants.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <stdexcept>
 
@@ -33,11 +34,13 @@ struct SimulationOutcome {
 /// `step` (s). Parameters with which the axis chatters or swings faster are none to go on from.
 inline IntegratorOptions recording_options(std::span<const double> times, double step) {
   const double samples = static_cast<double>(times.size());
+  constexpr double kMost = 1e15;  // fits a long
   IntegratorOptions options;
   options.step = step;
   options.event_budget = 200 + static_cast<long>(0.5 * samples);
   options.step_budget =
-      100'000 + static_cast<long>(100.0 * (samples + (times.back() - times.front()) / step));
+      100'000 +
+      static_cast<long>(std::min(kMost, 100.0 * (samples + (times.back() - times.front()) / step)));
   return options;
 }
 
@@ -61,6 +64,12 @@ SimulationOutcome simulate(const Model<T>& model, const Schedule& command,
        ++next)
     in_force = T(command.values[next]);
   axis.start(times.front(), in_force, measured.at(0));
+  const auto reaches = [&](const T& instant) {
+    const bool reached = axis.advance_to(instant);
+    outcome.events = axis.events();
+    outcome.steps = axis.steps();
+    return reached;
+  };
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (i > 0 && coupling.active()) {
       const double duration = times[i] - times[i - 1];
@@ -71,14 +80,12 @@ SimulationOutcome simulate(const Model<T>& model, const Schedule& command,
     for (; next < command.times.size(); ++next) {
       const T instant = command.times[next] + delay;
       if (!(value_of(instant) < times[i])) break;
-      if (!axis.advance_to(instant)) return outcome;
+      if (!reaches(instant)) return outcome;
       axis.set_command(T(command.values[next]));
     }
-    if (!axis.advance_to(T(times[i]))) return outcome;
+    if (!reaches(T(times[i]))) return outcome;
     read(i, axis);
     outcome.reached = i + 1;
-    outcome.events = axis.events();
-    outcome.steps = axis.steps();
   }
   outcome.finished = true;
   return outcome;

@@ -292,6 +292,32 @@ NumberError read_number(std::string_view text, Format& format, double& value) {
   return error;
 }
 
+std::size_t count_fields(std::string_view line, char delimiter) {
+  std::size_t count = 0;
+  // Behind quotes that are not balanced it cannot be split further.
+  for (FieldReader fields(line, delimiter); !fields.done() && fields.next();) ++count;
+  return count;
+}
+
+[[noreturn]] void throw_wrong_count(const Table& table, std::size_t line_number, std::size_t count,
+                                    const Format& format) {
+  const std::size_t expected = table.columns.size();
+  const std::string sizes =
+      counted(count, "field") + " for the " + counted(expected, "column") + " of the header";
+  if (count < expected)
+    throw RecordingError(table.file, line_number,
+                         sizes + ", none for column " + quote(table.columns[count].name) +
+                             "; complete or remove the row");
+  throw RecordingError(
+      table.file, line_number,
+      sizes + ", more after column " + quote(table.columns.back().name) +
+          (table.columns.front().name.find_first_of("#%") == 0 ? std::string(kHeaderAdvice)
+           : expected > 1 && format.delimiter == ','
+               ? "; name them or remove them; or, if these are decimal "
+                 "commas, separate the fields by semicolons"
+               : "; name them or remove them"));
+}
+
 void append_row(Table& table, std::size_t line_number, std::string_view line, Format& format) {
   FieldReader fields(line, format.delimiter);
   const std::size_t expected = table.columns.size();
@@ -305,24 +331,20 @@ void append_row(Table& table, std::size_t line_number, std::string_view line, Fo
     double value = 0;
     const NumberError error = read_number(*field, format, value);
     if (error != NumberError::kNone) {
-      throw RecordingError(table.file, line_number,
-                           "column " + quote(column.name) + ": " + describe(error, *field));
+      if (const std::size_t all = count_fields(line, format.delimiter); all != expected)
+        throw_wrong_count(table, line_number, all, format);
+      const bool blanks = expected == 1 && field->find(' ') != std::string_view::npos;
+      throw RecordingError(
+          table.file, line_number,
+          "column " + quote(column.name) + ": " +
+              (blanks ? quote(*field) + " is not a number; separate the columns by commas, "
+                                        "semicolons or tabs, not by blanks"
+                      : describe(error, *field)));
     }
     column.values.push_back(value);
   }
-  if (count == expected) {
-    table.lines.push_back(line_number);
-    return;
-  }
-  const std::string sizes =
-      counted(count, "field") + " for the " + counted(expected, "column") + " of the header";
-  const std::string& last = table.columns.back().name;
-  throw RecordingError(
-      table.file, line_number,
-      count < expected
-          ? sizes + ", none for column " + quote(table.columns[count].name) +
-                "; complete or remove the row"
-          : sizes + ", more after column " + quote(last) + "; name them or remove them");
+  if (count != expected) throw_wrong_count(table, line_number, count, format);
+  table.lines.push_back(line_number);
 }
 
 std::string csv_field(const std::string& text) {
@@ -371,6 +393,14 @@ Table read_csv(const std::string& path) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
     throw RecordingError(path, 0, "is UTF-16 text; save it as UTF-8 or plain ASCII");
   }
+  if (text.starts_with("\x1F\x8B") || text.starts_with("PK\x03\x04")) {
+    throw RecordingError(path, 0, "is compressed, not a text file; unpack or export it as CSV");
+  }
+  if (text.find('\0') != std::string_view::npos) {
+    throw RecordingError(path, 0,
+                         "is not a text file (it holds null bytes); export the recording as CSV "
+                         "in UTF-8");
+  }
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
     throw RecordingError(path, 0, "the file is empty" + std::string(kHeaderAdvice));
@@ -380,6 +410,10 @@ Table read_csv(const std::string& path) {
   table.file = path;
   LineReader lines(text);
   const std::string_view header = lines.next();
+  if (header.find('\r') != std::string_view::npos) {
+    throw RecordingError(path, 1,
+                         "lines end in a carriage return alone; save the file with line feeds");
+  }
   Format format;
   format.delimiter = find_delimiter(header);
   table.columns = read_header(path, header, format);

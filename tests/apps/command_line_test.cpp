@@ -329,6 +329,34 @@ TEST_F(CommandLineTest, CtrlCBeforeAnythingIsFinishedSaysSo) {
   EXPECT_FALSE(std::filesystem::exists(outputs_.path("results")));
 }
 
+TEST_F(CommandLineTest, ATimeLimitKeepsWhatIsFinished) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Outcome stopped = fit({job(), "--starts", "100000", "--time-limit", "1.5", "--output",
+                               outputs_.path("results")});
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(1500));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+  EXPECT_EQ(stopped.exit_code, 124);
+  EXPECT_NE(stopped.out.find("Stopped by the time limit of 1.5 s before all was finished"),
+            std::string::npos)
+      << stopped.err;
+  EXPECT_NE(stopped.err.find("What was finished is in"), std::string::npos) << stopped.err;
+  const Json json = Json::parse(outputs_.read("results/result.json"));
+  EXPECT_EQ(json.at("interrupted"), true);
+  EXPECT_EQ(json.at("out_of_time"), true);
+  EXPECT_LT(json.at("starts").size(), 100000u);
+
+  // Where it is enough nothing is said of it; where it is far too short there is nothing to keep.
+  const Json whole = Json::parse(fit({job(), "--time-limit", "1000", "--json"}).out);
+  EXPECT_EQ(whole.at("interrupted"), false);
+  EXPECT_EQ(whole.at("out_of_time"), false);
+  const Outcome nothing = fit({job(), "--time-limit", "0.001"});
+  EXPECT_EQ(nothing.exit_code, 124);
+  EXPECT_EQ(nothing.out, "");
+  EXPECT_EQ(nothing.err,
+            "Stopped by the time limit before a fit was finished: there is nothing to keep. Give it "
+            "more time.\n");
+}
+
 TEST_F(CommandLineTest, ProgressIsShownOnATerminalAndTakenAway) {
   const std::string many = job(fit_job("{starts: 1000000}"));
   constexpr const char* kClear = "\r\033[K";

@@ -1,6 +1,8 @@
 // Axes that nobody would build: every quantity anywhere in its allowed range, driven at random.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -63,6 +65,7 @@ inline Motion any_motion(std::mt19937_64& g) {
 
 struct Ordeal {
   std::string refused;  ///< why the model is no model; empty: it was simulated
+  IntegratorOptions options;
   SimulationOutcome outcome;
   bool finite = true;  ///< all that was read
 };
@@ -81,14 +84,28 @@ inline Ordeal ordeal(std::uint64_t draw) {
   for (const SignalInfo& s : kSignalTable)
     if (has_signal(s.signal, model.structure)) signals.push_back(s.signal);
   Recorder<double> recorder(model.instruments, signals, times);
-  const IntegratorOptions options = recording_options(times, 0.5e-3);
+  result.options = recording_options(times, 0.5e-3);
   result.outcome = simulate<double>(
       model, schedule_of(motion, 0.2, 5e-3), recorder.instants(),
-      [&](std::size_t, const Integrator<double>& axis) { recorder.read(axis); }, {}, {}, options);
+      [&](std::size_t, const Integrator<double>& axis) { recorder.read(axis); }, {}, {},
+      result.options);
   for (std::size_t s = 0; s < signals.size(); ++s)
     if (result.outcome.reached > 0)
       for (const double v : recorder.readings(s)) result.finite = result.finite && std::isfinite(v);
   return result;
+}
+
+/// A simulation ends in finite readings or is given up, within its budgets; or there is a reason
+/// why it cannot begin.
+inline void expect_endured(std::uint64_t first, std::uint64_t end) {
+  for (std::uint64_t draw = first; draw < end; ++draw) {
+    SCOPED_TRACE(draw);
+    const Ordeal o = ordeal(draw);
+    if (!o.refused.empty()) continue;
+    if (o.outcome.finished) EXPECT_TRUE(o.finite);
+    EXPECT_LE(o.outcome.steps, o.options.step_budget + 1);
+    EXPECT_LE(o.outcome.events, o.options.event_budget);
+  }
 }
 
 }  // namespace axisfit
