@@ -102,7 +102,9 @@ inline void expect_endured(std::uint64_t first, std::uint64_t end) {
     SCOPED_TRACE(draw);
     const Ordeal o = ordeal(draw);
     if (!o.refused.empty()) continue;
-    if (o.outcome.finished) EXPECT_TRUE(o.finite);
+    if (o.outcome.finished) {
+      EXPECT_TRUE(o.finite);
+    }
     EXPECT_LE(o.outcome.steps, o.options.step_budget + 1);
     EXPECT_LE(o.outcome.events, o.options.event_budget);
   }
