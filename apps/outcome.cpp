@@ -183,4 +183,14 @@ const char* role_name(const Recording& recording, bool fitted) {
   return fitted ? "fit" : "held_out";
 }
 
+const char* role_name(const Recording& recording, const SignalError& signal) {
+  if (recording.role == Role::validate) return "validate";
+  return signal.fitted ? "fit" : "compare";
+}
+
+const FreeParameter& as_declared(const Outcome& outcome, std::size_t parameter) {
+  const std::vector<FreeParameter>& declared = outcome.file.job.free;
+  return parameter < declared.size() ? declared[parameter] : outcome.job().free[parameter];
+}
+
 }  // namespace axisfit

@@ -101,4 +101,11 @@ const char* decision_name(Decision decision);
 /// "fit", "validate" or, where a recording was fitted in part, "held_out".
 const char* role_name(const Recording& recording, bool fitted);
 
+/// Of one signal of a recording: "fit", "validate", or "compare" where it is only compared.
+const char* role_name(const Recording& recording, const SignalError& signal);
+
+/// A free parameter of the final model with the user's initial value, which the loop does not keep;
+/// of an added effect, with the one it was started from.
+const FreeParameter& as_declared(const Outcome& outcome, std::size_t parameter);
+
 }  // namespace axisfit

@@ -189,7 +189,6 @@ Chart ReportCharts::over_time(std::size_t recording, std::string id, std::string
 Html ReportCharts::overview() {
   if (!outcome_.diagnosis || outcome_.diagnosis->tests.empty()) return {};
   // Of what the first model and the last one were judged by, where the first is worst.
-  const auto& before = outcome_.loop ? outcome_.loop->models.front() : LoopModel{};
   SeriesKey worst = outcome_.diagnosis->tests.front().series;
   double most = 0.0;
   for (const SeriesTest& test : outcome_.diagnosis->tests) {
@@ -219,7 +218,8 @@ Html ReportCharts::overview() {
                   fmt::format("What was left of the {} of {}, before and after{}", y.label,
                               recording.name, held ? ", of the simulation held to it" : ""),
                   {"residual", y.unit});
-    chart.series = {{"before", "reference", r.times, measured, Drawn::line, judged(before.fit)},
+    chart.series = {{"before", "reference", r.times, measured, Drawn::line,
+                     judged(outcome_.loop->models.front().fit)},
                     {"after", "residual", r.times, measured, Drawn::line, judged(outcome_.fit())}};
     return add(std::move(chart));
   }

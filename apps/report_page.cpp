@@ -150,8 +150,7 @@ class Page {
       for (const SignalError& e : fit_.recordings[r].signals) {
         const bool finished = fit_.recordings[r].prediction.finished;
         const auto told = [&](double value) { return finished ? number(value) : "-"; };
-        rows += row(head_cell(job_.recordings[r].name) +
-                    cell(e.fitted ? role_name(job_.recordings[r], true) : role_of_unfitted(r)) +
+        rows += row(head_cell(job_.recordings[r].name) + cell(role_name(job_.recordings[r], e)) +
                     cell(std::string(info(e.signal).name)) + number_cell(told(e.rmse)) +
                     cell(std::string(info(e.signal).unit)) +
                     number_cell(finished ? fmt::format("{:.3g} %", e.nrmse_percent) : "-") +
@@ -162,10 +161,6 @@ class Page {
                 table({"Recording", "Role", "Signal", "#rmse", "Unit", "#of range", "#noise",
                        "#reduced chi-square", "#held to the data"},
                       rows));
-  }
-
-  std::string role_of_unfitted(std::size_t recording) const {
-    return job_.recordings[recording].role == Role::validate ? "validate" : "compare";
   }
 
   Html loop_errors() {
@@ -206,7 +201,7 @@ class Page {
 
   /// The interval and the initial value between the bounds, on the parameter's scale.
   Html interval_bar(std::size_t i) const {
-    const FreeParameter& free = job_.free[i];
+    const FreeParameter& free = as_declared(outcome_, i);
     const ParameterResult& p = fit_.parameters[i];
     const auto on_scale = [&](double v) { return free.logarithmic ? std::log(v) : v; };
     const double low = on_scale(free.lower), high = on_scale(free.upper);
@@ -251,7 +246,8 @@ class Page {
                                                      with_digits_of(u.upper, error)
                                                : "-") +
                   html(R"(<td class="unit">{}</td>)", std::string(quantity.unit)) +
-                  number_cell(number(initial_of(i))) + cell(interval_bar(i)) + cell(badge(u)));
+                  number_cell(number(as_declared(outcome_, i).initial)) + cell(interval_bar(i)) +
+                  cell(badge(u)));
     }
     Html all = table({"Parameter", "#value", "#standard error", "#95 % interval", "Unit",
                       "#initial", "Between the bounds", "Verdict"},
@@ -264,12 +260,6 @@ class Page {
     if (outcome_.wishes.experiment)
       all += html("<h3>Next experiment</h3><pre>{}</pre>", suggestion_text(outcome_));
     return all;
-  }
-
-  /// The user's initial values; of added effects, where they were started.
-  double initial_of(std::size_t i) const {
-    const std::vector<FreeParameter>& declared = outcome_.file.job.free;
-    return i < declared.size() ? declared[i].initial : job_.free[i].initial;
   }
 
   Html correlation() const {

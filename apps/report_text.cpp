@@ -121,10 +121,7 @@ std::string errors_text(const Job& job, const FitResult& result) {
     const Recording& recording = job.recordings[r];
     for (const SignalError& e : result.recordings[r].signals) {
       const bool finished = result.recordings[r].prediction.finished;
-      const char* role = recording.role == Role::validate ? "validate"
-                         : e.fitted                       ? "fit"
-                                                          : "compare";
-      rows.push_back({series_name(recording, role, e.signal),
+      rows.push_back({series_name(recording, role_name(recording, e), e.signal),
                       finished ? fmt::format("{:.4g}", e.rmse) : "-",
                       finished ? fmt::format("{:.3g} %", e.nrmse_percent) : "-",
                       fmt::format("{:.3g}{}", e.sigma, mark_of(e.noise)),

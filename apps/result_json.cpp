@@ -375,12 +375,8 @@ Json result_json(const Outcome& outcome) {
   Json recordings = Json::array(), parameters = Json::array();
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     recordings.push_back(recording_json(job.recordings[r], fit.recordings[r]));
-  for (std::size_t i = 0; i < job.free.size(); ++i) {
-    // The loop starts its models from one another; the user's initial values are the job's.
-    const std::vector<FreeParameter>& declared = outcome.file.job.free;
-    parameters.push_back(
-        parameter_json(fit.parameters[i], i < declared.size() ? declared[i] : job.free[i]));
-  }
+  for (std::size_t i = 0; i < job.free.size(); ++i)
+    parameters.push_back(parameter_json(fit.parameters[i], as_declared(outcome, i)));
   Json json{
       {"schema_version", kSchemaVersion},
       {"version", version()},
