@@ -205,11 +205,14 @@ void read_effects(const ConfigNode& node, Model<double>& model) {
 }
 
 std::optional<Rig> read_axis_file(const std::string& path, Diagnostics& diagnostics) {
-  const std::size_t before = diagnostics.sorted().size();
   const auto root = ConfigNode::load(path, diagnostics);
-  if (!root) return std::nullopt;
+  return root ? read_axis(*root, diagnostics) : std::nullopt;
+}
+
+std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.sorted().size();
   Rig rig;
-  ConfigMap map(*root, axis_keys());
+  ConfigMap map(root, axis_keys());
   map.read("name", rig.name);
   std::optional<Drive> drive;
   std::optional<Transmission> transmission;

@@ -20,6 +20,7 @@ const std::vector<std::string>& transmission_names();
 
 /// Reads an axis file. Nothing, with diagnostics, when anything in it is wrong.
 std::optional<Rig> read_axis_file(const std::string& path, Diagnostics& diagnostics);
+std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics);
 
 /// Reads `effects: {name: {symbol: quantity}}` into a model: an effect is on because it is written.
 void read_effects(const ConfigNode& node, Model<double>& model);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <iostream>
 #include <memory>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -65,8 +67,13 @@ int run_program(CLI::App& app, int argc, char** argv, Work&& work) {
         std::cerr << "Did you mean " << meant << "?\n";
     return kBadInput;
   }
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of writing like another
   try {
     return work();
+  } catch (const std::bad_alloc&) {
+    std::cerr << "out of memory: this takes more than the machine has, or a limit (ulimit -v) "
+                 "allows\n";
+    return kBadInput;
   } catch (const std::exception& error) {  // ConfigError's text has a line for each mistake
     std::cerr << error.what() << '\n';
     return kBadInput;

@@ -14,6 +14,7 @@
 #include <variant>
 
 #include "apps/units.h"
+#include "sim/file_watch.h"
 #include "sim/suggest.h"
 
 namespace axisfit {
@@ -275,6 +276,7 @@ std::optional<ConfigNode> ConfigNode::load(const std::string& path, Diagnostics&
   if (std::filesystem::exists(path, status) && !std::filesystem::is_regular_file(path, status)) {
     return failure("not a file");  // reading a pipe or a device could block
   }
+  const FileWatch watch(path);
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return failure(std::string("cannot be opened: ") + std::strerror(errno));
@@ -282,6 +284,7 @@ std::optional<ConfigNode> ConfigNode::load(const std::string& path, Diagnostics&
   std::string contents(kMaxBytes + 1, '\0');
   stream.read(contents.data(), static_cast<std::streamsize>(contents.size()));
   if (stream.bad()) return failure("cannot be read");
+  if (watch.has_changed()) return failure(FileWatch::kMessage);
   contents.resize(static_cast<std::size_t>(stream.gcount()));
   return parse(std::move(contents), path, diagnostics);
 }
@@ -351,6 +354,7 @@ ConfigNode ConfigNode::child(const YAML::Node& node, std::string name) const {
 }
 
 const std::string& ConfigNode::file() const { return source_->path; }
+const std::string& ConfigNode::contents() const { return source_->contents; }
 
 std::filesystem::path ConfigNode::directory() const {
   return std::filesystem::path(source_->path).parent_path();

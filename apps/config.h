@@ -102,6 +102,8 @@ class ConfigNode {
   /// What messages call this value: its key, or "entry 2 of KEY".
   const std::string& name() const { return name_; }
   const std::string& file() const;
+  /// The text of the file.
+  const std::string& contents() const;
   /// The folder of the file, which relative paths in it refer to; empty for the working directory.
   std::filesystem::path directory() const;
   /// The scalar as it was written, without its quotes; empty for other nodes.

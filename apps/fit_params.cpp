@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 
@@ -82,6 +84,7 @@ struct Arguments {
   bool init = false;
   bool check = false;
   Wishes wishes;
+  bool resume = false;
   bool json = false;
   bool quiet = false;
   std::optional<int> threads, starts;
@@ -183,29 +186,19 @@ std::string typed(int argc, char** argv) {
   return line;
 }
 
-/// The contents of a file that has been read before; empty if it has gone.
-std::string text_of(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
-
-/// The files of the output folder: names and texts.
-std::vector<std::pair<std::string, std::string>> files_of(const Arguments& arguments,
-                                                          const Outcome& outcome,
-                                                          const std::string& json) {
+Files files_of(const Arguments& arguments, const Outcome& outcome, const std::string& json) {
   Rig fitted = outcome.file.rig;
   fitted.model = fitted_model(outcome.job(), outcome.fit());
   const std::string origin = fmt::format("axisfit {} from {}, starting from {}", version(),
                                          arguments.files.front(), outcome.file.axis_file);
-  std::vector<std::pair<std::string, std::string>> files{
+  Files files{
       {kResultFile, json},
       {kAxisFile,
        format_axis_file(fitted, fmt::format("Fitted by {}.\n{}", origin, verdict_of(outcome)))},
       {kResidualsFile, residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis)},
-      {kReportFile, report_page(outcome, {arguments.command, arguments.files.front(),
-                                          text_of(arguments.files.front()), outcome.file.axis_file,
-                                          text_of(outcome.file.axis_file)})}};
+      {kReportFile,
+       report_page(outcome, {arguments.command, arguments.files.front(), outcome.file.text,
+                             outcome.file.axis_file, outcome.file.axis_text})}};
   if (const Experiment* next = next_experiment(outcome)) {
     files.emplace_back(
         kMotionFile, format_motion_file({next->motion, next->duration},
@@ -219,22 +212,71 @@ std::string advice(const Arguments& arguments) {
   if (arguments.output.empty())
     return "\n" + paragraph(
                       "Nothing is written: with --output FOLDER the result is kept, also when "
-                      "stopped, and --from FOLDER/fitted.yaml goes on from it.");
-  const std::string& folder = arguments.output;
-  std::string command = "fit-params " + quoted(arguments.files.front());
-  if (!arguments.data.empty()) command += " --data " + quoted(arguments.data);
-  if (arguments.wishes.close_loop) command += " --close-loop";
-  command +=
-      fmt::format(" --from {} --output {}", quoted(folder + "/" + kAxisFile), quoted(folder));
-  return "\n" +
-         paragraph(fmt::format(
-             "What was finished is in {}. To go on from its values{}:", folder,
-             arguments.wishes.close_loop ? ", with the search for effects begun anew" : "")) +
-         "  " + command + "\n";
+                      "stopped, and --resume goes on from there.");
+  return fmt::format("\nTo go on from here:\n  {}{}\n", arguments.command,
+                     arguments.resume ? "" : " --resume");
+}
+
+void begin_line(const Arguments& arguments, std::optional<ProgressLine>& line) {
+  line.emplace(!arguments.quiet && is_terminal(STDERR_FILENO));
+}
+
+/// The folder of the results with the journal of the run in it, which becomes the job's.
+std::unique_ptr<OutputFolder> open_folder(const Arguments& arguments, Job& job,
+                                          std::optional<ProgressLine>& line) {
+  if (arguments.output.empty()) return nullptr;
+  auto folder = std::make_unique<OutputFolder>(
+      arguments.output,
+      std::vector<std::string>{kResultFile, kAxisFile, kResidualsFile, kReportFile, kMotionFile});
+  JournalFile& journal = folder->journal();
+  job.options.journal = &journal;
+  const std::string found =
+      fmt::format("{} solved problem{}", journal.earlier(), journal.earlier() == 1 ? "" : "s");
+  std::string note;
+  if (arguments.resume) {
+    journal.go_on();
+    note = journal.earlier() > 0
+               ? fmt::format("Going on with the run that ended in {}: {}.", arguments.output, found)
+               : fmt::format("No unfinished run in {}: beginning anew.", arguments.output);
+  } else if (journal.earlier() > 0) {
+    note = fmt::format(
+        "{} has {} of a run that did not end. This one begins anew; to go on with that one, stop "
+        "this and add --resume.",
+        arguments.output, found);
+  }
+  if (!arguments.quiet && !note.empty()) {
+    line.reset();
+    std::cerr << paragraph(note);
+    begin_line(arguments, line);
+  }
+  return folder;
+}
+
+/// Whether a folder holds the whole result of a usable fit.
+bool holds_whole_result(const std::string& folder) {
+  std::ifstream file(std::filesystem::path(folder) / kResultFile);
+  const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
+  return json.is_object() && json.value("usable", false) && !json.value("interrupted", true);
+}
+
+/// Writes the result, unless that would replace a better one.
+void write(const Arguments& arguments, const Outcome& outcome, const std::string& json,
+           OutputFolder& folder) {
+  const bool whole = !outcome.interrupted;
+  if ((!whole || !outcome.fit().usable) && holds_whole_result(arguments.output)) {
+    std::cerr << paragraph(fmt::format(
+        "{} keeps the usable result that it holds. To write this one, name another folder with "
+        "--output.",
+        arguments.output));
+    if (whole) folder.forget();
+    return;
+  }
+  folder.write(files_of(arguments, outcome, json), whole);
 }
 
 int run(const Arguments& arguments) {
-  std::optional<ProgressLine> line(std::in_place, !arguments.quiet && is_terminal(STDERR_FILENO));
+  std::optional<ProgressLine> line;
+  begin_line(arguments, line);
   line->tell({"reading the recordings"});
   if (arguments.init) return init(arguments, line);
   if (arguments.files.size() > 1)
@@ -253,11 +295,7 @@ int run(const Arguments& arguments) {
   if (arguments.starts) options.starts = *arguments.starts;
   if (arguments.seed) options.seed = *arguments.seed;
   if (arguments.check) return check(arguments, file, line);
-  if (!arguments.output.empty()) {
-    std::vector<std::string> names{kResultFile, kAxisFile, kResidualsFile, kReportFile};
-    if (arguments.wishes.experiment) names.emplace_back(kMotionFile);
-    check_folder(arguments.output, names);
-  }
+  const std::unique_ptr<OutputFolder> folder = open_folder(arguments, file.job, line);
 
   Outcome outcome = find_outcome(std::move(file), arguments.wishes,
                                  [&](const Progress& progress) { line->tell(progress); });
@@ -270,7 +308,7 @@ int run(const Arguments& arguments) {
     print(json);
   else if (!arguments.quiet)
     print(for_stdout(report_text(outcome)));
-  if (!arguments.output.empty()) write_folder(arguments.output, files_of(arguments, outcome, json));
+  if (folder) write(arguments, outcome, json, *folder);
   if (outcome.interrupted) {
     if (!arguments.quiet) std::cerr << advice(arguments);
     return exit_code_of_stop();
@@ -308,10 +346,11 @@ int main(int argc, char** argv) {
   auto* from = app.add_option("--from", arguments.from,
                               "begin at the values of this axis file, such as a fitted.yaml")
                    ->type_name("AXIS.yaml");
-  app.add_option("--output", arguments.output,
-                 "folder for report.html, result.json, fitted.yaml and residuals.csv; with --init "
-                 "for the job")
-      ->type_name("FOLDER");
+  auto* output =
+      app.add_option("--output", arguments.output,
+                     "folder for report.html, result.json, fitted.yaml and residuals.csv; with "
+                     "--init for the job")
+          ->type_name("FOLDER");
   auto* json = app.add_flag("--json", arguments.json, "print result.json instead of the table");
   app.add_flag("--quiet", arguments.quiet, "print nothing but errors")->excludes(json);
   auto* init = app.add_flag("--init", arguments.init,
@@ -324,6 +363,11 @@ int main(int argc, char** argv) {
                    ->excludes(data)
                    ->excludes(from)
                    ->excludes(json);
+  app.add_flag("--resume", arguments.resume,
+               "go on with a run that was stopped or killed, from what it left in --output")
+      ->needs(output)
+      ->excludes(init)
+      ->excludes(check);
   app.add_option("--axis", arguments.axis, "with --init: the axis file, if there is one")
       ->needs(init)
       ->type_name("AXIS.yaml");
@@ -352,10 +396,9 @@ int main(int argc, char** argv) {
       return run(arguments);
     } catch (const Interrupted&) {
       if (!arguments.quiet)
-        std::cerr << fmt::format(
-            "Stopped{} before a fit was finished: there is nothing to keep. {}\n",
-            out_of_time ? " by the time limit" : "",
-            out_of_time ? "Give it more time." : "Begin anew.");
+        std::cerr << fmt::format("Stopped{} before a fit was finished: there is no result.\n",
+                                 out_of_time ? " by the time limit" : "")
+                  << advice(arguments);
       return exit_code_of_stop();
     }
   });

@@ -70,10 +70,11 @@ class JobReader {
 
   JobFile read() {
     if (const auto root = ConfigNode::load(path_, diagnostics_)) {
+      result_.text = root->contents();
       ConfigMap map(*root, job_keys());
       const auto axis = map.required("axis");
       bool model = false;
-      if (axis) model = read_axis(*axis);
+      if (axis) model = read_axis_of(*axis);
       if (const auto effects = map.optional("effects")) read_effects(*effects, result_.rig.model);
       result_.job.model = result_.rig.model;
       const auto recordings = map.required("recordings");
@@ -91,7 +92,7 @@ class JobReader {
   }
 
  private:
-  bool read_axis(const ConfigNode& node) {
+  bool read_axis_of(const ConfigNode& node) {
     const auto file = node.as_string();
     if (!file) return false;
     result_.axis_file = resolved(node, *file, {});
@@ -100,8 +101,10 @@ class JobReader {
       node.error(fmt::format("there is no axis file {}", result_.axis_file));
       return false;
     }
-    auto rig = read_axis_file(result_.axis_file, diagnostics_);
+    const auto root = ConfigNode::load(result_.axis_file, diagnostics_);
+    auto rig = root ? read_axis(*root, diagnostics_) : std::nullopt;
     if (!rig) return false;
+    result_.axis_text = root->contents();
     result_.rig = std::move(*rig);
     return true;
   }

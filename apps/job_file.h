@@ -15,6 +15,7 @@ struct JobFile {
   Job job;
   Rig rig;                ///< of the axis file, with the job's effects
   std::string axis_file;  ///< as found
+  std::string text, axis_text;  ///< what stood in the two files when they were read
   MachineLimits limits;   ///< for experiments yet to be made
 };
 

@@ -14,6 +14,7 @@
 #include <system_error>
 #include <utility>
 
+#include "sim/file_watch.h"
 #include "sim/suggest.h"
 
 namespace axisfit {
@@ -233,6 +234,7 @@ std::string list(const Items& items, Describe describe) {
 MatFile read_mat(const std::string& path) {
   Mat_LogInitFunc("axisfit", keep_first_complaint);
   complaint.clear();
+  const FileWatch watch(path);
   const MatHandle handle = open_mat(path);
 
   MatFile mat{path, {}, {}};
@@ -245,6 +247,7 @@ MatFile read_mat(const std::string& path) {
     if (!complaint.empty()) throw_damaged(path, in_variable(name));
     append(mat, name, *variable);
   }
+  if (watch.has_changed()) throw RecordingError(path, 0, FileWatch::kMessage);
   if (!complaint.empty()) throw_damaged(path, "");
   if (empty) {
     throw RecordingError(path, 0, "holds no variables; it may be cut off or not a MAT-file");

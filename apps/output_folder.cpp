@@ -2,10 +2,12 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <filesystem>
+#include <cstdio>
 #include <stdexcept>
 #include <system_error>
 
@@ -13,6 +15,8 @@ namespace axisfit {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kJournal = "unfinished.journal";
 
 /// Writes a new file through to the disk.
 void write_through(const fs::path& path, const std::string& contents) {
@@ -43,86 +47,135 @@ std::string reason(const std::exception& error) {
   return known != nullptr ? known->code().message() : error.what();
 }
 
-/// The folder where files are made before they go into the one the user named.
-class PartialFolder {
+/// A folder for files on their way to another, which goes away with this object.
+class Staging {
  public:
-  explicit PartialFolder(const std::string& folder) : folder_(folder) {
-    const fs::path given = fs::absolute(folder).lexically_normal();
-    target_ = given.has_filename() ? given : given.parent_path();
-    path_ = target_.parent_path() /
-            fmt::format(".{}.partial-{}", target_.filename().string(), ::getpid());
-    made_ = path_;
-    std::error_code ignored;
-    while (fs::symlink_status(made_.parent_path(), ignored).type() == fs::file_type::not_found)
-      made_ = made_.parent_path();
+  explicit Staging(fs::path path) : path_(std::move(path)) {
+    fs::remove_all(path_);  // of a run that was killed
+    fs::create_directory(path_);
   }
+  ~Staging() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
 
   const fs::path& path() const { return path_; }
-  const fs::path& target() const { return target_; }
 
-  void remove() const {
-    std::error_code ignored;
-    fs::remove_all(made_, ignored);
-  }
-
-  /// Makes the folder and does `work`. Whatever goes wrong, the remains are removed.
-  template <class Work>
-  void use(Work&& work) const {
-    try {
-      fs::create_directories(path_);
-      work();
-    } catch (const std::exception& error) {
-      remove();
-      throw std::runtime_error(
-          fmt::format("results not written to {}: {}", folder_, reason(error)));
-    }
-  }
-
-  /// Found out before anything is replaced.
-  void refuse_folder_at(const std::string& name) const {
-    if (fs::is_directory(target_ / name))
-      throw fs::filesystem_error("cannot replace", target_ / name,
-                                 std::make_error_code(std::errc::is_a_directory));
+  void write(const Files& files) const {
+    for (const auto& [name, contents] : files) write_through(path_ / name, contents);
   }
 
  private:
-  std::string folder_;
-  fs::path target_, path_;
-  fs::path made_;  // what a failure must remove again: the topmost folder that was not there
+  fs::path path_;
 };
+
+bool same_owner_and_mode(const fs::path& a, const fs::path& b) {
+  struct stat of_a = {}, of_b = {};
+  return ::stat(a.c_str(), &of_a) == 0 && ::stat(b.c_str(), &of_b) == 0 &&
+         of_a.st_uid == of_b.st_uid && of_a.st_gid == of_b.st_gid && of_a.st_mode == of_b.st_mode;
+}
 
 }  // namespace
 
-void write_folder(const std::string& folder,
-                  const std::vector<std::pair<std::string, std::string>>& files) {
-  const PartialFolder partial(folder);
-  partial.use([&] {
-    for (const auto& [name, contents] : files) {
-      write_through(partial.path() / name, contents);
-      partial.refuse_folder_at(name);
-    }
-    if (!fs::exists(partial.target())) {
-      fs::rename(partial.path(), partial.target());
-      return;
-    }
-    for (const auto& [name, contents] : files)
-      fs::rename(partial.path() / name, partial.target() / name);
-    fs::remove_all(partial.path());
+OutputFolder::OutputFolder(std::string folder, std::vector<std::string> names)
+    : folder_(std::move(folder)), names_(std::move(names)) {
+  // Where it is: a link to a folder must stay one.
+  const fs::path given = fs::absolute(folder_).lexically_normal();
+  std::error_code ignored;
+  const fs::path found = fs::canonical(given, ignored);
+  target_ = !found.empty() ? found : given.has_filename() ? given : given.parent_path();
+  if (found.empty()) made_ = target_;
+  while (!made_.empty() &&
+         fs::symlink_status(made_.parent_path(), ignored).type() == fs::file_type::not_found)
+    made_ = made_.parent_path();
+  try {
+    fs::create_directories(target_);
+    for (const std::string& name : names_)
+      if (fs::is_directory(target_ / name))
+        throw fs::filesystem_error("cannot replace", target_ / name,
+                                   std::make_error_code(std::errc::is_a_directory));
+    journal_ = std::make_unique<JournalFile>(target_ / kJournal);
+  } catch (const std::bad_alloc&) {
+    remove_what_was_made();
+    throw;
+  } catch (const std::exception& error) {
+    remove_what_was_made();
+    fail(error);
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  if (!has_result_ && journal_->is_empty()) forget();
+}
+
+void OutputFolder::forget() const {
+  std::error_code ignored;
+  fs::remove(target_ / kJournal, ignored);
+  remove_what_was_made();
+}
+
+void OutputFolder::remove_what_was_made() const {
+  if (made_.empty()) return;
+  std::error_code ignored;  // those into which somebody has put something stay
+  for (fs::path folder = target_; folder != made_.parent_path(); folder = folder.parent_path())
+    fs::remove(folder, ignored);
+}
+
+void OutputFolder::fail(const std::exception& error) const {
+  throw std::runtime_error(fmt::format("results not written to {}: {}", folder_, reason(error)));
+}
+
+bool OutputFolder::holds_results_only() const {
+  std::error_code ignored;
+  if (fs::equivalent(target_, ".", ignored)) return false;  // somebody is in it
+  return std::ranges::all_of(fs::directory_iterator(target_), [&](const fs::directory_entry& e) {
+    const std::string name = e.path().filename();
+    return name == kJournal || std::ranges::find(names_, name) != names_.end();
   });
 }
 
-void check_folder(const std::string& folder, const std::vector<std::string>& names) {
-  const PartialFolder partial(folder);
-  partial.use([&] {
-    for (const std::string& name : names) partial.refuse_folder_at(name);
-    // The way that results would go, with a file that is not there for long.
-    const std::string probe = fmt::format(".probe-{}", ::getpid());
-    write_through(partial.path() / probe, "");
-    if (!fs::exists(partial.target())) return;
-    fs::rename(partial.path() / probe, partial.target() / probe);
-    fs::remove(partial.target() / probe);
-  });
-  partial.remove();
+bool OutputFolder::exchange(const Files& files, bool whole) const {
+  const fs::path path =
+      target_.parent_path() / fmt::format(".{}.partial", target_.filename().string());
+  if (::access(target_.parent_path().c_str(), W_OK) != 0) return false;
+  const Staging staging(path);
+  if (!same_owner_and_mode(staging.path(), target_)) return false;
+  staging.write(files);
+  std::error_code failed;
+  if (!whole) fs::create_hard_link(target_ / kJournal, staging.path() / kJournal, failed);
+  if (failed) return false;
+  // What it holds after that are the earlier results, which go.
+  return ::renameat2(AT_FDCWD, staging.path().c_str(), AT_FDCWD, target_.c_str(),
+                     RENAME_EXCHANGE) == 0;
+}
+
+void OutputFolder::replace_one_by_one(const Files& files, bool whole) const {
+  const Staging staging(target_ / ".partial");
+  staging.write(files);
+  for (const auto& [name, contents] : files) fs::rename(staging.path() / name, target_ / name);
+  for (const std::string& name : names_)
+    if (std::ranges::find(files, name, &Files::value_type::first) == files.end())
+      fs::remove(target_ / name);
+  if (whole) fs::remove(target_ / kJournal);
+}
+
+void OutputFolder::write(const Files& files, bool whole) {
+  try {
+    fs::create_directories(target_);  // somebody may have removed it meanwhile
+    if (!holds_results_only() || !exchange(files, whole)) replace_one_by_one(files, whole);
+    has_result_ = true;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    std::error_code ignored;
+    if (journal_->is_empty() || !fs::exists(target_ / kJournal, ignored)) fail(error);
+    fail(std::runtime_error(
+        reason(error) +
+        "\nWhat was found is kept there: once that is mended, the same command with --resume ends "
+        "soon."));
+  }
 }
 
 void write_file(const std::string& path, const std::string& contents) {

@@ -14,6 +14,8 @@
 
 namespace axisfit {
 
+class Journal;
+
 enum class Role {
   fit,       ///< its residuals are minimised
   validate,  ///< only judged
@@ -119,6 +121,7 @@ struct FitOptions {
   int threads = 0;                 ///< 0: as many as the machine has
   double step = 0.5e-3;            ///< s, of the integrator
   const StopFlag* stop = nullptr;  ///< must outlive all that is done with the job; null: none
+  Journal* journal = nullptr;      ///< of solutions, likewise
 };
 
 struct Job {

@@ -1,5 +1,6 @@
 #include "fit/solve.h"
 
+#include "fit/journal.h"
 #include "fit/residual.h"
 
 namespace axisfit {
@@ -20,8 +21,14 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
                   double coupling_rate, SolveOptions options) {
   options.stop = job.options.stop;
   if (is_set(options.stop)) throw Interrupted();
+  Journal* const journal = job.options.journal;
+  const ProblemKey key =
+      journal != nullptr ? problem_key(job, u, coupling_rate, options) : ProblemKey{};
+  if (journal != nullptr)
+    if (std::optional<SolveResult> known = journal->find(key)) return *std::move(known);
   SolveResult result = minimize(space, recording_costs(job, space, coupling_rate), u, options);
   if (is_set(options.stop)) throw Interrupted();
+  if (journal != nullptr) journal->keep(key, result);
   return result;
 }
 

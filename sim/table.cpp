@@ -13,6 +13,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "sim/file_watch.h"
+
 namespace axisfit {
 namespace {
 
@@ -43,6 +45,7 @@ std::string read_whole_file(const std::string& path) {
   if (std::filesystem::is_directory(path, ignored)) {
     throw RecordingError(path, 0, "is a directory; give the path of a recording");
   }
+  const FileWatch watch(path);
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) {
@@ -60,6 +63,7 @@ std::string read_whole_file(const std::string& path) {
     size += static_cast<std::size_t>(in.gcount());
   }
   if (in.bad()) throw RecordingError(path, 0, "cannot be read to its end; check the medium");
+  if (watch.has_changed()) throw RecordingError(path, 0, FileWatch::kMessage);
   text.resize(size);
   return text;
 }

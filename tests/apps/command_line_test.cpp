@@ -305,18 +305,21 @@ TEST_F(CommandLineTest, CtrlCKeepsWhatIsFinished) {
   EXPECT_LT(json.at("starts").size(), 100000u);
 
   // How to go on is for the user, not for who reads the result; and it works.
-  EXPECT_EQ(stopped.out.find("--from"), std::string::npos);
+  EXPECT_EQ(stopped.out.find("--resume"), std::string::npos);
   const std::string results = outputs_.path("results"), axis = results + "/fitted.yaml";
-  EXPECT_NE(stopped.err.find("What was finished is in"), std::string::npos) << stopped.err;
-  EXPECT_NE(stopped.err.find("\n  fit-params " + folder_.path("job.yaml") + " --from " + axis +
-                             " --output " + results + "\n"),
-            std::string::npos)
-      << stopped.err;
+  const std::string command = job() + " --starts 100000 --output " + results + " --resume";
+  EXPECT_EQ(stopped.err, "\nTo go on from here:\n  fit-params " + command + "\n");
+  const Outcome on = fit({job(), "--starts", "100000", "--output", results, "--resume"});
+  EXPECT_EQ(on.err.find("Going on with the run that ended in"), 0u) << on.err;
+  EXPECT_TRUE(on.err.ends_with("\nTo go on from here:\n  fit-params " + command + "\n")) << on.err;
+  const Json further = Json::parse(outputs_.read("results/result.json"));
+  EXPECT_GT(further.at("starts").size(), json.at("starts").size());
+
   interrupt_after_ = std::chrono::milliseconds::zero();
   const Json again =
       Json::parse(fit({folder_.path("job.yaml"), "--json", "--from", axis}).out).at("parameters");
   for (std::size_t i = 0; i < again.size(); ++i)
-    EXPECT_EQ(again[i].at("initial"), json.at("parameters")[i].at("value"));
+    EXPECT_EQ(again[i].at("initial"), further.at("parameters")[i].at("value"));
 }
 
 TEST_F(CommandLineTest, CtrlCBeforeAnythingIsFinishedSaysSo) {
@@ -326,7 +329,7 @@ TEST_F(CommandLineTest, CtrlCBeforeAnythingIsFinishedSaysSo) {
   EXPECT_EQ(stopped.exit_code, 130);
   EXPECT_EQ(stopped.out, "");
   EXPECT_TRUE(stopped.err.starts_with("Stopped before a fit was finished")) << stopped.err;
-  EXPECT_FALSE(std::filesystem::exists(outputs_.path("results")));
+  EXPECT_FALSE(std::filesystem::exists(outputs_.path("results/result.json")));
 }
 
 TEST_F(CommandLineTest, ATimeLimitKeepsWhatIsFinished) {
@@ -339,7 +342,7 @@ TEST_F(CommandLineTest, ATimeLimitKeepsWhatIsFinished) {
   EXPECT_NE(stopped.out.find("Stopped by the time limit of 1.5 s before all was finished"),
             std::string::npos)
       << stopped.err;
-  EXPECT_NE(stopped.err.find("What was finished is in"), std::string::npos) << stopped.err;
+  EXPECT_NE(stopped.err.find("To go on from here:"), std::string::npos) << stopped.err;
   const Json json = Json::parse(outputs_.read("results/result.json"));
   EXPECT_EQ(json.at("interrupted"), true);
   EXPECT_EQ(json.at("out_of_time"), true);
@@ -352,9 +355,9 @@ TEST_F(CommandLineTest, ATimeLimitKeepsWhatIsFinished) {
   const Outcome nothing = fit({job(), "--time-limit", "0.001"});
   EXPECT_EQ(nothing.exit_code, 124);
   EXPECT_EQ(nothing.out, "");
-  EXPECT_EQ(nothing.err,
-            "Stopped by the time limit before a fit was finished: there is nothing to keep. Give it "
-            "more time.\n");
+  EXPECT_TRUE(nothing.err.starts_with(
+      "Stopped by the time limit before a fit was finished: there is no result.\n"))
+      << nothing.err;
 }
 
 TEST_F(CommandLineTest, ProgressIsShownOnATerminalAndTakenAway) {

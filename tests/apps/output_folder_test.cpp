@@ -17,9 +17,16 @@ namespace axisfit {
 namespace {
 
 using Names = std::set<std::string>;
-using Files = std::vector<std::pair<std::string, std::string>>;
-
 const Files kFiles{{"result.json", "{}\n"}, {"residuals.csv", std::string("a\0b", 3)}};
+
+const std::vector<std::string> kNames{"result.json", "residuals.csv", "next-motion.yaml"};
+const std::string kTooLong(300, 'x');
+constexpr const char* kJournal = "unfinished.journal";
+
+/// As a run does that ends well.
+void write_folder(const std::string& folder, const Files& files) {
+  OutputFolder(folder, kNames).write(files, true);
+}
 
 std::string error_of(const std::function<void()>& write) {
   try {
@@ -38,6 +45,11 @@ class OutputFolderTest : public ::testing::Test {
   }
   std::string error_at(const std::string& name) {
     return folder_.without_path(error_of([&] { write_file(folder_.path(name), "new"); }));
+  }
+  ino_t inode(const std::string& name) {
+    struct stat found = {};
+    EXPECT_EQ(stat(folder_.path(name).c_str(), &found), 0);
+    return found.st_ino;
   }
   TempFolder folder_;
 };
@@ -78,13 +90,99 @@ TEST_F(OutputFolderTest, TakesARelativePath) {
   EXPECT_EQ(folder_.names(), (Names{"results", "result.json", "residuals.csv"}));
 }
 
-TEST_F(OutputFolderTest, ReplacesItsFilesAndLeavesOthers) {
-  write_folder(folder_.path("results"), {{"result.json", "old"}, {"notes.txt", "mine"}});
+TEST_F(OutputFolderTest, ExchangesAFolderOfResults) {
+  write_folder(folder_.path("results"), {{"result.json", "old"}, {"next-motion.yaml", "old"}});
+  const auto before = inode("results");
   write_folder(folder_.path("results"), kFiles);
+  EXPECT_NE(inode("results"), before);
   EXPECT_EQ(folder_.names(), Names{"results"});
-  EXPECT_EQ(folder_.names("results"), (Names{"result.json", "residuals.csv", "notes.txt"}));
+  EXPECT_EQ(folder_.names("results"), (Names{"result.json", "residuals.csv"}));
+  EXPECT_EQ(folder_.read("results/result.json"), "{}\n");
+}
+
+TEST_F(OutputFolderTest, LeavesTheOtherFilesOfAFolder) {
+  write_folder(folder_.path("results"), {{"result.json", "old"}, {"next-motion.yaml", "old"}});
+  folder_.write("results/notes.txt", "mine");
+  std::filesystem::create_directory(folder_.path("results/plots"));
+  const auto before = inode("results");
+  write_folder(folder_.path("results"), kFiles);
+  EXPECT_EQ(inode("results"), before);
+  EXPECT_EQ(folder_.names(), Names{"results"});
+  EXPECT_EQ(folder_.names("results"),
+            (Names{"result.json", "residuals.csv", "notes.txt", "plots"}));
   EXPECT_EQ(folder_.read("results/result.json"), "{}\n");
   EXPECT_EQ(folder_.read("results/notes.txt"), "mine");
+}
+
+TEST_F(OutputFolderTest, LeavesALinkAndTheModeOfAFolder) {
+  write_folder(folder_.path("disk"), {{"result.json", "old"}});
+  std::filesystem::create_directory_symlink("disk", folder_.path("results"));
+  std::filesystem::permissions(folder_.path("disk"), std::filesystem::perms::owner_all);
+  write_folder(folder_.path("results"), kFiles);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_.path("results")));
+  EXPECT_EQ(std::filesystem::status(folder_.path("disk")).permissions(),
+            std::filesystem::perms::owner_all);
+  EXPECT_EQ(folder_.read("disk/result.json"), "{}\n");
+}
+
+TEST_F(OutputFolderTest, TheRemainsOfAKilledRunGoAway) {
+  write_folder(folder_.path("results"), {{"result.json", "old"}});
+  std::filesystem::create_directory(folder_.path(".results.partial"));
+  folder_.write(".results.partial/result.json", "half");
+  write_folder(folder_.path("results"), kFiles);
+  EXPECT_EQ(folder_.names(), Names{"results"});
+  EXPECT_EQ(folder_.names("results"), (Names{"result.json", "residuals.csv"}));
+}
+
+TEST_F(OutputFolderTest, BelongsToOneRunAtATime) {
+  {
+    OutputFolder first(folder_.path("results"), kNames);
+    EXPECT_EQ(error_in("results"),
+              "results not written to results: another run is at work in it; wait until that has "
+              "ended, or name another folder");
+    first.write(kFiles, true);
+    EXPECT_EQ(folder_.read("results/result.json"), "{}\n");
+  }
+  EXPECT_EQ(error_in("results", {{"result.json", "second"}}), "");
+  EXPECT_EQ(folder_.read("results/result.json"), "second");
+}
+
+TEST_F(OutputFolderTest, AFolderThatVanishedIsMadeAnew) {
+  OutputFolder folder(folder_.path("a/results"), kNames);
+  std::filesystem::remove_all(folder_.path("a"));
+  folder.write(kFiles, true);
+  EXPECT_EQ(folder_.names("a/results"), (Names{"result.json", "residuals.csv"}));
+}
+
+TEST_F(OutputFolderTest, AJournalWithAnythingInItOutlivesTheRun) {
+  const ProblemKey key{1, 2};
+  {
+    const OutputFolder nothing_found(folder_.path("a/results"), kNames);
+    EXPECT_EQ(folder_.names("a/results"), Names{kJournal});
+  }
+  EXPECT_EQ(folder_.names(), Names{});
+  OutputFolder(folder_.path("results"), kNames).journal().keep(key, {});
+  EXPECT_EQ(folder_.names("results"), Names{kJournal});
+  {
+    OutputFolder folder(folder_.path("results"), kNames);
+    EXPECT_EQ(folder.journal().earlier(), 1u);
+    folder.write(kFiles, false);
+    EXPECT_EQ(folder_.names("results"), (Names{kJournal, "result.json", "residuals.csv"}));
+  }
+  {
+    OutputFolder folder(folder_.path("results"), kNames);
+    EXPECT_EQ(folder.journal().earlier(), 1u);
+    folder.write(kFiles, true);
+  }
+  EXPECT_EQ(folder_.names("results"), (Names{"result.json", "residuals.csv"}));
+}
+
+TEST_F(OutputFolderTest, WhatOthersPutIntoAFolderStays) {
+  {
+    const OutputFolder folder(folder_.path("a/results"), kNames);
+    folder_.write("a/notes.txt", "mine");
+  }
+  EXPECT_EQ(folder_.names("a"), Names{"notes.txt"});
 }
 
 TEST_F(OutputFolderTest, LeavesNothingBelowARegularFile) {
@@ -96,15 +194,15 @@ TEST_F(OutputFolderTest, LeavesNothingBelowARegularFile) {
 }
 
 TEST_F(OutputFolderTest, LeavesNothingWhenTheFolderCannotBeMade) {
-  const std::string name(300, 'x');
-  EXPECT_EQ(error_in(name), "results not written to " + name + ": File name too long");
-  EXPECT_EQ(error_in("new/" + name), "results not written to new/" + name + ": File name too long");
+  EXPECT_EQ(error_in(kTooLong), "results not written to " + kTooLong + ": File name too long");
+  EXPECT_EQ(error_in("new/" + kTooLong),
+            "results not written to new/" + kTooLong + ": File name too long");
   EXPECT_EQ(folder_.names(), Names{});
 }
 
 TEST_F(OutputFolderTest, LeavesNothingWhenTheLastFileCannotBeWritten) {
   Files files = kFiles;
-  files.emplace_back(std::string(300, 'x'), "");
+  files.emplace_back(kTooLong, "");
   EXPECT_EQ(error_in("results", files), "results not written to results: File name too long");
   EXPECT_EQ(error_in("a/b/results", files),
             "results not written to a/b/results: File name too long");
@@ -112,44 +210,40 @@ TEST_F(OutputFolderTest, LeavesNothingWhenTheLastFileCannotBeWritten) {
 }
 
 TEST_F(OutputFolderTest, ChangesNothingWhenTheLastFileCannotBeWritten) {
-  write_folder(folder_.path("results"), {{"result.json", "old"}});
   Files files = kFiles;
-  files.emplace_back(std::string(300, 'x'), "");
-  EXPECT_EQ(error_in("results", files), "results not written to results: File name too long");
-  EXPECT_EQ(folder_.names(), Names{"results"});
-  EXPECT_EQ(folder_.names("results"), Names{"result.json"});
-  EXPECT_EQ(folder_.read("results/result.json"), "old");
-}
-
-TEST_F(OutputFolderTest, ChangesNothingWhenTheLastFileCannotBeReplaced) {
-  write_folder(folder_.path("results"), {{"result.json", "old"}});
-  std::filesystem::create_directory(folder_.path("results/residuals.csv"));
-  EXPECT_EQ(error_in("results"), "results not written to results: Is a directory");
-  EXPECT_EQ(folder_.names(), Names{"results"});
-  EXPECT_EQ(folder_.read("results/result.json"), "old");
-}
-
-TEST_F(OutputFolderTest, ACheckFailsAsWritingWouldAndLeavesNothing) {
-  const auto check = [&](const std::string& name) {
-    return folder_.without_path(error_of([&] {
-      check_folder(folder_.path(name), {"result.json", "residuals.csv"});
-    }));
+  files.emplace_back(kTooLong, "");
+  const auto expect_unchanged = [&] {
+    EXPECT_EQ(error_in("results", files), "results not written to results: File name too long");
+    EXPECT_EQ(folder_.names(), Names{"results"});
+    EXPECT_EQ(folder_.read("results/result.json"), "old");
   };
-  EXPECT_EQ(check("results"), "");
-  EXPECT_EQ(check("a/b/c"), "");
-  EXPECT_EQ(folder_.names(), Names{});
-  folder_.write("file", "mine");
   write_folder(folder_.path("results"), {{"result.json", "old"}});
-  std::filesystem::create_directories(folder_.path("taken/residuals.csv"));
-  const std::string name(300, 'x');
-  EXPECT_EQ(check("results"), "");
-  EXPECT_EQ(check("file"), "results not written to file: Not a directory");
-  EXPECT_EQ(check("file/results"), "results not written to file/results: Not a directory");
-  EXPECT_EQ(check("new/" + name), "results not written to new/" + name + ": File name too long");
-  EXPECT_EQ(check("taken"), "results not written to taken: Is a directory");
-  EXPECT_EQ(folder_.names(), (Names{"file", "results", "taken"}));
+  expect_unchanged();
   EXPECT_EQ(folder_.names("results"), Names{"result.json"});
-  EXPECT_EQ(folder_.names("taken"), Names{"residuals.csv"});
+  folder_.write("results/notes.txt", "mine");
+  expect_unchanged();
+  EXPECT_EQ(folder_.names("results"), (Names{"result.json", "notes.txt"}));
+}
+
+TEST_F(OutputFolderTest, WhatCannotBeReplacedIsSaidBeforeTheWork) {
+  std::filesystem::create_directories(folder_.path("results/residuals.csv"));
+  folder_.write("results/result.json", "old");
+  EXPECT_EQ(folder_.without_path(error_of([&] {
+    const OutputFolder folder(folder_.path("results"), kNames);
+  })),
+            "results not written to results: Is a directory");
+  EXPECT_EQ(folder_.names(), Names{"results"});
+  EXPECT_EQ(folder_.names("results"), (Names{"result.json", "residuals.csv"}));
+  EXPECT_EQ(folder_.read("results/result.json"), "old");
+}
+
+TEST_F(OutputFolderTest, AfterAFailureTheJournalIsThereToGoOnFrom) {
+  OutputFolder folder(folder_.path("results"), kNames);
+  folder.journal().keep({1, 2}, {});
+  EXPECT_EQ(folder_.without_path(error_of([&] { folder.write({{kTooLong, ""}}, true); })),
+            "results not written to results: File name too long\nWhat was found is kept there: once "
+            "that is mended, the same command with --resume ends soon.");
+  EXPECT_EQ(folder_.names("results"), Names{kJournal});
 }
 
 TEST_F(OutputFolderTest, WritesAFile) {

@@ -1,0 +1,23 @@
+#include "tests/apps/killing.h"
+
+#include "tests/apps/fit_job.h"
+
+namespace axisfit {
+namespace {
+
+TEST(KillingSlow, TwoHundredTimesAMultistart) {
+  const TempFolder folder;
+  write_recordings(folder);
+  folder.write("job.yaml", fit_job("{starts: 8}"));
+  Killing(folder, "job.yaml").kill(200);
+}
+
+TEST(KillingSlow, TwoHundredTimesALoop) {
+  const TempFolder folder;
+  write_rubbing_mass(folder);
+  folder.write("job.yaml", rubbing_job());
+  Killing(folder, "job.yaml --close-loop").kill(200);
+}
+
+}  // namespace
+}  // namespace axisfit
