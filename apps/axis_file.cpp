@@ -205,8 +205,10 @@ void read_effects(const ConfigNode& node, Model<double>& model) {
 }
 
 std::optional<Rig> read_axis_file(const std::string& path, Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.sorted().size();
   const auto root = ConfigNode::load(path, diagnostics);
-  return root ? read_axis(*root, diagnostics) : std::nullopt;
+  auto rig = root ? read_axis(*root, diagnostics) : std::nullopt;
+  return diagnostics.sorted().size() > before ? std::nullopt : std::move(rig);
 }
 
 std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {

@@ -500,10 +500,20 @@ ConfigMap::ConfigMap(const ConfigNode& node) : node_(node) {
 
 std::optional<ConfigNode> ConfigMap::required(std::string_view key) {
   auto value = optional(key);
-  if (!value && node_.is_map()) {
+   if (!value && node_.is_map() && !is_misspelt(key)) {
     node_.error("key " + in_quotes(key) + " is missing in " + node_.name());
   }
   return value;
+}
+
+bool ConfigMap::is_misspelt(std::string_view key) const {
+  if (keys_ == nullptr) return false;
+  std::vector<std::string> names;
+  for (const Key& known : *keys_) names.push_back(known.name);
+  return std::ranges::any_of(entries_, [&](const Entry& entry) {
+    const std::string text = entry.key.text();
+    return std::ranges::find(names, text) == names.end() && nearest(text, names) == key;
+  });
 }
 
 const Key& ConfigMap::described(std::string_view key) const {
@@ -529,15 +539,18 @@ const std::vector<ConfigMap::Entry>& ConfigMap::entries() {
   return entries_;
 }
 
-void ConfigMap::finish() const {
-  if (any_key_) return;
+bool ConfigMap::finish() const {
+  if (any_key_) return true;
+  bool all_known = true;
   for (const Entry& entry : entries_) {
     const std::string key = entry.key.text();
     if (std::ranges::find(known_, key) != known_.end()) continue;
     std::string hint = suggestion(key, known_);
     if (hint.empty() && !known_.empty()) hint = "; known keys: " + joined(known_);
     entry.key.error("unknown key " + in_quotes(key) + hint);
+    all_known = false;
   }
+  return all_known;
 }
 
 std::string with_comment(const std::string& comment, const std::string& yaml) {

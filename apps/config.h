@@ -191,7 +191,8 @@ class ConfigMap {
   /// The value of a described key: as required() or optional(), whichever its description says.
   std::optional<ConfigNode> given(std::string_view key);
 
-  /// The value of a key. When it is missing: nothing, with a diagnostic at the start of the map.
+  /// The value of a key. When it is missing: nothing, with a diagnostic at the start of the map,
+  /// or that of finish() about the key that was probably meant to be this one.
   std::optional<ConfigNode> required(std::string_view key);
 
   /// The value of a key that may be missing.
@@ -200,11 +201,13 @@ class ConfigMap {
   /// All entries in the order of the file, for maps whose keys are free; no key is unknown then.
   const std::vector<Entry>& entries();
 
-  /// Reports the keys that nobody asked for. To be called when reading is complete.
-  void finish() const;
+  /// Reports the keys that nobody asked for. To be called when reading is complete. Returns whether
+  /// there were none.
+  bool finish() const;
 
  private:
   const Key& described(std::string_view key) const;
+  bool is_misspelt(std::string_view key) const;
 
   ConfigNode node_;
   const Section* keys_ = nullptr;

@@ -102,6 +102,10 @@ class JobReader {
       return false;
     }
     const auto root = ConfigNode::load(result_.axis_file, diagnostics_);
+    if (root && root->is_map() && ConfigMap(*root).optional("recordings")) {
+      node.error(fmt::format("{} is a job file: name a file that describes an axis", *file));
+      return false;
+    }
     auto rig = root ? read_axis(*root, diagnostics_) : std::nullopt;
     if (!rig) return false;
     result_.axis_text = root->contents();

@@ -148,7 +148,7 @@ class RecordingReader {
     ConfigMap signals(signals_node, keys_below(recording_keys(), "signals"));
     const auto input = read_input(data, signals_node, signals, times, recording);
     const std::size_t named = read_measurements(data, signals, times, trim, recording);
-    signals.finish();
+    const bool all_known = signals.finish();
     if (!times || !input) return;
     // Commands from before the first sample kept still act on it.
     Values command_times, commands;
@@ -174,7 +174,7 @@ class RecordingReader {
       recording.times = {0.0, 1.0};
       return;
     }
-    check_samples(signals_node, named, recording);
+    if (all_known) check_samples(signals_node, named, recording);
     take_noise_from_rest(signals_node, recording);
     if (recording.initial_state == InitialState::data) initial_state_from_data(recording);
     if (!recording.acceleration_at_rest) leave_out_acceleration_at_rest(recording);

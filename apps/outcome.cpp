@@ -103,6 +103,7 @@ Outcome find_outcome(JobFile file, const Wishes& wishes, const ProgressReport& p
   profiled(outcome.file.job, wishes.profiles);
   outcome.first = estimate_with_noise(outcome.file.job, progress);
   outcome.interrupted = outcome.first.interrupted;
+  outcome.checks = check_recordings(outcome.file.job);
   try {
     if (!outcome.interrupted) pursue(outcome, progress);
   } catch (const Interrupted&) {

@@ -13,6 +13,7 @@
 #include "fit/estimate.h"
 #include "fit/experiment.h"
 #include "fit/profile.h"
+#include "fit/recording_check.h"
 
 namespace axisfit {
 
@@ -50,6 +51,7 @@ struct Outcome {
   JobFile file;  ///< as declared
   Wishes wishes;
   FitResult first;  ///< fit of the declared job
+  std::vector<RecordingCheck> checks;  ///< of each recording
   /// None unless it was asked for and the first fit is usable.
   std::optional<ClosedLoop> loop;
   std::vector<ModelScore> scores;        ///< of the loop's models

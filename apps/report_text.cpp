@@ -29,7 +29,8 @@ std::string rest_text(const Recording& recording) {
   return text;
 }
 
-std::string recordings_text(const Job& job) {
+std::string recordings_text(const Outcome& outcome) {
+  const Job& job = outcome.job();
   std::vector<std::vector<std::string>> rows;
   for (const Recording& r : job.recordings) {
     std::string signals;
@@ -41,7 +42,12 @@ std::string recordings_text(const Job& job) {
   }
   std::string text =
       "Recordings\n" + aligned(rows, {Set::left, Set::left, Set::right, Set::left, Set::wrapped});
-  for (const Recording& r : job.recordings) text += rest_text(r);
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    text += rest_text(job.recordings[r]);
+    for (const std::string& concern :
+         concerns_of(outcome.file, job.recordings[r], outcome.checks[r]))
+      text += paragraph(fmt::format("! {}: {}", job.recordings[r].name, concern), 2);
+  }
   return text;
 }
 
@@ -152,7 +158,7 @@ std::string report_text(const Outcome& outcome) {
   const Job& job = outcome.job();
   const FitResult& result = outcome.fit();
   std::string text =
-      fmt::format("{}\n{}{}\n{}\n{}\n", recordings_text(job), parameters_text(outcome),
+      fmt::format("{}\n{}{}\n{}\n{}\n", recordings_text(outcome), parameters_text(outcome),
                   knowledge_text(result) + starts_text(outcome.first), legend_text(job, result),
                   outcome.loop ? loop_text(outcome) : errors_text(job, result));
   if (const std::string profiles = profiles_text(outcome); !profiles.empty())

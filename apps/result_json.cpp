@@ -71,7 +71,8 @@ Json signal_json(const Measurement& measurement, const SignalError& e, bool fini
   return signal;
 }
 
-Json recording_json(const Recording& recording, const RecordingResult& result) {
+Json recording_json(const Recording& recording, const RecordingResult& result,
+                    const std::vector<std::string>& concerns) {
   Json signals = Json::array();
   for (std::size_t m = 0; m < recording.measurements.size(); ++m)
     signals.push_back(
@@ -83,6 +84,7 @@ Json recording_json(const Recording& recording, const RecordingResult& result) {
           {"start_s", recording.times.front()},
           {"end_s", recording.times.back()},
           {"events", result.prediction.events},
+          {"concerns", concerns},
           {"signals", std::move(signals)}};
 }
 
@@ -374,7 +376,9 @@ Json result_json(const Outcome& outcome) {
   const FitResult& fit = outcome.fit();
   Json recordings = Json::array(), parameters = Json::array();
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
-    recordings.push_back(recording_json(job.recordings[r], fit.recordings[r]));
+    recordings.push_back(
+        recording_json(job.recordings[r], fit.recordings[r],
+                       concerns_of(outcome.file, job.recordings[r], outcome.checks[r])));
   for (std::size_t i = 0; i < job.free.size(); ++i)
     parameters.push_back(parameter_json(fit.parameters[i], as_declared(outcome, i)));
   Json json{

@@ -117,7 +117,8 @@ TEST(ResultTest, JsonHasItsDocumentedKeys) {
                                                      "drive_rms_n"}));
   for (const Json& recording : json.at("recordings")) {
     EXPECT_EQ(keys(recording), (std::vector<std::string>{"name", "file", "role", "samples",
-                                                         "start_s", "end_s", "events", "signals"}));
+                                                         "start_s", "end_s", "events",
+                                                         "concerns", "signals"}));
     for (const Json& signal : recording.at("signals"))
       EXPECT_EQ(keys(signal),
                 (std::vector<std::string>{"name", "unit", "fitted", "rmse", "nrmse_percent",
