@@ -13,9 +13,10 @@ namespace {
 template <class T, class Also>
 SimulationOutcome run(const Job& job, const Recording& recording, const Model<T>& model,
                       const Coupling& coupling, Recorder<T>& recorder, Also&& also,
-                      std::vector<ModeChange>* modes = nullptr) {
+                      std::vector<ModeChange>* modes = nullptr, const StopFlag* stop = nullptr) {
   IntegratorOptions options = recording_options(recording.times, job.options.step);
   options.modes = modes;
+  options.stop = stop;
   // The velocity of a force source turns where its command switches, at samples: there its chords
   // are the curve.
   const bool curved_velocity = model.structure.drive != Drive::force_source;
@@ -93,8 +94,8 @@ Prediction predict(const Job& job, const ParameterSpace& space, std::size_t inde
 }
 
 RecordingCost::RecordingCost(const Job& job, const ParameterSpace& space, std::size_t recording,
-                             const Coupling& coupling)
-    : job_(job), space_(space), recording_(recording), coupling_(coupling) {
+                             const Coupling& coupling, const StopFlag* stop)
+    : job_(job), space_(space), recording_(recording), coupling_(coupling), stop_(stop) {
   const Recording& r = job.recordings[recording];
   int residuals = 0;
   for (std::size_t m = 0; m < r.measurements.size(); ++m) {
@@ -122,7 +123,9 @@ bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobia
           space_.slope(columns[k], u[columns[k]]);
   }
   Recorder<T> recorder(model.instruments, signals_, recording.times);
-  if (!run(job_, recording, model, coupling_, recorder, [](const Integrator<T>&) {}).finished)
+  if (!run(
+           job_, recording, model, coupling_, recorder, [](const Integrator<T>&) {}, nullptr, stop_)
+           .finished)
     return false;
   bool finite = true;
   std::size_t row = 0;

@@ -49,9 +49,9 @@ Coupling coupling_for(const Recording& recording, double rate);
 /// of squares is the robust cost.
 class RecordingCost : public ceres::CostFunction {
  public:
-  /// Job and space must outlive the cost.
+  /// Job and space must outlive the cost. When `stop` is set no point finishes any more.
   RecordingCost(const Job& job, const ParameterSpace& space, std::size_t recording,
-                const Coupling& coupling);
+                const Coupling& coupling, const StopFlag* stop = nullptr);
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
@@ -65,6 +65,7 @@ class RecordingCost : public ceres::CostFunction {
   const ParameterSpace& space_;
   std::size_t recording_;
   Coupling coupling_;
+  const StopFlag* stop_;
   std::vector<std::size_t> fitted_;      // indices of measurements
   std::vector<Signal> signals_;          // their signals
   std::vector<std::size_t> applicable_;  // indices of parameters

@@ -6,12 +6,13 @@
 namespace axisfit {
 namespace {
 
-Costs recording_costs(const Job& job, const ParameterSpace& space, double coupling_rate) {
+Costs recording_costs(const Job& job, const ParameterSpace& space, double coupling_rate,
+                      const StopFlag* stop) {
   Costs list;
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     if (job.recordings[r].role == Role::fit)
       list.push_back(std::make_unique<RecordingCost>(
-          job, space, r, coupling_for(job.recordings[r], coupling_rate)));
+          job, space, r, coupling_for(job.recordings[r], coupling_rate), stop));
   return list;
 }
 
@@ -26,7 +27,8 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
       journal != nullptr ? problem_key(job, u, coupling_rate, options) : ProblemKey{};
   if (journal != nullptr)
     if (std::optional<SolveResult> known = journal->find(key)) return *std::move(known);
-  SolveResult result = minimize(space, recording_costs(job, space, coupling_rate), u, options);
+  SolveResult result =
+      minimize(space, recording_costs(job, space, coupling_rate, options.stop), u, options);
   if (is_set(options.stop)) throw Interrupted();
   if (journal != nullptr) journal->keep(key, result);
   return result;
@@ -34,7 +36,8 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
 
 Linearization linearize(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
                         double coupling_rate) {
-  Linearization result = linearize(space, recording_costs(job, space, coupling_rate), u);
+  // To its end, for a result that was found before a stop needs it.
+  Linearization result = linearize(space, recording_costs(job, space, coupling_rate, nullptr), u);
   // As RecordingCost has them: recording by recording, measurement by measurement.
   result.series.clear();
   Eigen::Index row = 0;

@@ -20,6 +20,7 @@
 // cubic showing it, is missed.
 #pragma once
 
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -45,6 +46,8 @@ struct IntegratorOptions {
   long event_budget = 100'000'000;
   /// Steps altogether before it is given up, since it swings too fast to be followed.
   long step_budget = 200'000'000;
+  /// When this is set, from another thread or by a signal, a simulation ends unfinished.
+  const std::atomic<bool>* stop = nullptr;
   /// Where the modes passed through are noted, the first included; null: nowhere.
   std::vector<ModeChange>* modes = nullptr;
 };
@@ -482,7 +485,9 @@ bool Integrator<T>::advance_to(const T& end) {
     const State<double> from = plain_state();
     State<double> to;
     const bool met = meets_guard(from, by_series ? ladder.last + 1 : level, length, to);
-    if (steps_ > options_.step_budget) return false;
+    if (steps_ > options_.step_budget ||
+        (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)))
+      return false;
     if (met) {
       if (!shortest) {
         search = piece ? level : std::max(level, flow_->longest - 1) + 1;

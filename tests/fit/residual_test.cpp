@@ -124,6 +124,18 @@ TEST(RecordingCost, RejectsWhatCannotBeSimulated) {
   EXPECT_FALSE(evaluate(cost, u).finite);
 }
 
+// So that the end of an evaluation, which may take minutes, need not be waited for.
+TEST(RecordingCost, IsNotFinishedOnceItIsToStop) {
+  const Job job = example_job();
+  const ParameterSpace space(job);
+  StopFlag stop = false;
+  const RecordingCost cost(job, space, 0, {}, &stop);
+  const Eigen::VectorXd truth = space.internal({{2.7, 200.0, 1500.0, 5e6, 0.04}});
+  EXPECT_TRUE(evaluate(cost, truth).finite);
+  stop = true;
+  EXPECT_FALSE(evaluate(cost, truth).finite);
+}
+
 TEST(RecordingCost, HuberCountsOutliersLinearly) {
   Job job = example_job();
   const ParameterSpace space(job);
