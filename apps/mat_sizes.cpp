@@ -9,6 +9,7 @@
 #include <fstream>
 #include <limits>
 #include <new>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -124,11 +125,15 @@ class Walk5 {
     return {word, number(bytes), false};
   }
 
-  /// The value of the next element, with its padding, before only `end` bytes are left.
-  std::string value(Bytes& bytes, std::uint64_t end) const {
+  /// The value of the next element, with its padding, before only `end` bytes are left. libmatio
+  /// knows the type and where that is fixed the size, and does not look.
+  std::string value(Bytes& bytes, std::uint64_t end, std::uint32_t type,
+                    std::optional<std::uint32_t> size = {}) const {
     const Tag tag = read_tag(bytes);
     constexpr std::uint64_t kMost = 1 << 20;
-    if (tag.size > (tag.small ? 4 : std::min(kMost, room(bytes, end)))) throw Oversized();
+    if (tag.type != type || tag.size != size.value_or(tag.size) ||
+        tag.size > (tag.small ? 4 : std::min(kMost, room(bytes, end))))
+      throw Oversized();
     std::string text(tag.size, '\0');
     bytes.read(text.data(), tag.size);
     bytes.skip(std::min(padding(tag), room(bytes, end)));
@@ -164,17 +169,18 @@ class Walk5 {
     if (size == 0) return;  // an empty one within a cell or struct
     const bool cut = size > bytes.left();
     const std::uint64_t end = cut ? 0 : bytes.left() - size;
-    const std::string flags = value(bytes, end);
+    enum : std::uint32_t { int8 = 1, int32 = 5, uint32 = 6 };
+    const std::string flags = value(bytes, end, uint32, 8);
     const std::uint32_t kind = first_number(flags) & 0xFF;
     enum : std::uint32_t { cell = 1, structure = 2, object = 3, sparse = 5, last = 15 };
     if (kind <= last) {
-      const std::string sizes = value(bytes, end);
-      name_ = value(bytes, end);
-      if (kind == object) value(bytes, end);  // its class
+      const std::string sizes = value(bytes, end, int32);
+      name_ = value(bytes, end, int8);
+      if (kind == object) value(bytes, end, int8);  // its class
       std::uint64_t bytes_each = kind == cell ? 8 : kind == sparse ? 0 : 1;
       if (kind == structure || kind == object) {
-        const std::uint32_t length = first_number(value(bytes, end));
-        const std::string fields = value(bytes, end);
+        const std::uint32_t length = first_number(value(bytes, end, int32, 4));
+        const std::string fields = value(bytes, end, int8);
         bytes_each = length == 0 ? 0 : 8 * (fields.size() / length);
       }
       if (product(count(sizes), bytes_each) > room(bytes, end)) throw Oversized();
