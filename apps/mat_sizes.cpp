@@ -10,7 +10,6 @@
 #include <limits>
 #include <new>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -41,13 +40,14 @@ class Bytes {
     take(static_cast<char*>(to), n);
   }
   void skip(std::uint64_t n) {
-    std::array<char, 4096> ignored;
-    for (; n > 0; n -= std::min<std::uint64_t>(n, ignored.size()))
-      read(ignored.data(), std::min<std::uint64_t>(n, ignored.size()));
+    if (n > left_) throw Oversized();
+    left_ -= n;
+    leave(n);
   }
 
  private:
   virtual void take(char* to, std::uint64_t n) = 0;
+  virtual void leave(std::uint64_t n) = 0;
 
   std::uint64_t left_;
 };
@@ -61,6 +61,7 @@ class Stored : public Bytes {
     std::ranges::copy(bytes_.substr(0, n), to);
     bytes_.remove_prefix(n);
   }
+  void leave(std::uint64_t n) override { bytes_.remove_prefix(n); }
 
   std::string_view bytes_;
 };
@@ -85,6 +86,11 @@ class Inflated : public Bytes {
       if (const int result = inflate(&stream_, Z_SYNC_FLUSH);
           result != Z_OK && !(result == Z_STREAM_END && stream_.avail_out == 0))
         throw Oversized();
+  }
+  void leave(std::uint64_t n) override {
+    std::array<char, 4096> ignored;
+    for (std::uint64_t part; (part = std::min<std::uint64_t>(n, ignored.size())) > 0; n -= part)
+      take(ignored.data(), part);
   }
 
   z_stream stream_{};
@@ -173,11 +179,11 @@ class Walk5 {
     const std::string flags = value(bytes, end, uint32, 8);
     const std::uint32_t kind = first_number(flags) & 0xFF;
     enum : std::uint32_t { cell = 1, structure = 2, object = 3, sparse = 5, last = 15 };
+    std::uint64_t bytes_each = kind == cell ? 8 : kind == sparse ? 0 : 1;
     if (kind <= last) {
       const std::string sizes = value(bytes, end, int32);
       name_ = value(bytes, end, int8);
       if (kind == object) value(bytes, end, int8);  // its class
-      std::uint64_t bytes_each = kind == cell ? 8 : kind == sparse ? 0 : 1;
       if (kind == structure || kind == object) {
         const std::uint32_t length = first_number(value(bytes, end, int32, 4));
         const std::string fields = value(bytes, end, int8);
@@ -185,8 +191,10 @@ class Walk5 {
       }
       if (product(count(sizes), bytes_each) > room(bytes, end)) throw Oversized();
     }
-    elements(bytes, end, depth);
     if (cut) throw Oversized();
+    // Nothing comes after numbers, which may be many.
+    if (depth == 0 && kind <= last && bytes_each == 1) return;
+    elements(bytes, end, depth);
     bytes.skip(room(bytes, end));
   }
 
@@ -293,9 +301,9 @@ void check4(const std::string& path, std::string_view file) {
 }  // namespace
 
 void check_mat_sizes(const std::string& path) {
-  std::ostringstream contents;
-  contents << std::ifstream(path, std::ios::binary).rdbuf();
-  const std::string file = contents.str();
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  std::string file(static_cast<std::size_t>(std::max<std::streamoff>(in.tellg(), 0)), '\0');
+  in.seekg(0).read(file.data(), static_cast<std::streamsize>(file.size()));
   std::uint16_t version = 0, order = 0;
   if (file.size() >= kHeader5) {
     std::memcpy(&version, file.data() + 124, sizeof version);
