@@ -1,13 +1,16 @@
 #include "apps/config.h"
 
 #include <yaml-cpp/depthguard.h>
+#include <yaml-cpp/eventhandler.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <system_error>
 #include <tuple>
 #include <unordered_map>
@@ -15,6 +18,7 @@
 
 #include "apps/units.h"
 #include "sim/file_watch.h"
+#include "sim/plain_text.h"
 #include "sim/suggest.h"
 
 namespace axisfit {
@@ -34,15 +38,6 @@ bool is_control(char c) {
 
 // Whether a byte of UTF-8 text continues a character.
 bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
-
-// A text of the user for use in a message: shortened when it is long.
-std::string shortened(std::string_view text) {
-  constexpr std::size_t kLongest = 60;
-  if (text.size() <= kLongest) return std::string(text);
-  std::size_t end = kLongest;
-  while (end > 0 && is_continuation(text[end])) --end;
-  return std::string(text.substr(0, end)) + "...";
-}
 
 std::string in_quotes(std::string_view text) { return "'" + shortened(text) + "'"; }
 
@@ -66,36 +61,6 @@ std::string_view trimmed(std::string_view text) {
   while (text.ends_with(' ')) text.remove_suffix(1);
   return text;
 }
-
-}  // namespace
-
-std::size_t find_invalid_utf8(std::string_view text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[i + k]); };
-    const unsigned lead = byte(0);
-    const std::size_t length = lead < 0x80   ? 1
-                               : lead < 0xC2 ? 0
-                               : lead < 0xE0 ? 2
-                               : lead < 0xF0 ? 3
-                               : lead < 0xF5 ? 4
-                                             : 0;
-    if (length == 0 || length > text.size() - i) return i;
-    for (std::size_t k = 1; k < length; ++k) {
-      if (!is_continuation(text[i + k])) return i;
-    }
-    if (length > 2) {
-      const unsigned first_two = lead << 8 | byte(1);
-      const bool overlong =
-          (lead == 0xE0 && first_two < 0xE0A0) || (lead == 0xF0 && first_two < 0xF090);
-      const bool surrogate = lead == 0xED && first_two >= 0xEDA0;
-      if (overlong || surrogate || first_two >= 0xF490) return i;
-    }
-    i += length;
-  }
-  return std::string_view::npos;
-}
-
-namespace {
 
 // Reads the decimal number at the start of `text` and returns what follows it. Nothing when there
 // is none or when it may be meant otherwise: 010 is octal in YAML 1.1, 0,5 and 1_000 are numbers
@@ -164,7 +129,8 @@ ConfigError::ConfigError(std::vector<Diagnostic> diagnostics)
 
 void Diagnostics::add(Diagnostic diagnostic) {
   if (full()) return;
-  std::replace_if(diagnostic.message.begin(), diagnostic.message.end(), is_control, '?');
+  diagnostic.file = harmless(diagnostic.file);
+  diagnostic.message = harmless(diagnostic.message);
   diagnostics_.push_back(std::move(diagnostic));
 }
 
@@ -188,6 +154,49 @@ std::vector<Diagnostic> Diagnostics::sorted() const {
 void Diagnostics::throw_if_any() const {
   if (!empty()) throw ConfigError(sorted());
 }
+
+namespace {
+
+// Where the documents of a YAML text begin, and what is in them.
+class DocumentStarts : public YAML::EventHandler {
+ public:
+  struct Start {
+    YAML::Mark document, content;
+  };
+  const std::vector<Start>& starts() const { return starts_; }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    starts_.push_back({mark, mark});
+    empty_ = true;
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { content(mark); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { content(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                const std::string&) override {
+    content(mark);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    content(mark);
+  }
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    content(mark);
+  }
+  void OnMapEnd() override {}
+
+ private:
+  void content(const YAML::Mark& mark) {
+    if (std::exchange(empty_, false)) starts_.back().content = mark;
+  }
+
+  std::vector<Start> starts_;
+  bool empty_ = true;
+};
+
+}  // namespace
 
 // A file that was read.
 struct ConfigNode::Source {
@@ -281,11 +290,13 @@ std::optional<ConfigNode> ConfigNode::load(const std::string& path, Diagnostics&
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return failure(std::string("cannot be opened: ") + std::strerror(errno));
 
-  std::string contents(kMaxBytes + 1, '\0');
-  stream.read(contents.data(), static_cast<std::streamsize>(contents.size()));
+  std::string contents;
+  for (std::array<char, 4096> part; contents.size() <= kMaxBytes && stream;) {
+    stream.read(part.data(), part.size());
+    contents.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+  }
   if (stream.bad()) return failure("cannot be read");
   if (watch.has_changed()) return failure(FileWatch::kMessage);
-  contents.resize(static_cast<std::size_t>(stream.gcount()));
   return parse(std::move(contents), path, diagnostics);
 }
 
@@ -322,9 +333,15 @@ std::optional<ConfigNode> ConfigNode::parse(std::string contents, const std::str
                       "control character; is this a text file?");
   }
 
-  std::vector<YAML::Node> documents;
+  YAML::Node root;
+  DocumentStarts documents;
   try {
-    documents = YAML::LoadAll(source->contents);
+    // Not YAML::LoadAll, which finds documents without end where text belongs to nothing.
+    std::istringstream stream(source->contents);
+    YAML::Parser parser(stream);
+    while (documents.starts().size() < 2 && parser.HandleNextDocument(documents)) {
+    }
+    root = YAML::Load(source->contents);
   } catch (const YAML::DeepRecursion& error) {  // has no useful message
     source->error(error.mark, too_deep());
     return std::nullopt;
@@ -333,12 +350,18 @@ std::optional<ConfigNode> ConfigNode::parse(std::string contents, const std::str
     source->error(error.mark, "not valid YAML: " + error.msg + (tab ? "; indent with blanks" : ""));
     return std::nullopt;
   }
-  if (documents.size() > 1) {
-    source->error(documents[1].Mark(),
-                  "only one document is allowed; remove the '---' above and what follows it");
+  if (documents.starts().size() > 1) {
+    const auto& [document, content] = documents.starts()[1];
+    const std::string_view rest =
+        std::string_view(source->contents).substr(static_cast<std::size_t>(document.pos));
+    if (rest.starts_with("---"))
+      source->error(content,
+                    "only one document is allowed; remove the '---' above and what follows it");
+    else
+      source->error(document, "not valid YAML: " + in_quotes(rest.substr(0, rest.find('\n'))) +
+                                  " belongs to nothing above");
     return std::nullopt;
   }
-  const YAML::Node root = documents.empty() ? YAML::Node(YAML::NodeType::Null) : documents.front();
   if (!ConfigCheck(*source).run(root)) return std::nullopt;
   return ConfigNode(root, "the file", source);
 }
@@ -373,9 +396,16 @@ void ConfigNode::refuse(const std::string& wanted) const {
 }
 
 std::optional<std::string> ConfigNode::as_string() const {
-  if (std::string value = text(); !value.empty()) return value;
-  refuse("a text");
-  return std::nullopt;
+  const std::string value = text();
+  if (value.empty()) {
+    refuse("a text");
+    return std::nullopt;
+  }
+  if (!is_harmless(value)) {  // it would break the lines of messages and reports
+    error(name_ + " must be one line without control characters, not " + in_quotes(value));
+    return std::nullopt;
+  }
+  return value;
 }
 
 std::optional<bool> ConfigNode::as_bool() const {
@@ -557,7 +587,7 @@ std::string with_comment(const std::string& comment, const std::string& yaml) {
   std::string text;
   for (std::size_t at = 0; at < comment.size();) {
     const std::size_t end = std::min(comment.find('\n', at), comment.size());
-    text += "# " + comment.substr(at, end - at) + "\n";
+    text += "# " + harmless(comment.substr(at, end - at)) + "\n";
     at = end + 1;
   }
   return text + yaml + "\n";

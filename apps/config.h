@@ -59,8 +59,7 @@ class Diagnostics {
   Diagnostics(const Diagnostics&) = delete;
   Diagnostics& operator=(const Diagnostics&) = delete;
 
-  /// Control characters in the message are replaced, so that it stays one line. Does nothing when
-  /// full().
+  /// What is not harmless() in it is replaced, so that it stays one line. Does nothing when full().
   void add(Diagnostic diagnostic);
 
   bool empty() const { return diagnostics_.empty(); }
@@ -112,7 +111,7 @@ class ConfigNode {
   /// Records a mistake at this place. An alias ("*a") stands where its anchor ("&a") does.
   void error(std::string message) const;
 
-  /// A text that is not empty.
+  /// A text that is not empty: one line that is_harmless().
   std::optional<std::string> as_string() const;
 
   /// true or false and nothing else.
@@ -251,11 +250,7 @@ std::optional<ConfigNode> ConfigMap::read(std::string_view key, T& value) {
   return node;
 }
 
-/// The offset of the first byte that is not UTF-8 (RFC 3629: no overlong forms, no surrogates), or
-/// npos.
-std::size_t find_invalid_utf8(std::string_view text);
-
-/// The text of a configuration file, with the lines of a comment first.
+/// The text of a configuration file, with the lines of a comment first, made harmless().
 std::string with_comment(const std::string& comment, const std::string& yaml);
 
 }  // namespace axisfit

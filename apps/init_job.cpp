@@ -23,6 +23,7 @@
 #include "fit/forecast.h"
 #include "fit/noise.h"
 #include "fit/recording_check.h"
+#include "sim/plain_text.h"
 
 namespace axisfit {
 namespace {

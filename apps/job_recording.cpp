@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <ranges>
 
 #include "apps/axis_file.h"
 #include "apps/recording_file.h"
@@ -300,15 +299,17 @@ class RecordingReader {
   void check_samples(const ConfigNode& signals_node, std::size_t named,
                      const Recording& recording) const {
     const bool held = recording.find(Signal::position) || recording.find(Signal::velocity);
-    if (named == 0)
+    if (named == 0) {
+      std::vector<std::string_view> names;
+      for (const SignalInfo& signal : kSignalTable) names.push_back(signal.name);
       signals_node.error(
-          fmt::format("nothing to compare with: name at least one of {}",
-                      fmt::join(kSignalTable | std::views::transform(&SignalInfo::name), ", ")));
-    else if (recording.role == Role::fit && recording.measurements.size() == named &&
-             std::ranges::none_of(recording.measurements, &Measurement::fitted))
+          fmt::format("nothing to compare with: name at least one of {}", fmt::join(names, ", ")));
+    } else if (recording.role == Role::fit && recording.measurements.size() == named &&
+               std::ranges::none_of(recording.measurements, &Measurement::fitted)) {
       signals_node.error(
           "nothing to fit: every signal says fit: false; drop that from one, or give "
           "the recording the role validate");
+    }
     if (coupling_ == CouplingMode::fixed && !held)
       signals_node.error("a fixed coupling needs a recorded position or velocity");
     Model<double> model = rig_.model;

@@ -3,18 +3,25 @@
 #include <matio.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "apps/apart.h"
+#include "apps/mat_sizes.h"
 #include "sim/file_watch.h"
+#include "sim/plain_text.h"
 #include "sim/suggest.h"
 
 namespace axisfit {
@@ -48,7 +55,8 @@ void keep_first_complaint(int /*level*/, char* message) {
 
 std::string in_variable(const std::string& name) { return "variable '" + name + "': "; }
 
-MatHandle open_mat(const std::string& path) {
+/// That there is something to read.
+void require_contents(const std::string& path) {
   std::error_code ignored;  // what stands in the way of looking stands in the way of opening, too
   if (std::filesystem::is_directory(path, ignored)) {
     throw RecordingError(path, 0, "is a directory; give the path of a recording");
@@ -64,6 +72,10 @@ MatHandle open_mat(const std::string& path) {
   if (in.peek() == std::ifstream::traits_type::eof()) {
     throw RecordingError(path, 0, "the file is empty; save or copy it again");
   }
+}
+
+MatHandle open_mat(const std::string& path) {
+  check_mat_sizes(path);
   MatHandle mat(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
   if (mat == nullptr) {
     throw RecordingError(path, 0,
@@ -229,9 +241,7 @@ std::string list(const Items& items, Describe describe) {
   throw RecordingError(mat.file, 0, message);
 }
 
-}  // namespace
-
-MatFile read_mat(const std::string& path) {
+MatFile read_here(const std::string& path) {
   Mat_LogInitFunc("axisfit", keep_first_complaint);
   complaint.clear();
   const FileWatch watch(path);
@@ -253,6 +263,72 @@ MatFile read_mat(const std::string& path) {
     throw RecordingError(path, 0, "holds no variables; it may be cut off or not a MAT-file");
   }
   return mat;
+}
+
+/// Version 7.3, which libmatio leaves to HDF5.
+bool is_hdf5(const std::string& path) {
+  std::array<char, 128> header{};
+  std::ifstream(path, std::ios::binary).read(header.data(), header.size());
+  const std::string_view end(header.data() + 124, 4);
+  return end == std::string_view("\0\2IM", 4) || end == std::string_view("\2\0MI", 4);
+}
+
+using Json = nlohmann::json;
+
+/// For the way from one process to another.
+std::string packed(const MatFile& mat) {
+  Json json{{"columns", Json::array()}, {"ignored", Json::array()}};
+  for (const Column& column : mat.columns) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(column.values.data());
+    json["columns"].push_back(
+        {{"name", column.name},
+         {"values", Json::binary({bytes, bytes + column.values.size() * sizeof(double)})}});
+  }
+  for (const IgnoredVariable& variable : mat.ignored)
+    json["ignored"].push_back({{"name", variable.name}, {"kind", variable.kind}});
+  std::string text;
+  Json::to_msgpack(json, text);
+  return text;
+}
+
+MatFile unpacked(const std::string& path, const Json& json) {
+  MatFile mat{path, {}, {}};
+  for (const Json& column : json.at("columns")) {
+    const auto& bytes = column.at("values").get_binary();
+    std::vector<double> values(bytes.size() / sizeof(double));
+    std::memcpy(values.data(), bytes.data(), bytes.size());
+    mat.columns.push_back({column.at("name"), std::move(values)});
+  }
+  for (const Json& variable : json.at("ignored"))
+    mat.ignored.push_back({variable.at("name"), variable.at("kind")});
+  return mat;
+}
+
+/// Reads in a process of its own: HDF5 1.10 follows what a damaged file says until it crashes.
+MatFile read_apart(const std::string& path) {
+  const std::optional<std::string> answer = run_apart([&] {
+    try {
+      return packed(read_here(path));
+    } catch (const RecordingError& error) {
+      std::string text;
+      Json::to_msgpack({{"refused", std::string(error.what()).substr(harmless(path).size() + 2)}},
+                       text);
+      return text;
+    }
+  });
+  if (!answer)
+    throw RecordingError(path, 0,
+                         "the file is damaged: HDF5 cannot read it; save or copy it again");
+  const Json json = Json::from_msgpack(*answer);
+  if (json.contains("refused")) throw RecordingError(path, 0, json.at("refused"));
+  return unpacked(path, json);
+}
+
+}  // namespace
+
+MatFile read_mat(const std::string& path) {
+  require_contents(path);
+  return is_hdf5(path) ? read_apart(path) : read_here(path);
 }
 
 Table select(const MatFile& mat, std::span<const std::string> names) {

@@ -8,6 +8,7 @@
 
 #include "apps/mat_file.h"
 #include "apps/units.h"
+#include "sim/plain_text.h"
 #include "sim/suggest.h"
 #include "sim/table.h"
 
@@ -52,9 +53,7 @@ const std::vector<double>* RecordingFile::column(const ConfigNode& node) const {
     return nullptr;
   }
   std::vector<std::string> names;
-  constexpr std::size_t kLetters = 60;
-  for (const auto& [existing, values] : columns_)
-    names.push_back(existing.size() > kLetters ? existing.substr(0, kLetters) + "..." : existing);
+  for (const auto& [existing, values] : columns_) names.push_back(shortened(existing));
   const std::string near = nearest(*name, names);
   constexpr std::size_t kNamed = 30;
   const std::size_t more = names.size() - std::min(names.size(), kNamed);

@@ -8,9 +8,9 @@
 #include <map>
 #include <ranges>
 
-#include "apps/yaml_text.h"
 #include "fit/noise.h"
 #include "fit/recording_check.h"
+#include "sim/plain_text.h"
 #include "sim/table.h"
 
 namespace axisfit {

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <ranges>
-#include <span>
 
 #include "apps/report_text.h"
 #include "apps/text_table.h"
@@ -40,7 +38,8 @@ std::string correlation_text(const FitResult& result) {
   if (pairs.empty()) return "";
   std::ranges::stable_sort(pairs, std::greater{}, [](const auto& pair) { return pair.first; });
   const std::size_t named = std::min(kNamed, pairs.size());
-  const auto names = std::span(pairs).first(named) | std::views::values;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < named; ++i) names.push_back(pairs[i].second);
   const std::string more =
       pairs.size() > named ? fmt::format(", and {} more pairs", pairs.size() - named) : "";
   return paragraph(fmt::format("Strongly correlated: {}{}.", fmt::join(names, ", "), more), 2);

@@ -10,6 +10,7 @@
 #include "apps/report_text.h"
 #include "apps/text_table.h"
 #include "apps/version.h"
+#include "sim/plain_text.h"
 
 namespace axisfit {
 namespace {
@@ -54,7 +55,11 @@ Html row(const Html& cells) { return html("<tr>{}</tr>", cells); }
 class Page {
  public:
   Page(const Outcome& outcome, const RunRecord& run)
-      : outcome_(outcome), run_(run), job_(outcome.job()), fit_(outcome.fit()), charts_(outcome) {}
+      : outcome_(outcome), run_(run), job_(outcome.job()), fit_(outcome.fit()), charts_(outcome) {
+    // What was typed may be any bytes; a page is UTF-8.
+    for (std::string* typed : {&run_.command, &run_.job_file, &run_.axis_file})
+      *typed = harmless(*typed);
+  }
 
   std::string text() {
     Html main = section("verdict", "Verdict", verdict());
@@ -420,7 +425,7 @@ class Page {
   }
 
   const Outcome& outcome_;
-  const RunRecord& run_;
+  RunRecord run_;
   const Job& job_;
   const FitResult& fit_;
   ReportCharts charts_;

@@ -218,8 +218,6 @@ std::vector<Column> force_columns(const Job& job, const Diagnosis& diagnosis) {
 std::string residuals_csv(const Job& job, const FitResult& result,
                           const std::optional<Diagnosis>& diagnosis) {
   Table table;
-  std::size_t rows = 0;
-  for (const Recording& r : job.recordings) rows += r.times.size();
   std::vector<double> number, time;
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     for (const double t : job.recordings[r].times) {

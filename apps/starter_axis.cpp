@@ -7,6 +7,7 @@
 #include "apps/units.h"
 #include "apps/version.h"
 #include "apps/yaml_text.h"
+#include "sim/plain_text.h"
 
 namespace axisfit {
 namespace {

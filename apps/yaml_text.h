@@ -8,13 +8,6 @@ namespace axisfit {
 
 inline constexpr const char* kGuessed = "GUESSED: ";  ///< begins a comment on what nothing says
 
-/// A text as one line that every reader takes: what breaks lines, controls a terminal or is no
-/// UTF-8 becomes a question mark.
-std::string harmless(const std::string& text);
-
-/// Whether harmless() leaves a text as it is.
-bool is_harmless(const std::string& text);
-
 /// Lines "# text", each after `indent` blanks.
 std::string comment(const std::string& text, std::size_t indent);
 

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "sim/file_watch.h"
+#include "sim/plain_text.h"
 
 namespace axisfit {
 namespace {
@@ -25,16 +26,8 @@ std::string place(const std::string& file, std::size_t line) {
   return line == 0 ? file : file + ":" + std::to_string(line);
 }
 
-// Text of the file in quotes for a message: cut to a readable length and safe for a terminal.
-std::string quote(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
-  std::string result = "'";
-  for (const char c : text.substr(0, kLongest)) {
-    const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
-    result += control ? '?' : c;
-  }
-  return result + (text.size() > kLongest ? "...'" : "'");
-}
+// Text of the file in quotes for a message, cut to a readable length.
+std::string quote(std::string_view text) { return "'" + shortened(text, 40) + "'"; }
 
 std::string counted(std::size_t count, std::string_view noun) {
   return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : "s");
@@ -54,12 +47,12 @@ std::string read_whole_file(const std::string& path) {
                              "); check the path and the permissions");
   }
   // By chunks rather than by size, so that pipes can be read as well.
-  constexpr std::size_t kChunk = std::size_t{1} << 20;
+  constexpr std::size_t kFirst = std::size_t{1} << 14;
   std::string text;
   std::size_t size = 0;
   while (in) {
-    text.resize(size + kChunk);
-    in.read(text.data() + size, static_cast<std::streamsize>(kChunk));
+    text.resize(std::max(kFirst, 2 * size));
+    in.read(text.data() + size, static_cast<std::streamsize>(text.size() - size));
     size += static_cast<std::size_t>(in.gcount());
   }
   if (in.bad()) throw RecordingError(path, 0, "cannot be read to its end; check the medium");
@@ -352,7 +345,11 @@ void append_row(Table& table, std::size_t line_number, std::string_view line, Fo
 }
 
 std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",;\t\"\r\n") == std::string::npos) return text;
+  // Beyond ASCII even the first bytes could pass for the mark of another encoding.
+  const bool plain = std::all_of(text.begin(), text.end(), [](char c) {
+    return c >= ' ' && c <= '~' && c != ',' && c != ';' && c != '"';
+  });
+  if (plain) return text;
   std::string quoted = "\"";
   for (const char c : text) {
     if (c == '"') quoted += c;
@@ -377,7 +374,7 @@ void append_number(std::string& text, double value, int significant_digits) {
 
 RecordingError::RecordingError(const std::string& file, std::size_t line,
                                const std::string& message)
-    : std::runtime_error(place(file, line) + ": " + message) {}
+    : std::runtime_error(harmless(place(file, line) + ": " + message)) {}
 
 std::size_t Table::rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
 

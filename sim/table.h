@@ -10,7 +10,8 @@
 namespace axisfit {
 
 // A recording cannot be used as it is. what() is meant for the person who made the recording: it
-// names the place and says what to do, as "file:line: message", or "file: message" without a line.
+// names the place and says what to do, as "file:line: message", or "file: message" without a line;
+// one line that every terminal shows (plain_text.h).
 class RecordingError : public std::runtime_error {
  public:
   // `line` counts from 1; 0 means that no line is known.

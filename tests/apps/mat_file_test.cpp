@@ -319,10 +319,21 @@ TEST_F(MatFileTest, NamesTheVariableThatIsCutOff) {
   ASSERT_TRUE(write(kCompressed, {array<double>("t", 2, 1, {0, 1}),
                                   array<double>("q", 1000, 1, Values(1000, 0.1))}));
   write_bytes(bytes().substr(0, bytes().size() - 10));
-  const std::string message = read_error();
-  EXPECT_TRUE(
-      message.starts_with("rec.mat: variable 'q': the file is damaged or cut off (libmatio: "))
-      << message;
+  EXPECT_EQ(read_error(),
+            "rec.mat: variable 'q': the file is damaged or cut off: it has fewer bytes than this "
+            "variable takes; save or copy it again");
+}
+
+TEST_F(MatFileTest, AFileThatCrashesHdf5IsRefused) {
+  try {
+    read_mat(AXISFIT_TESTDATA "/bad/damaged-7.3.mat");
+    ADD_FAILURE() << "nothing was wrong with it";
+  } catch (const RecordingError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              AXISFIT_TESTDATA
+              "/bad/damaged-7.3.mat: the file is damaged: HDF5 cannot read it; save or copy it "
+              "again");
+  }
 }
 
 TEST_F(MatFileTest, TellsWhatIsWrongWithAFile) {

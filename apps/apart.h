@@ -1,0 +1,14 @@
+// Work that may end its process.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace axisfit {
+
+/// What `work` returns, done in a process of its own; nothing if that process dies. To be called
+/// while the program has one thread. Throws std::system_error where there can be no other process.
+std::optional<std::string> run_apart(const std::function<std::string()>& work);
+
+}  // namespace axisfit

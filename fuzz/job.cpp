@@ -1,0 +1,65 @@
+// Jobs with their axes and recordings: a job that is read is one that can be fitted.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "apps/job_file.h"
+#include "fuzz/check.h"
+
+namespace axisfit::fuzz {
+namespace {
+
+bool finite(const std::vector<double>& values) {
+  return std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
+}
+
+bool increases(const std::vector<double>& times) {
+  return std::ranges::adjacent_find(times, std::greater_equal()) == times.end();
+}
+
+void check_recording(const Recording& r) {
+  require(r.times.size() >= 10 && finite(r.times) && increases(r.times), "times are no times");
+  require(!r.command.times.empty() && finite(r.command.values), "the command is no command");
+  require(finite(r.command.times) && increases(r.command.times), "the command has no times");
+  require(!r.name.empty(), "a recording has no name");
+  require(!r.measurements.empty(), "nothing is measured");
+  for (const Measurement& m : r.measurements) {
+    require(m.values.size() == r.times.size() && finite(m.values), "values are missing");
+    require(std::isfinite(m.sigma) && m.sigma > 0.0, "a sigma is not above zero");
+    require(m.left_out.empty() || m.left_out.size() == r.times.size(), "samples are lost");
+  }
+}
+
+void check_job(const JobFile& file) {
+  const Job& job = file.job;
+  require(refusal(job.model).empty(), "the model cannot be simulated");
+  require(!job.free.empty(), "nothing is free");
+  require(!job.recordings.empty(), "nothing is recorded");
+  for (const Recording& r : job.recordings) check_recording(r);
+  for (const FreeParameter& p : job.free) {
+    require(p.lower <= p.initial && p.initial <= p.upper, "an initial value is out of bounds");
+    require(std::isfinite(p.initial), "an initial value is not finite");
+    require(!p.logarithmic || p.lower > 0.0, "a logarithmic bound is not above zero");
+    require(!p.prior || (std::isfinite(p.prior->mean) && p.prior->sigma > 0.0), "a prior is none");
+    require(!p.recording || *p.recording < job.recordings.size(), "a recording is missing");
+    require(is_used(quantity_list()[p.quantity], job.model.structure), "a free quantity is unused");
+  }
+}
+
+}  // namespace
+}  // namespace axisfit::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace axisfit;
+  using namespace axisfit::fuzz;
+  const std::string_view input(reinterpret_cast<const char*>(data), size);
+  // What these hold is not up to the input, and some never end.
+  for (const char* device : {"/dev", "/proc", "/sys"})
+    if (input.find(device) != input.npos) return 0;
+  static const Folder folder;
+  folder.clear();
+  for (const auto& [name, contents] : files_of(input))
+    if (!is_hdf5(contents)) folder.write(name, contents);
+  refusable([&] { check_job(read_job_file(folder.path("job.yaml"))); });
+  return 0;
+}
