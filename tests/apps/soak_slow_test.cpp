@@ -1,0 +1,69 @@
+// Many fits in one process: its memory does not grow.
+#include <gtest/gtest.h>
+#include <malloc.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+
+#include "apps/outcome.h"
+#include "apps/report_page.h"
+#include "apps/report_text.h"
+#include "apps/result_json.h"
+#include "tests/apps/files.h"
+#include "tests/apps/fit_job.h"
+
+namespace axisfit {
+namespace {
+
+/// Bytes in memory, and of these the ones that are allocated, after what is free was given back.
+struct Memory {
+  double resident = 0.0, allocated = 0.0;
+
+  static Memory now() {
+    malloc_trim(0);
+    double pages = 0.0, resident = 0.0;
+    std::ifstream("/proc/self/statm") >> pages >> resident;
+    return {resident * static_cast<double>(sysconf(_SC_PAGESIZE)),
+            static_cast<double>(mallinfo2().uordblks)};
+  }
+};
+
+TEST(Soak, AThousandFitsTakeNoMoreMemoryThanTwoHundred) {
+  const TempFolder folder;
+  write_recordings(folder);
+  write_rubbing_mass(folder);
+  const std::string single = folder.write("single.yaml", fit_job());
+  const std::string several = folder.write("several.yaml", fit_job("{starts: 3}"));
+  const std::string rubbing = folder.write("rubbing-job.yaml", rubbing_job());
+  const std::string wrong = folder.write("wrong.yaml", fit_job("{start: 3}"));
+
+  // The whole of fit-params but for its command line.
+  const auto fit = [](const std::string& job, bool close_loop = false) {
+    const Outcome outcome = find_outcome(read_job_file(job), {.close_loop = close_loop});
+    ASSERT_TRUE(outcome.fit().usable);
+    const std::string json = result_json(outcome).dump(2), text = report_text(outcome),
+                      csv = residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis),
+                      page = report_page(outcome, {"fit-params", job, "", "", ""});
+    ASSERT_FALSE(json.empty() || text.empty() || csv.empty() || page.empty());
+  };
+  Memory early;
+  for (int done = 0; done < 1000; ++done) {
+    if (done == 200) early = Memory::now();
+    if (done % 20 == 0)
+      fit(rubbing, true);
+    else
+      fit(done % 2 == 0 ? single : several);
+    EXPECT_THROW(read_job_file(wrong), ConfigError);
+  }
+  const Memory late = Memory::now();
+  RecordProperty("resident_after_200", std::to_string(early.resident));
+  RecordProperty("resident_after_1000", std::to_string(late.resident));
+  // A hundred bytes per fit would be found among what is allocated. The threads' own pages come
+  // and go.
+  EXPECT_LT(late.allocated - early.allocated, 80e3);
+  EXPECT_LT(late.resident - early.resident, 2e6);
+}
+
+}  // namespace
+}  // namespace axisfit
