@@ -330,10 +330,11 @@ void check_mat_sizes(const std::string& path) {
   constexpr std::uint16_t kSame = 'M' << 8 | 'I', kSwapped = 'I' << 8 | 'M';
   const bool swapped = order == kSwapped;
   if (swapped) version = static_cast<std::uint16_t>(version << 8 | version >> 8);
-  if (order != kSame && !swapped)
-    check4(path, file);
-  else if (version == 0x0100)
+  const bool is_later = order == kSame || swapped;
+  if (is_later && version == 0x0100)
     check5(path, file, swapped);
+  else if (!is_later || version != 0x0200)  // else HDF5 looks after itself
+    check4(path, file);
 }
 
 }  // namespace axisfit
