@@ -21,6 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Of a noise, in any unit. Below this squares of residuals over it overflow.
+constexpr double kLeastSigma = 1e-40;
+
 /// Every quantity of the list, as a value that differs from the axis file's.
 Section override_keys() {
   Section keys;
@@ -286,7 +289,7 @@ class RecordingReader {
     measurement.values = trimmed(*values, *times, trim);
     if (measurement.noise != NoiseSource::given) {
       measurement.sigma = noise_from_differences(measurement.values);
-      if (!(measurement.sigma > 0.0))
+      if (!(measurement.sigma >= kLeastSigma))
         node.error(
             fmt::format("the noise of {} cannot be estimated from these samples: give its "
                         "sigma, for example 'sigma: {}'",
@@ -326,7 +329,7 @@ class RecordingReader {
   static void take_noise_from_rest(const ConfigNode& signals_node, Recording& recording) {
     for (Measurement& m : recording.measurements) {
       if (m.noise != NoiseSource::rest) continue;
-      if (const double noise = noise_at_rest(recording, m); noise > 0.0)
+      if (const double noise = noise_at_rest(recording, m); noise >= kLeastSigma)
         m.sigma = noise;
       else
         signals_node.error(fmt::format(
@@ -417,7 +420,8 @@ Amount sigma_amount(std::string_view unit) {
 
 double read_sigma(const ConfigNode& node, std::string_view unit) {
   const auto sigma = node.as_amount(sigma_amount(unit));
-  if (sigma == 0.0) node.error("sigma must be above zero: residuals are divided by it");
+  if (sigma && *sigma < kLeastSigma)
+    node.error("sigma must be above zero: residuals are divided by it");
   return sigma.value_or(1.0);
 }
 

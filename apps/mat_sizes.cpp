@@ -153,48 +153,66 @@ class Walk5 {
     return tag.small ? 4 - tag.size : (8 - tag.size % 8) % 8;
   }
 
-  /// Elements of any kind.
-  void elements(Bytes& bytes, std::uint64_t end, int depth) const {
-    constexpr int kDeepest = 100;
-    while (room(bytes, end) >= 8) {
-      const Tag tag = read_tag(bytes);
-      if (tag.size > (tag.small ? 4 : room(bytes, end))) throw Oversized();
-      if (tag.type == kMatrix && !tag.small) {
-        if (depth == kDeepest) throw Oversized();
-        Walk5(swapped_).matrix(bytes, tag.size, depth + 1);
-      } else {
-        bytes.skip(tag.size);
-        bytes.skip(std::min(padding(tag), room(bytes, end)));
-      }
-    }
+  Tag element(Bytes& bytes, std::uint64_t end) const {
+    const Tag tag = read_tag(bytes);
+    if (tag.size > (tag.small ? 4 : room(bytes, end))) throw Oversized();
+    return tag;
+  }
+  void skip(Bytes& bytes, std::uint64_t end, const Tag& tag) const {
+    bytes.skip(tag.size);
+    bytes.skip(std::min(padding(tag), room(bytes, end)));
   }
 
-  /// An array of the size stated: its class, dimensions and name, and whether so many elements have
-  /// room in it.
+  void nested(Bytes& bytes, const Tag& tag, int depth) const {
+    constexpr int kDeepest = 100;
+    if (tag.type != kMatrix || tag.small || depth == kDeepest) throw Oversized();
+    Walk5(swapped_).matrix(bytes, tag.size, depth + 1);
+  }
+
+  /// An array of the size stated. libmatio goes by its class and dimensions, and reads on beyond
+  /// its end where it lacks something.
   void matrix(Bytes& bytes, std::uint64_t size, int depth) {
     if (size == 0) return;  // an empty one within a cell or struct
     const bool cut = size > bytes.left();
     const std::uint64_t end = cut ? 0 : bytes.left() - size;
     enum : std::uint32_t { int8 = 1, int32 = 5, uint32 = 6 };
-    const std::string flags = value(bytes, end, uint32, 8);
-    const std::uint32_t kind = first_number(flags) & 0xFF;
-    enum : std::uint32_t { cell = 1, structure = 2, object = 3, sparse = 5, last = 15 };
-    std::uint64_t bytes_each = kind == cell ? 8 : kind == sparse ? 0 : 1;
-    if (kind <= last) {
-      const std::string sizes = value(bytes, end, int32);
+    const std::uint32_t flags = first_number(value(bytes, end, uint32, 8));
+    const std::uint32_t kind = flags & 0xFF;
+    const bool is_complex = (flags & 0x0800) != 0;
+    enum : std::uint32_t { cell = 1, structure = 2, object = 3, sparse = 5, last_known = 15 };
+    std::uint64_t arrays = 0, vectors = 0;  // what must come
+    if (kind <= last_known) {
+      const std::uint64_t values = count(value(bytes, end, int32));
       name_ = value(bytes, end, int8);
       if (kind == object) value(bytes, end, int8);  // its class
       if (kind == structure || kind == object) {
         const std::uint32_t length = first_number(value(bytes, end, int32, 4));
         const std::string fields = value(bytes, end, int8);
-        bytes_each = length == 0 ? 0 : 8 * (fields.size() / length);
+        arrays = length == 0 ? 0 : product(values, fields.size() / length);
+      } else if (kind == cell) {
+        arrays = values;
+      } else if (kind == sparse) {
+        vectors = is_complex ? 4 : 3;
+      } else if (values > 0) {
+        vectors = is_complex ? 2 : 1;
+        if (values > room(bytes, end)) throw Oversized();
       }
-      if (product(count(sizes), bytes_each) > room(bytes, end)) throw Oversized();
     }
-    if (cut) throw Oversized();
-    // Nothing comes after numbers, which may be many.
-    if (depth == 0 && kind <= last && bytes_each == 1) return;
-    elements(bytes, end, depth);
+    if (cut || product(arrays, 8) > room(bytes, end)) throw Oversized();
+    for (; arrays > 0; --arrays) nested(bytes, element(bytes, end), depth);
+    for (; vectors > 0; --vectors) {
+      const Tag tag = element(bytes, end);
+      // Nothing comes after the last numbers of a variable, which may be many.
+      if (depth == 0 && vectors == 1) return;
+      skip(bytes, end, tag);
+    }
+    while (room(bytes, end) >= 8) {
+      const Tag tag = element(bytes, end);
+      if (tag.type == kMatrix && !tag.small)
+        nested(bytes, tag, depth);
+      else
+        skip(bytes, end, tag);
+    }
     bytes.skip(room(bytes, end));
   }
 
@@ -312,10 +330,11 @@ void check_mat_sizes(const std::string& path) {
   constexpr std::uint16_t kSame = 'M' << 8 | 'I', kSwapped = 'I' << 8 | 'M';
   const bool swapped = order == kSwapped;
   if (swapped) version = static_cast<std::uint16_t>(version << 8 | version >> 8);
-  if (order != kSame && !swapped)
-    check4(path, file);
-  else if (version == 0x0100)
+  const bool is_later = order == kSame || swapped;
+  if (is_later && version == 0x0100)
     check5(path, file, swapped);
+  else if (!is_later || version != 0x0200)  // else HDF5 looks after itself
+    check4(path, file);
 }
 
 }  // namespace axisfit
