@@ -78,7 +78,7 @@ def answer(programs=BIN, threads=2, **environment):
 def shipped_answers(programs):
     """What the programs make of shipped jobs, and of the paper's axis in all motions."""
     texts = {}
-    for job in ("paper", "paper-move", "paper-slow", "payload", "screw"):
+    for job in ("paper", "paper-move", "payload", "screw"):
         run(texts, ".", {}, programs / "fit-params", str(CONFIGS / f"jobs/{job}.yaml"), "--json")
     for motion in sorted(CONFIGS.glob("motions/*.yaml")):
         run(texts, ".", {}, programs / "simulate-axis", str(CONFIGS / "axes/x.yaml"), str(motion),
@@ -105,8 +105,8 @@ def numbers(name, text):
     if not name.endswith(("--json", ".json")):
         return None
     result = json.loads(text)
-    for recent in ("message", "version"):
-        del result[recent]
+    for other in ("message", "version", "wall_time_s"):
+        del result[other]
     # A refused effect may have no minimum, and where its parameters stop is chance.
     result["effects"] = [e for e in result.get("effects", []) if e["decision"] != "refused"]
     return result

@@ -50,7 +50,7 @@ TEST(Soak, AThousandFitsTakeNoMoreMemoryThanTwoHundred) {
   Memory early;
   for (int done = 0; done < 1000; ++done) {
     if (done == 200) early = Memory::now();
-    if (done % 20 == 0)
+    if (done % 50 == 0)
       fit(rubbing, true);
     else
       fit(done % 2 == 0 ? single : several);
