@@ -291,8 +291,10 @@ class Head4 {
 
   std::uint32_t digit(std::uint32_t of) const { return words_[0] / of % 10; }
   bool is_valid() const {
+    const bool sparse = digit(1) == 2;  // row, column, value and perhaps its imaginary part
     return words_[0] <= kLargestType && digit(1000) <= 1 && digit(100) == 0 &&
-           digit(10) < kSizes.size() && digit(1) <= 2 && words_[3] <= 1 && words_[4] > 0;
+           digit(10) < kSizes.size() && digit(1) <= 2 && words_[3] <= 1 && words_[4] > 0 &&
+           (!sparse || words_[2] == 3 || words_[2] == 4);
   }
 
   std::array<std::uint32_t, 5> words_{};  // type, rows, columns, whether complex, size of name
