@@ -256,7 +256,10 @@ std::unique_ptr<OutputFolder> open_folder(const Arguments& arguments, Job& job,
 bool holds_whole_result(const std::string& folder) {
   std::ifstream file(std::filesystem::path(folder) / kResultFile);
   const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
-  return json.is_object() && json.value("usable", false) && !json.value("interrupted", true);
+  const auto is = [&](const char* key, bool value) {
+    return json.is_object() && json.contains(key) && json[key] == value;
+  };
+  return is("usable", true) && is("interrupted", false);
 }
 
 /// Writes the result, unless that would replace a better one.

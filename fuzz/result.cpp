@@ -242,6 +242,7 @@ Outcome fitted(JobFile& file) {
   Outcome outcome;
   outcome.first = estimate_with_noise(file.job);
   outcome.file = std::move(file);
+  outcome.checks = check_recordings(outcome.file.job);
   return outcome;
 }
 
