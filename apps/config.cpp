@@ -530,7 +530,7 @@ ConfigMap::ConfigMap(const ConfigNode& node) : node_(node) {
 
 std::optional<ConfigNode> ConfigMap::required(std::string_view key) {
   auto value = optional(key);
-   if (!value && node_.is_map() && !is_misspelt(key)) {
+  if (!value && node_.is_map() && !is_misspelt(key)) {
     node_.error("key " + in_quotes(key) + " is missing in " + node_.name());
   }
   return value;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <new>
 #include <stdexcept>
 #include <system_error>
 
@@ -97,9 +98,6 @@ OutputFolder::OutputFolder(std::string folder, std::vector<std::string> names)
         throw fs::filesystem_error("cannot replace", target_ / name,
                                    std::make_error_code(std::errc::is_a_directory));
     journal_ = std::make_unique<JournalFile>(target_ / kJournal);
-  } catch (const std::bad_alloc&) {
-    remove_what_was_made();
-    throw;
   } catch (const std::exception& error) {
     remove_what_was_made();
     fail(error);
@@ -123,8 +121,10 @@ void OutputFolder::remove_what_was_made() const {
     fs::remove(folder, ignored);
 }
 
-void OutputFolder::fail(const std::exception& error) const {
-  throw std::runtime_error(fmt::format("results not written to {}: {}", folder_, reason(error)));
+void OutputFolder::fail(const std::exception& error, const char* advice) const {
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) throw;
+  throw std::runtime_error(
+      fmt::format("results not written to {}: {}{}", folder_, reason(error), advice));
 }
 
 bool OutputFolder::holds_results_only() const {
@@ -166,15 +166,12 @@ void OutputFolder::write(const Files& files, bool whole) {
     fs::create_directories(target_);  // somebody may have removed it meanwhile
     if (!holds_results_only() || !exchange(files, whole)) replace_one_by_one(files, whole);
     has_result_ = true;
-  } catch (const std::bad_alloc&) {
-    throw;
   } catch (const std::exception& error) {
     std::error_code ignored;
-    if (journal_->is_empty() || !fs::exists(target_ / kJournal, ignored)) fail(error);
-    fail(std::runtime_error(
-        reason(error) +
-        "\nWhat was found is kept there: once that is mended, the same command with --resume ends "
-        "soon."));
+    const bool kept = !journal_->is_empty() && fs::exists(target_ / kJournal, ignored);
+    fail(error, kept ? "\nWhat was found is kept there: once that is mended, the same command with "
+                       "--resume ends soon."
+                     : "");
   }
 }
 

@@ -46,7 +46,8 @@ class OutputFolder {
   bool exchange(const Files& files, bool whole) const;
   void replace_one_by_one(const Files& files, bool whole) const;
   void remove_what_was_made() const;
-  [[noreturn]] void fail(const std::exception& error) const;
+  /// In the handler of `error`: throws what the user is told, or that memory ran out.
+  [[noreturn]] void fail(const std::exception& error, const char* advice = "") const;
 
   std::string folder_;
   std::vector<std::string> names_;

@@ -41,15 +41,10 @@ void check_motion(const Folder& folder, const MotionFile& file, const Rig& rig) 
 }
 
 }  // namespace
-}  // namespace axisfit::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace axisfit;
-  using namespace axisfit::fuzz;
-  static const Folder folder;
+void check_input(const Folder& folder, std::string_view input) {
   folder.clear();
-  for (const auto& [name, contents] : files_of({reinterpret_cast<const char*>(data), size}))
-    folder.write(name, contents);
+  for (const auto& [name, contents] : files_of(input)) folder.write(name, contents);
   std::optional<Rig> rig;
   refusable([&] {
     Diagnostics diagnostics;
@@ -57,15 +52,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     diagnostics.throw_if_any();
     require(rig.has_value(), "an axis is refused without a word");
   });
-  if (!rig) return 0;
+  if (!rig) return;
   require(refusal(rig->model).empty(), "an axis was read that cannot be simulated");
   const std::string text = format_axis_file(*rig, "Axis.");
   Diagnostics diagnostics;
   const auto again = read_axis_file(folder.write("again.yaml", text), diagnostics);
   require(again.has_value(), "an axis is not read again", text);
   require(same(*rig, *again), "an axis changes when written", text);
-  if (!std::filesystem::exists(folder.path("motion.yaml"))) return 0;
+  if (!std::filesystem::exists(folder.path("motion.yaml"))) return;
   refusable(
       [&] { check_motion(folder, read_motion_file(folder.path("motion.yaml"), *rig), *rig); });
-  return 0;
 }
+
+}  // namespace axisfit::fuzz

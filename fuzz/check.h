@@ -120,4 +120,7 @@ inline std::map<std::string, std::string_view> files_of(std::string_view input) 
   return files;
 }
 
+/// What a target does with an input, in a folder that has what earlier inputs left there.
+void check_input(const Folder& folder, std::string_view input);
+
 }  // namespace axisfit::fuzz

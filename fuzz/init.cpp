@@ -1,5 +1,4 @@
 // fit-params --init: the job that it makes for a recording can be read.
-#include <cstdint>
 #include <optional>
 
 #include "apps/init_job.h"
@@ -7,12 +6,11 @@
 #include "apps/recording_guess.h"
 #include "fuzz/check.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace axisfit;
-  using namespace axisfit::fuzz;
-  static const Folder folder;
+namespace axisfit::fuzz {
+
+void check_input(const Folder& folder, std::string_view input) {
   folder.clear();
-  const std::string path = folder.write("data.csv", {reinterpret_cast<const char*>(data), size});
+  const std::string path = folder.write("data.csv", input);
   bool is_long = false;
   refusable([&] {
     // A long one is simulated for long, which is no finding.
@@ -20,10 +18,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::vector<double> times = guess_recording(RecordingFile(path), path).time.values;
     is_long = times.back() - times.front() > kLongest;
   });
-  if (is_long) return 0;
+  if (is_long) return;
   std::optional<InitialJob> made;
   refusable([&] { made = initial_job({path}, "", folder.path("")); });
-  if (!made) return 0;
+  if (!made) return;
   for (const std::string& guess : made->guesses) require_message(guess);
   for (const auto& [name, contents] : made->files) folder.write(name, contents);
   try {
@@ -31,5 +29,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const ConfigError& error) {
     require(false, "the job of --init is refused", error.what());
   }
-  return 0;
 }
+
+}  // namespace axisfit::fuzz

@@ -1,16 +1,13 @@
 // MATLAB files: what is read has values, and a table can be chosen of it.
 #include <cmath>
-#include <cstdint>
 
 #include "apps/mat_file.h"
 #include "fuzz/check.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace axisfit;
-  using namespace axisfit::fuzz;
-  static const Folder folder;
-  const std::string_view input(reinterpret_cast<const char*>(data), size);
-  if (is_hdf5(input)) return 0;
+namespace axisfit::fuzz {
+
+void check_input(const Folder& folder, std::string_view input) {
+  if (is_hdf5(input)) return;
   const std::string path = folder.write("data.mat", input);
   refusable([&] {
     const MatFile mat = read_mat(path);
@@ -25,5 +22,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     select(mat, std::vector<std::string>{"none"});
   });
-  return 0;
 }
+
+}  // namespace axisfit::fuzz

@@ -267,14 +267,10 @@ void check(const Folder& folder, JobFile file, const Names& names, const std::st
 }
 
 }  // namespace
-}  // namespace axisfit::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace axisfit;
-  using namespace axisfit::fuzz;
-  static const Folder folder;
+void check_input(const Folder& folder, std::string_view input) {
   folder.clear();
-  Draw draw({reinterpret_cast<const char*>(data), size});
+  Draw draw(input);
   Names names;
   names.axis = draw.text();
   for (std::size_t r = 0, n = 1 + draw.below(2); r < n; ++r) {
@@ -291,5 +287,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::optional<JobFile> file;
   refusable([&] { file = read_job_file(folder.write("job.yaml", job)); });
   if (file) check(folder, std::move(*file), names, job, draw);
-  return 0;
 }
+
+}  // namespace axisfit::fuzz

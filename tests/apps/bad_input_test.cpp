@@ -1,34 +1,17 @@
 // Bad input, case by case of testdata/bad/cases.yaml, to the program as its users run it.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include "apps/job_file.h"
 #include "tests/apps/bad_cases.h"
-#include "tests/apps/files.h"
+#include "tests/apps/shell.h"
 
 namespace axisfit {
 namespace {
-
-struct Answer {
-  int exit_code;
-  std::string out, err;
-};
-
-Answer run(const TempFolder& folder, const std::string& arguments) {
-  const TempFolder outputs;
-  // Ten seconds are for those who wait for ever.
-  const std::string command =
-      "cd '" + folder.path() + "' && timeout -k 1 10 '" AXISFIT_BIN "/fit-params' " + arguments +
-      " >'" + outputs.path("out") + "' 2>'" + outputs.path("err") + "' </dev/null";
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, outputs.read("out"), outputs.read("err")};
-}
 
 class BadInputTest : public ::testing::Test {
  protected:
@@ -60,8 +43,10 @@ class BadInputTest : public ::testing::Test {
       expect_same(read_job_file(folder.path("job.yaml")).job,
                   read_job_file(good.path("job.yaml")).job, same ? 0.0 : 1e-6);
     }
+    // Ten seconds are for those who wait for ever.
     const Answer answer =
-        run(folder, node["run"] ? node["run"].Scalar() : std::string("job.yaml --check"));
+        shell(folder, "timeout -k 1 10 fit-params " +
+                          (node["run"] ? node["run"].Scalar() : std::string("job.yaml --check")));
     if (node["refused"]) {
       EXPECT_EQ(answer.exit_code, 2);
       EXPECT_EQ(answer.err, node["refused"].Scalar() + "\n");
