@@ -196,10 +196,21 @@ describe("any report", () => {
     assert.deepEqual(overlaps, []);
   });
 
-  test("the first paint is within a second", async () => {
+  // What the first paint shows must wait for nothing; how long it took is told, not judged: a
+  // busy machine would fail a test of time.
+  test("text and pictures are there without any script", async (t) => {
     const paint = await page.evaluate(
         () => performance.getEntriesByName("first-contentful-paint")[0].startTime);
-    assert.ok(paint < 1000, `${paint} ms`);
+    t.diagnostic(`first contentful paint after ${paint.toFixed(0)} ms`);
+    const ids = (await charts()).map((chart) => chart.id);
+    assert.ok(ids.length);
+    const context = await browser.newContext({javaScriptEnabled: false});
+    const still = await context.newPage();
+    await still.goto(pathToFileURL(path).href);
+    assert.ok(await still.locator("h1").isVisible());
+    for (const id of ids)
+      assert.ok(await still.locator(`${selectorOf(id)} > svg`).isVisible(), id);
+    await context.close();
   });
 
   test("on paper the pictures are shown, not the live charts", async () => {
