@@ -403,7 +403,8 @@ ChartColumns::Index ChartColumns::add_times(std::vector<double> times) {
   if (even) {
     return kept({std::move(times)});
   }
-  return add(std::move(times), 1e-3 * shortest, std::floor(times.front()));
+  const double origin = std::floor(times.front());
+  return add(std::move(times), 1e-3 * shortest, origin);
 }
 
 ChartColumns::Index ChartColumns::add_coarse(std::vector<double> values) {

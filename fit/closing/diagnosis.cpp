@@ -21,7 +21,7 @@ Diagnosis diagnose(const Job& job, const FitResult& result) {
   for (const Score& score : test.scores) {
     const Candidate& candidate = test.candidates[score.candidate];
     const double share = score.gain / test.sum_of_squares;
-    if (diagnosis.suspects.size() == kSuspects || share < kLeastShare) break;
+    if (diagnosis.suspects.size() == kSuspects || !(share >= kLeastShare)) break;
     const bool known = std::ranges::any_of(
         diagnosis.suspects, [&](const Suspect& s) { return same_effect(s.candidate, candidate); });
     if (!known) diagnosis.suspects.push_back({candidate, score.shapes, score.strengths, share});

@@ -86,10 +86,11 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   const std::vector<double> held_values = space.values(held.u);
   const Linearization base = linearize(job, space, held.u, rate);
   if (!base.finite) return test;
-  test.usable = true;
   const Eigen::MatrixXd basis = basis_of(base.jacobian);
   const Eigen::VectorXd rest = base.residuals - basis * (basis.transpose() * base.residuals);
   test.sum_of_squares = rest.squaredNorm();
+  test.usable = std::isfinite(test.sum_of_squares);  // squares may overflow
+  if (!test.usable) return test;
   test.candidates = catalogue(job, scales_of(job, space, held.u, rate, base, basis));
   std::erase_if(test.candidates, [&](const Candidate& c) { return c.unnamed != curves; });
   for (std::size_t c = 0; c < test.candidates.size(); ++c)
@@ -125,7 +126,7 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
         if (reached.size() == 1 && (reached[k] < q.lower || reached[k] > q.upper)) return;
       }
       const double gain = test.sum_of_squares - (rest + columns * step).squaredNorm();
-      if (gain <= score.gain) return;
+      if (!(gain > score.gain)) return;
       score.gain = gain;
       score.strengths = reached;
       // The free parameters give way to the effect; no further than a linear step can be believed.
