@@ -34,8 +34,8 @@ const std::vector<double>* RecordingFile::column(const ConfigNode& node) const {
   if (!name) return nullptr;
   if (const auto found = columns_.find(*name); found != columns_.end()) {
     const std::vector<double>& values = found->second;
-    // Beyond this squares of sums overflow.
-    constexpr double kLargest = 1e100;
+    // Nothing is measured beyond this in any unit, and squares of squares of residuals are finite.
+    constexpr double kLargest = 1e30;
     const auto bad =
         std::ranges::find_if_not(values, [](double x) { return std::abs(x) <= kLargest; });
     if (bad == values.end()) return &values;

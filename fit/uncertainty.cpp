@@ -177,7 +177,11 @@ Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
     p.inflation = std::sqrt(covariance(k, k) / inverse.matrix()(k, k));
     const double inwards = u[k] - lower(i) < upper(i) - u[k] ? 1.0 : -1.0;
     const double beyond = std::max(0.0, -inwards * step[k]);
-    const double reach = std::sqrt(t * t * covariance(k, k) + beyond * beyond) - beyond;
+    const double variance = t * t * covariance(k, k);
+    if (!std::isfinite(variance)) continue;
+    // sqrt(variance + beyond^2) - beyond, without its cancellation and overflow
+    const double whole = std::hypot(std::sqrt(variance), beyond) + beyond;
+    const double reach = whole > 0.0 ? variance / whole : 0.0;
     const double other = space.value(i, std::clamp(u[k] + inwards * reach, lower(i), upper(i)));
     p.lower = inwards > 0.0 ? space[i].lower : other;
     p.upper = inwards > 0.0 ? other : space[i].upper;

@@ -40,7 +40,7 @@ class Draw {
       case 0: {
         double x = 0.0;
         std::memcpy(&x, bytes(sizeof x).data(), sizeof x);
-        return std::abs(x) <= 1e100 ? x : 0.0;
+        return std::abs(x) <= 1e30 ? x : 0.0;
       }
       case 1:
         return 0.0;
