@@ -53,7 +53,10 @@ void keep_first_complaint(int /*level*/, char* message) {
                            "); save or copy it again");
 }
 
-std::string in_variable(const std::string& name) { return "variable '" + name + "': "; }
+/// A name for a message: of a damaged file it may be of any length.
+std::string in_quotes(const std::string& name) { return "'" + shortened(name) + "'"; }
+
+std::string in_variable(const std::string& name) { return "variable " + in_quotes(name) + ": "; }
 
 /// That there is something to read.
 void require_contents(const std::string& path) {
@@ -220,23 +223,21 @@ std::string list(const Items& items, Describe describe) {
   }
   std::vector<std::string> names;
   for (const Column& column : mat.columns) names.push_back(column.name);
-  std::string message = "there is no variable '" + name + "'";
+  std::string message = "there is no variable " + in_quotes(name);
   if (const std::string guess = nearest(name, names); !guess.empty()) {
-    message += " (did you mean '" + guess + "'?)";
+    message += " (did you mean " + in_quotes(guess) + "?)";
   }
   if (names.empty()) {
     message += "; the file has no numeric vectors";
   } else {
-    message += "; the file has " +
-               list(names, [](const std::string& available) { return "'" + available + "'"; });
+    message += "; the file has " + list(names, in_quotes);
   }
   if (!mat.ignored.empty()) {
-    message +=
-        "; not readable unless exported as numeric vectors: " +
-        list(mat.ignored, [](const IgnoredVariable& variable) {
-          return (variable.name.empty() ? "one of unknown name" : "'" + variable.name + "'") +
-                 " (" + variable.kind + ")";
-        });
+    message += "; not readable unless exported as numeric vectors: " +
+               list(mat.ignored, [](const IgnoredVariable& variable) {
+                 return (variable.name.empty() ? "one of unknown name" : in_quotes(variable.name)) +
+                        " (" + variable.kind + ")";
+               });
   }
   throw RecordingError(mat.file, 0, message);
 }
@@ -342,7 +343,7 @@ Table select(const MatFile& mat, std::span<const std::string> names) {
     if (!table.columns.empty() && values.size() != table.rows()) {
       throw RecordingError(mat.file, 0,
                            in_variable(name) + "it has " + std::to_string(values.size()) +
-                               " values, but '" + table.columns.front().name + "' has " +
+                               " values, but " + in_quotes(table.columns.front().name) + " has " +
                                std::to_string(table.rows()) +
                                "; the signals of a recording must have the same length");
     }

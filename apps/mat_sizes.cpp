@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 
+#include "sim/plain_text.h"
 #include "sim/table.h"
 
 namespace axisfit {
@@ -233,7 +234,7 @@ class Walk5 {
 
 [[noreturn]] void throw_damaged(const std::string& path, const std::string& name, int index) {
   const std::string variable =
-      name.empty() ? "variable " + std::to_string(index) : "variable '" + name + "'";
+      name.empty() ? "variable " + std::to_string(index) : "variable '" + shortened(name) + "'";
   throw RecordingError(path, 0,
                        variable +
                            ": the file is damaged or cut off: it has fewer bytes than this "

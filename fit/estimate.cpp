@@ -98,7 +98,8 @@ RecordingResult judge(const Job& job, const ParameterSpace& space, std::size_t i
           mean_square_error(measurement, result.prediction.simulated[m], first);
       const auto [low, high] = std::ranges::minmax(measurement.values);
       error.rmse = std::sqrt(mean_square);
-      error.nrmse_percent = high > low ? 100.0 * error.rmse / (high - low) : 0.0;
+      const double percent = 100.0 * error.rmse / (high - low);
+      error.nrmse_percent = std::isfinite(percent) ? percent : 0.0;
       error.reduced_chi_square = mean_square / (measurement.sigma * measurement.sigma);
     }
     if (result.held && result.held->finished) {

@@ -26,7 +26,7 @@ struct SignalError {
   Signal signal = Signal::velocity;
   bool fitted = true;
   double rmse = 0.0;           ///< free-running simulation, in the signal's unit
-  double nrmse_percent = 0.0;  ///< of the measured range
+  double nrmse_percent = 0.0;  ///< of the measured range; zero where that is none
   double sigma = 0.0;          ///< of the noise
   NoiseSource noise = NoiseSource::differences;
   double reduced_chi_square = 0.0;  ///< (rmse / sigma)^2

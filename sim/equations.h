@@ -232,23 +232,6 @@ class Equations {
     return d;
   }
 
-  /// Change of rate() per second because the target moves: the terms in `slope` alone.
-  State<T> rate_of_target(const Mode& mode, const Target& rate) const {
-    const TargetOf<T> slope{T(rate.velocity), T(rate.position)};
-    const Model<T>& m = m_;
-    State<T> d{};
-    if (!coupling_.active()) return d;
-    const State<T> origin{};
-    // Linear in state and target: what the target alone contributes is the difference.
-    const T e = position_error(origin, slope) - position_error(origin, TargetOf<T>{});
-    const T a = coupling_acceleration(origin, slope) - coupling_acceleration(origin, TargetOf<T>{});
-    d[0] = coupling_.position * e;
-    if (mode.sliding != 0) d[1] = a;
-    d[2] = coupling_.position * e / m.axis.r_g;
-    d[3] = (is_.backlash ? coupling_.acceleration * e : d[1]) / m.axis.r_g;
-    return d;
-  }
-
   /// Calls visit(guard, value, scale) for every surface that ends `mode`. The value is positive
   /// inside; it is affine in state and input but where an arm sticks under forces that are not.
   /// `scale` is its natural size, for tolerances.

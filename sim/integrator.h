@@ -12,7 +12,8 @@
 // guard ends the search. Then the step is taken in T, and the crossing time is corrected by -g / g'
 // in T: the event time carries its derivatives, and so does every length that is measured from it.
 // After each event, and after each switch of the command, steps grow again from the shortest, so
-// that fast transients are resolved and what they set off is seen.
+// that fast transients are resolved and what they set off is seen. Where all is affine, guards are
+// looked at as linear forms (affine.h), and steps grow to the interval of the readings.
 //
 // Limits. Derivatives are those of a fixed sequence of transversal events; where two events
 // coincide or a guard is touched without crossing, they are one-sided. The smooth forces must not
@@ -22,22 +23,26 @@
 
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "sim/affine.h"
 #include "sim/equations.h"
 #include "sim/propagator.h"
 
 namespace axisfit {
 
 struct IntegratorOptions {
-  /// s. Longest step. The affine part is exact at any step: it is how often guards are looked at,
-  /// and the Runge-Kutta step of smooth effects.
+  /// s. Longest step of the Runge-Kutta method, for smooth effects. What is affine is exact at any
+  /// step; guards are then looked at as often as the state is read, see `interval`.
   double step = 0.5e-3;
+  /// s. Between the instants to which the integration will be advanced, if they are even; else
+  /// about. Steps are a fraction of it. Zero: not known, steps are `step`.
+  double interval = 0.0;
   /// Whether event times carry derivatives. Off only to show what that is worth.
   bool event_derivatives = true;
   /// Events within one step length before the simulation is given up as chattering.
@@ -60,7 +65,8 @@ class Integrator {
         model_(model),
         plain_model_(convert<double>(model)),
         equations_(model_, coupling),
-        plain_(plain_model_, coupling, equations_.parts()) {}
+        plain_(plain_model_, coupling, equations_.parts()),
+        step_(longest_step()) {}
 
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
@@ -87,11 +93,8 @@ class Integrator {
     input_.target = {T(target.velocity), T(target.position)};
     copy_plain_input();
     slope_ = slope;
+    slopes_ = {slope.velocity, slope.position};
     here_.reset();
-    if (equations_.coupling().active()) {
-      target_rate_ = equations_.rate_of_target(mode_, slope_);
-      plain_target_rate_ = plain_.rate_of_target(mode_, slope_);
-    }
   }
 
   /// Goes on to the instant `end` (s), not before the present time.
@@ -114,32 +117,35 @@ class Integrator {
   long steps() const { return steps_; }
 
  private:
-  /// Everything that one linear system needs, in T and on plain values.
-  struct Flow {
+  /// What modes of one matrix share, in T and on plain values.
+  struct System {
+    Matrix<double> a;
     Propagator<T> exact;
     Propagator<double> plain;
-    double oscillation;  ///< rad/s, the fastest of the mode
-    int longest;         ///< level of the longest step that shows it
+    std::vector<Oscillation> oscillations;
+  };
+  /// Everything that one mode needs.
+  struct Flow {
+    System& system;
+    Driven<State<T>> exact;
+    Driven<State<double>> plain;
+    std::optional<LinearGuards> guards;
   };
 
   struct Hit {
     Guard guard;
-    double delay;  ///< s after the start of the trial step
+    double delay;  ///< s after the start of the trial step; before it by rounding, at most
   };
 
   template <class S>
   struct View {  // one of the two scalar types
     const Equations<S>& equations;
-    const Propagator<S>& propagator;
+    Propagator<S>& propagator;
+    const Driven<State<S>>& driven;
     const Input<S>& input;
-    const State<S>* target_rate;  // null when uncoupled
   };
-  View<T> exact() const {
-    return {equations_, flow_->exact, input_, coupled() ? &target_rate_ : nullptr};
-  }
-  View<double> plain() const {
-    return {plain_, flow_->plain, plain_input_, coupled() ? &plain_target_rate_ : nullptr};
-  }
+  View<T> exact() const { return {equations_, flow_->system.exact, flow_->exact, input_}; }
+  View<double> plain() const { return {plain_, flow_->system.plain, flow_->plain, plain_input_}; }
 
   State<double> plain_state() const {
     State<double> y;
@@ -147,6 +153,7 @@ class Integrator {
     return y;
   }
   bool coupled() const { return equations_.coupling().active(); }
+  const Ladder& ladder() const { return flow_->system.plain.ladder(); }
 
   void copy_plain_input() {
     plain_input_ = {value_of(input_.command),
@@ -162,25 +169,69 @@ class Integrator {
     return input;
   }
 
+  /// Readings that fall on steps are cheapest; Runge-Kutta steps are bounded besides.
+  double longest_step() const {
+    if (!(options_.interval > 0.0)) return options_.step;
+    if (!equations_.has_smooth_forces()) return options_.interval;
+    return options_.interval / std::ceil(options_.interval / options_.step - 1e-9);
+  }
+
+  /// rad/s. The fastest oscillation that guards may show. Where nothing but switches sets any off,
+  /// one is forgotten when it has died away to what a cubic does not follow either.
+  double oscillation() const {
+    constexpr double kForgotten = 9.0;  // e^-9 = 1e-4
+    const bool at_rest = !coupled() && !equations_.has_smooth_forces();
+    const double since = at_rest ? value_of(input_.time) - switched_ : 0.0;
+    for (const Oscillation& o : flow_->system.oscillations)
+      if (o.damping * since < kForgotten) return o.frequency;
+    return 0.0;
+  }
+  /// Level of the longest step that shows it: one radian to either side of the middle, where guards
+  /// are looked at too.
+  int longest() const {
+    const double radians = oscillation() * step_;
+    if (radians <= 2.0) return 0;
+    return std::min(static_cast<int>(std::ceil(std::log2(radians / 2.0))), ladder().last);
+  }
+
   void switch_mode(const Mode& mode);
-  const Flow& flow_of(const Mode& mode);
+  System& system_of(const Mode& mode);
+  Flow& flow_of(const Mode& mode);
+
+  /// f(y), with smooth forces.
+  template <class S>
+  State<S> rate(const View<S>& view, const State<S>& y) const {
+    // Values by the equations, which rounds least; with derivatives the matrix is cheaper.
+    if constexpr (std::is_same_v<S, double>) return view.equations.rate(mode_, y, view.input);
+    State<S> f = view.propagator.a_times(y);
+    const auto add = [&](const S& factor, const State<S>& x) {
+      for (std::size_t i = 0; i < equations_.states(); ++i) f[i] += factor * x[i];
+    };
+    for (std::size_t i = 0; i < equations_.states(); ++i) f[i] += view.driven[kByConstants][i];
+    add(view.input.command, view.driven[kByCommand]);
+    if (coupled()) {
+      add(view.input.target.velocity, view.driven[kByTargetVelocity]);
+      add(view.input.target.position, view.driven[kByTargetPosition]);
+    }
+    if (view.equations.has_smooth_forces()) {
+      const State<S> smooth = view.equations.smooth_rate(mode_, y, view.input);
+      for (std::size_t i = 0; i < kStates; ++i) f[i] += smooth[i];
+    }
+    return f;
+  }
+  /// Of the coupling's target, in the order of the propagator's ramps.
+  std::span<const double> slopes() const {
+    return coupled() ? std::span<const double>(slopes_) : std::span<const double>();
+  }
 
   template <class S>
   State<S> step(const View<S>& view, const State<S>& y, int level) const;
   template <class S>
   State<S> step_by(const View<S>& view, const State<S>& y, double length) const {
-    return view.propagator.advance_by(y, view.equations.rate(mode_, y, view.input),
-                                      view.target_rate, length);
+    return view.propagator.advance_by(y, rate(view, y), slopes(), length);
   }
 
-  /// Values, rates and tolerances of all guards of the mode at one instant.
-  struct Look {
-    struct Node {
-      double value, rate, tolerance;
-    };
-    std::array<Node, 8> nodes;
-    std::size_t count = 0;
-  };
+  /// With tolerances.
   Look look(const View<double>& view, const State<double>& y) const {
     Look seen;
     visit_guards_and_rates(view, y, [&](Guard, double g, double rate, double scale) {
@@ -202,7 +253,7 @@ class Integrator {
   template <class S, class Visitor>
   void visit_guards_and_rates(const View<S>& view, const State<S>& y, Visitor&& visit) const {
     const State<S> f = view.equations.rate(mode_, y, view.input);
-    std::array<std::pair<S, S>, 8> values;
+    std::array<std::pair<S, S>, kGuards> values;
     std::size_t n = 0;
     view.equations.visit_guards(mode_, y, view.input,
                                 [&](Guard, const S& g, double) { values[n++].first = g; });
@@ -223,16 +274,18 @@ class Integrator {
   const Model<double> plain_model_;
   const Equations<T> equations_;
   const Equations<double> plain_;
-  std::map<int, std::unique_ptr<Flow>> flows_;
+  const double step_;      // s, at level 0
+  double switched_ = 0.0;  // s, time of the latest switch
+  std::map<int, System> systems_;
+  std::map<int, Flow> flows_;
 
   State<T> y_{};
   Mode mode_;
   Input<T> input_;
   Input<double> plain_input_;
   Target slope_;
-  State<T> target_rate_{};
-  State<double> plain_target_rate_{};
-  const Flow* flow_ = nullptr;
+  std::array<double, 2> slopes_{};  // the same
+  Flow* flow_ = nullptr;
   int level_ = 0;  // of the longest step now allowed; falls to 0 as steps grow after an event
   std::optional<Look> here_;  // the guards at the present state, while they are known
   int events_ = 0;
@@ -246,56 +299,58 @@ void Integrator<T>::switch_mode(const Mode& mode) {
   mode_ = mode;
   here_.reset();
   flow_ = &flow_of(mode);
-  level_ = flow_->exact.ladder().resolved;  // a switch may set off the fastest motions
-  if (coupled()) {
-    target_rate_ = equations_.rate_of_target(mode_, slope_);
-    plain_target_rate_ = plain_.rate_of_target(mode_, slope_);
-  }
+  level_ = ladder().resolved;  // a switch may set off the fastest motions
+  switched_ = value_of(input_.time);
 }
 
 template <class T>
-const typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
+typename Integrator<T>::System& Integrator<T>::system_of(const Mode& mode) {
   // The sign of a limit changes constants, not the matrix; those of contact, motion and load change
   // it where friction depends on them.
   const int contact = mode.contact == 0 ? 0 : equations_.signs_matter() ? mode.contact : 1;
   const int sliding = mode.sliding == 0 ? 0 : equations_.signs_matter() ? mode.sliding : 1;
   const int key = (mode.v_c != 0) | (mode.v_m != 0) << 1 | (contact + 1) << 2 | (sliding + 1) << 4 |
                   (mode.load + 1) << 6;
-  std::unique_ptr<Flow>& flow = flows_[key];
-  if (flow == nullptr) {
-    Matrix<T> a;
-    const Input<T> none{};
-    const State<T> origin{};
-    const State<T> offset = equations_.rate(mode, origin, none, Terms::affine);
-    for (std::size_t j = 0; j < kStates; ++j) {
-      State<T> unit{};
-      unit[j] = T(1.0);
-      const State<T> column = equations_.rate(mode, unit, none, Terms::affine);
-      for (std::size_t i = 0; i < kStates; ++i) a[i][j] = column[i] - offset[i];
-    }
-    // Below the shortest length smooth forces are frozen, and events are not told apart: even where
-    // nothing is stiff it has to be short.
-    constexpr int kLeastHalvings = 12;
-    const Ladder ladder = ladder_for(a, options_.step, kLeastHalvings);
-    // One radian to either side of the middle of a step, where guards are looked at too.
-    const double oscillation = fastest_oscillation(axisfit::value_of(a));
-    const double radians = oscillation * options_.step;
-    const int longest = std::clamp(
-        static_cast<int>(std::ceil(std::log2(std::max(1e-9, radians / 2.0)))), 0, ladder.last);
-    const std::size_t n = equations_.states();
-    flow = std::make_unique<Flow>(
-        Flow{Propagator<T>(a, ladder, coupled(), n),
-             Propagator<double>(axisfit::value_of(a), ladder, coupled(), n), oscillation, longest});
-  }
-  return *flow;
+  if (const auto found = systems_.find(key); found != systems_.end()) return found->second;
+  const Matrix<T> a = matrix_of(equations_, mode);
+  // Below the shortest length smooth forces are frozen, and events are not told apart: even where
+  // nothing is stiff it has to be short.
+  const double shortest = std::ldexp(options_.step, -12);
+  const Matrix<double> plain = axisfit::value_of(a);
+  const Ladder ladder =
+      ladder_for(a, step_, std::max(0, static_cast<int>(std::ceil(std::log2(step_ / shortest)))));
+  const std::size_t n = equations_.states();
+  const auto ramps = [&]<class S>(const Equations<S>& equations) -> std::vector<State<S>> {
+    if (!coupled()) return {};
+    const Driven<State<S>> b = driven_by(equations, mode);
+    return {b[kByTargetVelocity], b[kByTargetPosition]};
+  };
+  return systems_
+      .emplace(key,
+               System{plain, Propagator<T>(a, ladder, ramps(equations_), n),
+                      Propagator<double>(plain, ladder, ramps(plain_), n), oscillations(plain)})
+      .first->second;
+}
+
+template <class T>
+typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
+  const int key = (mode.contact + 1) | (mode.v_c + 1) << 2 | (mode.v_m + 1) << 4 |
+                  (mode.sliding + 1) << 6 | (mode.load + 1) << 8 | mode.doublet << 10;
+  if (const auto found = flows_.find(key); found != flows_.end()) return found->second;
+  System& system = system_of(mode);
+  const Driven<State<double>> plain = driven_by(plain_, mode);
+  std::optional<LinearGuards> guards;
+  if (!equations_.has_smooth_forces()) guards.emplace(plain_, mode, system.a, plain);
+  return flows_.emplace(key, Flow{system, driven_by(equations_, mode), plain, std::move(guards)})
+      .first->second;
 }
 
 template <class T>
 template <class S>
 State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, int level) const {
-  const Propagator<S>& p = view.propagator;
-  const State<S> f = view.equations.rate(mode_, y, view.input);
-  const State<S> end = p.advance(y, f, view.target_rate, level);
+  Propagator<S>& p = view.propagator;
+  const State<S> f = rate(view, y);
+  const State<S> end = p.advance(y, f, slopes(), level);
   if (!view.equations.has_smooth_forces() || level == p.ladder().last) return end;
   // Classical Runge-Kutta for n(y) = N(y) - N(y at the start) in the frame that moves with the
   // affine flow.
@@ -310,11 +365,11 @@ State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, int level) 
     for (std::size_t i = 0; i < kStates; ++i) a[i] += factor * b[i];
     return a;
   };
-  const State<S> middle = p.advance(y, f, view.target_rate, level + 1);
+  const State<S> middle = p.advance(y, f, slopes(), level + 1);
   const State<S> k2 = n(middle, 0.5 * h);  // k1 = 0
   // Behind an event steps are so short that the midpoint rule is as good.
   constexpr int kShort = 4;
-  if (level >= flow_->longest + kShort) return plus(end, h, p.exponential(k2, level + 1));
+  if (level >= longest() + kShort) return plus(end, h, p.exponential(k2, level + 1));
   const State<S> k3 = n(plus(middle, 0.5 * h, k2), 0.5 * h);
   const State<S> k4 = n(plus(end, h, p.exponential(k3, level + 1)), h);
   const State<S> inner = p.exponential(plus(k2, 1.0, k3), level + 1);
@@ -324,7 +379,7 @@ State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, int level) 
 template <class T>
 bool Integrator<T>::met_between(const Look& start, const Look* middle, const Look& end,
                                 double length) {
-  using Node = typename Look::Node;
+  using Node = Look::Node;
   // Whether the cubic through values and rates dips below the margin between its ends.
   const auto dips = [](const Node& p, const Node& q, double h, double margin) {
     if (!(p.rate < 0.0 && q.rate > 0.0) || p.value <= 0.0) return false;
@@ -358,36 +413,50 @@ bool Integrator<T>::met_between(const Look& start, const Look* middle, const Loo
 template <class T>
 bool Integrator<T>::meets_guard(const State<double>& from, int level, double length,
                                 State<double>& to) {
-  const Ladder& ladder = flow_->plain.ladder();
   const View<double> now = plain();
-  if (!here_) here_ = look(now, from);
-  Look start = *here_;
-  const bool by_series = level > ladder.last;
-  const int fine = by_series ? level : std::max(level, flow_->longest);
+  const LinearGuards* guards = flow_->guards ? &*flow_->guards : nullptr;
+  const bool by_series = level > ladder().last;
+  const int fine = by_series ? level : std::max(level, longest());
   const long pieces = by_series ? 1 : 1L << (fine - level);
   const double piece = length / static_cast<double>(pieces);
   Input<double> input = now.input;
-  const View<double> view{now.equations, now.propagator, input, now.target_rate};
-  const auto move = [&](double t) { input = moved(input, t); };
+  const View<double> view{now.equations, now.propagator, now.driven, input};
   // A cubic does without the middle where the fastest oscillation turns by less than this.
   constexpr double kSmooth = 0.5;  // rad
-  const bool halved = !by_series && fine < ladder.last && flow_->oscillation * piece > kSmooth;
+  const bool halved = !by_series && fine < ladder().last && oscillation() * piece > kSmooth;
+  const auto see = [&](const State<double>& y) {
+    return guards != nullptr ? guards->look(y, input, slope_) : look(view, y);
+  };
+  if (!here_) here_ = see(from);
+  Look start = *here_;
   to = from;
   for (long i = 0; i < pieces && steps_ <= options_.step_budget; ++i) {
     ++steps_;  // also one that meets a guard: a search without end has to end
+    const State<double> begin = to;
+    const Input<double> at_begin = input;
     State<double> middle;
-    if (halved) middle = step(view, to, fine + 1);
-    to = by_series ? step_by(view, to, piece) : step(view, to, fine);
+    if (halved) middle = step(view, begin, fine + 1);
+    to = by_series ? step_by(view, begin, piece) : step(view, begin, fine);
     for (const double x : to)
       if (!std::isfinite(x)) return false;
-    Look half;
-    if (halved) {
-      move(0.5 * piece);
-      half = look(view, middle);
+    Look end;
+    const auto met = [&](const Look& first, auto&& seen) {
+      Look half;
+      if (halved) {
+        input = moved(at_begin, 0.5 * piece);
+        half = seen(middle);
+      }
+      input = moved(at_begin, piece);
+      end = seen(to);
+      return met_between(first, halved ? &half : nullptr, end, piece);
+    };
+    if (met(start, see)) {
+      if (guards == nullptr) return true;
+      // Nearly, at least: it may be within the tolerances.
+      const auto closely = [&](const State<double>& y) { return look(view, y); };
+      input = at_begin;
+      if (met(closely(begin), closely)) return true;
     }
-    move(halved ? 0.5 * piece : piece);
-    const Look end = look(view, to);
-    if (met_between(start, halved ? &half : nullptr, end, piece)) return true;
     start = end;
   }
   here_ = start;
@@ -403,12 +472,12 @@ std::optional<typename Integrator<T>::Hit> Integrator<T>::locate(const State<dou
   view.equations.visit_guards(
       mode_, to, moved(view.input, length), [&](Guard guard, double g, double scale) {
         if (g >= -1e-12 * scale) return;
-        double low = 0.0, high = length, t = 0.0;
+        double low = 0.0, high = length, t = 0.0, newton = 0.0;
         for (int i = 0; i < 60 && high - low > 1e-15 * length; ++i) {
           const Input<double> input = moved(view.input, t);
           const State<double> y = t > 0.0 ? step_by(view, from, t) : from;
           double value = 0.0, rate = 0.0;
-          visit_guards_and_rates({view.equations, view.propagator, input, view.target_rate}, y,
+          visit_guards_and_rates({view.equations, view.propagator, view.driven, input}, y,
                                  [&](Guard other, double g_t, double rate_t, double) {
                                    if (other == guard) value = g_t, rate = rate_t;
                                  });
@@ -418,13 +487,14 @@ std::optional<typename Integrator<T>::Hit> Integrator<T>::locate(const State<dou
             high = t;
           else
             low = t;
+          newton = t - value / rate;
           if (high <= 0.0 || (value == 0.0 && t > 0.0)) break;
-          const double newton = t - value / rate;
           const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
           if (next == t) break;
           t = next;
         }
-        const double delay = high <= 0.0 ? 0.0 : t;
+        // It may have been passed by less than the tolerance: back then.
+        const double delay = high > 0.0 ? t : newton < 0.0 && newton > -length ? newton : 0.0;
         if (!first || delay < first->delay) first = Hit{guard, delay};
       });
   return first;
@@ -438,7 +508,7 @@ void Integrator<T>::move_time(double length) {
 
 template <class T>
 void Integrator<T>::pass_event(const Hit& hit) {
-  if (hit.delay > 0.0) y_ = step_by(exact(), y_, hit.delay);
+  if (hit.delay != 0.0) y_ = step_by(exact(), y_, hit.delay);
   move_time(hit.delay);
   // One Newton step on the guard in T. Its value is rounding; its derivatives are those of the
   // event time.
@@ -455,13 +525,13 @@ void Integrator<T>::pass_event(const Hit& hit) {
   const Mode next = equations_.cross(mode_, hit.guard, y_, input_);
   copy_plain_input();
   switch_mode(next);
-  level_ = flow_->exact.ladder().last;  // another event may follow closely
+  level_ = ladder().last;  // another event may follow closely
 }
 
 template <class T>
 bool Integrator<T>::advance_to(const T& end) {
   const double last = value_of(end);
-  const double negligible = 1e-9 * options_.step;
+  const double negligible = 1e-9 * step_;
   // As a floating-point number: an interval of days has more than an int can count.
   const double event_limit =
       events_ +
@@ -470,7 +540,7 @@ bool Integrator<T>::advance_to(const T& end) {
   while (true) {
     const double remaining = last - value_of(input_.time);
     if (!(remaining > negligible)) break;
-    const Ladder& ladder = flow_->exact.ladder();
+    const Ladder& ladder = this->ladder();
     int level = std::max(level_, search);
     // The last piece of an interval, of whatever length, is for the series, where that holds.
     const bool piece = ladder.length(level) > remaining + negligible && search == 0 &&
@@ -490,7 +560,7 @@ bool Integrator<T>::advance_to(const T& end) {
       return false;
     if (met) {
       if (!shortest) {
-        search = piece ? level : std::max(level, flow_->longest - 1) + 1;
+        search = piece ? level : std::max(level, longest() - 1) + 1;
         continue;
       }
       if (const std::optional<Hit> hit = locate(from, to, length)) {
@@ -509,14 +579,18 @@ bool Integrator<T>::advance_to(const T& end) {
       y_ = by_series ? step_by(exact(), y_, length) : step(exact(), y_, level);
     move_time(length);
     // Pieces are as exact as the whole only where there is nothing but the affine part.
-    level_ = std::max(equations_.has_smooth_forces() ? flow_->longest : 0, level_ - 1);
+    level_ = std::max(equations_.has_smooth_forces() ? longest() : 0, level_ - 1);
     if (search > 0 && ++search > ladder.last + 1) search = 0;
   }
-  // What is left is rounding, and the derivatives of the two instants.
+  // What is left is the derivatives of the two instants, and rounding.
   const T rest = end - input_.time;
-  const State<T> f = equations_.rate(mode_, y_, input_);
-  for (std::size_t i = 0; i < kStates; ++i) y_[i] += f[i] * rest;
-  input_ = moved(input_, rest);
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::abs(last);
+  if (ScalarTraits<T>::has_derivative(rest) || std::abs(value_of(rest)) > rounding) {
+    const State<T> f = equations_.rate(mode_, y_, input_);
+    for (std::size_t i = 0; i < kStates; ++i) y_[i] += f[i] * rest;
+    input_ = moved(input_, rest);
+    here_.reset();
+  }
   input_.time = end;
   return true;
 }

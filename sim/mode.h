@@ -1,6 +1,7 @@
 // The discrete modes of the axis. Within one mode the paper's equations are linear.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace axisfit {
@@ -23,6 +24,9 @@ struct ModeChange {
   double time = 0.0;
   Mode mode;
 };
+
+/// The most guards that one mode has.
+inline constexpr std::size_t kGuards = 8;
 
 /// The surfaces on which the mode changes. A guard is positive inside the mode.
 enum class Guard : std::uint8_t {

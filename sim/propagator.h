@@ -5,16 +5,18 @@
 //
 //   y(t + h) = y + Psi(h) f(y) + Xi(h) s        (exact)
 //
-// however stiff A is. Psi and Xi come from their Taylor series at the shortest length and from
-// doubling: with E = exp(hA) - I, E(2h) = 2E + E E, Psi(2h) = 2 Psi + E Psi and Xi(2h) = 2 Xi + E
-// Xi
-// + h Psi. (E = A Psi, but that product cancels badly when A is stiff.) All lengths of the doubling
-// are kept: they are what the location of events needs, see integrator.h.
+// however stiff A is, and without error where f is zero. Psi and Xi come from their Taylor series
+// at the shortest length and from doubling: with E = exp(hA) - I, E(2h) = 2E + E E,
+// Psi(2h) = 2 Psi + E Psi and Xi(2h) = 2 Xi + E Xi + h Psi. (E = A Psi, but that product cancels
+// badly when A is stiff.) The slope s is a sum of few given vectors r, ramps, so that Xi is only
+// needed times these. The lengths are made when they are asked for; all of them are kept: they are
+// what the location of events needs, see integrator.h.
 // Literature: N. J. Higham, Functions of Matrices, SIAM 2008, chapter 10.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "sim/axis.h"
@@ -47,29 +49,44 @@ inline double norm(const Matrix<double>& a) {
   return largest;
 }
 
-/// The largest angular frequency among the eigenvalues of a matrix, rad/s.
-double fastest_oscillation(const Matrix<double>& a);
+/// An oscillation of a linear system: a pair of complex eigenvalues, or a real one at frequency 0.
+struct Oscillation {
+  double frequency;  ///< rad/s
+  double damping;    ///< 1/s, the rate of its decay; negative: it grows
+};
+
+/// Those of y' = A y, the fastest first; at least one.
+std::vector<Oscillation> oscillations(const Matrix<double>& a);
 
 /// A matrix without its zeros. The structure of the axis leaves many.
 template <class T>
 class SparseMatrix {
  public:
   explicit SparseMatrix(const Matrix<T>& dense) {
-    for (std::size_t i = 0; i < kStates; ++i)
-      for (std::size_t j = 0; j < kStates; ++j)
-        if (is_in_play(dense[i][j])) entries_.push_back({i, j, dense[i][j]});
+    for (std::size_t i = 0; i < kStates; ++i) {
+      for (std::size_t j = 0; j < kStates; ++j) {
+        if (!is_in_play(dense[i][j])) continue;
+        columns_.push_back(j);
+        values_.push_back(dense[i][j]);
+      }
+      ends_[i] = values_.size();
+    }
   }
   /// y += A x
   void add_product(const State<T>& x, State<T>& y) const {
-    for (const Entry& entry : entries_) y[entry.row] += entry.value * x[entry.column];
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < kStates; ++i) {
+      if (k == ends_[i]) continue;
+      T sum = y[i];
+      for (; k < ends_[i]; ++k) sum += values_[k] * x[columns_[k]];
+      y[i] = sum;
+    }
   }
 
  private:
-  struct Entry {
-    std::size_t row, column;
-    T value;
-  };
-  std::vector<Entry> entries_;
+  std::array<std::size_t, kStates> ends_{};  // by row
+  std::vector<std::size_t> columns_;
+  std::vector<T> values_;
 };
 
 /// The same matrix without derivatives.
@@ -117,95 +134,127 @@ Ladder ladder_for(const Matrix<T>& a, double step, int least) {
 /// Terms of the series: (1/4)^13 / 13! is far below rounding.
 inline constexpr int kSeriesTerms = 12;
 
+/// Not to be used by two threads at once.
 template <class T>
 class Propagator {
  public:
-  /// `a` = df/dy, of which the first n states are in use. With `with_slope`, Xi is prepared too.
-  Propagator(const Matrix<T>& a, const Ladder& ladder, bool with_slope, std::size_t n = kStates)
-      : states_(n), a_(a), ladder_(ladder) {
+  /// `a` = df/dy, of which the first n states are in use. `ramps`: the vectors r of s.
+  Propagator(const Matrix<T>& a, const Ladder& ladder, std::vector<State<T>> ramps = {},
+             std::size_t n = kStates)
+      : states_(n), ladder_(ladder), a_(a), ramps_(std::move(ramps)) {
     const double h = ladder.length(ladder.last);
-    // Psi = h (I + hA/2 + (hA)^2/6 + ...), Xi = h^2 (I/2 + hA/6 + ...)
-    Matrix<T> psi = scaled_identity(h), xi = scaled_identity(0.5 * h * h), term = psi;
+    // Psi = h (I + hA/2 + (hA)^2/6 + ...)
+    Matrix<T> psi{}, term{};
+    for (std::size_t i = 0; i < n; ++i) psi[i][i] = term[i][i] = T(h);
     for (int k = 2; k <= kSeriesTerms; ++k) {
       term = product(a, term, n);
-      for (State<T>& row : term)
-        for (T& x : row) x *= h / k;
-      add(psi, 1.0, term);
-      add(xi, h / (k + 1), term);
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) psi[i][j] += term[i][j] *= h / k;
     }
-    Matrix<T> e = product(a, psi, n);
-    for (int level = ladder.last;; --level) {
-      psi_.emplace_back(psi);
-      if (with_slope) xi_.emplace_back(xi);
-      if (level == 0) break;
-      if (with_slope) {
-        grow(xi, e);
-        add(xi, ladder.length(level), psi);
+    e_ = product(a, psi, n);
+    // Xi r = h^2 (I/2 + hA/6 + ...) r
+    std::vector<State<T>> xi;
+    for (const State<T>& ramp : ramps_) {
+      State<T> sum{}, next = ramp;
+      double factor = 0.5 * h * h;
+      for (int k = 3; k <= kSeriesTerms + 2; ++k) {
+        add(sum, factor, next);
+        next = a_times(next);
+        factor *= h / k;
       }
-      grow(psi, e);
-      grow(e, e);
+      xi.push_back(sum);
     }
-    std::ranges::reverse(psi_);
-    std::ranges::reverse(xi_);
+    push(psi, std::move(xi));
   }
 
   const Ladder& ladder() const { return ladder_; }
 
-  /// y(t + h / 2^level), from f = f(y(t)) and, unless null, the slope s of f in time.
-  State<T> advance(const State<T>& y, const State<T>& f, const State<T>* slope, int level) const {
+  /// A y
+  State<T> a_times(const State<T>& y) const {
+    State<T> image{};
+    a_.add_product(y, image);
+    return image;
+  }
+
+  /// y(t + h / 2^level), from f = f(y(t)) and, per ramp, its factor in s.
+  State<T> advance(const State<T>& y, const State<T>& f, std::span<const double> slopes,
+                   int level) {
+    const Length& length = at(level);
     State<T> next = y;
-    psi_[static_cast<std::size_t>(level)].add_product(f, next);
-    if (slope != nullptr) xi_[static_cast<std::size_t>(level)].add_product(*slope, next);
+    length.psi.add_product(f, next);
+    for (std::size_t r = 0; r < slopes.size(); ++r) add(next, slopes[r], length.xi[r]);
     return next;
   }
 
   /// y(t + length) by the series, 0 <= length <= h / 2^last.
-  State<T> advance_by(const State<T>& y, const State<T>& f, const State<T>* slope,
+  State<T> advance_by(const State<T>& y, const State<T>& f, std::span<const double> slopes,
                       double length) const {
     State<T> next = y, derivative = f;
     double factor = length;  // length^n / n!
     for (int n = 1; n <= kSeriesTerms; ++n) {
-      for (std::size_t i = 0; i < kStates; ++i) next[i] += factor * derivative[i];
-      State<T> higher{};
-      if (n == 1 && slope != nullptr) higher = *slope;
-      a_.add_product(derivative, higher);
-      derivative = higher;
+      add(next, factor, derivative);
+      derivative = a_times(derivative);
+      if (n == 1)
+        for (std::size_t r = 0; r < slopes.size(); ++r) add(derivative, slopes[r], ramps_[r]);
       factor *= length / (n + 1);
     }
     return next;
   }
 
   /// exp(A h / 2^level) v
-  State<T> exponential(const State<T>& v, int level) const {
-    State<T> image{};
-    a_.add_product(v, image);
-    State<T> next = v;
-    psi_[static_cast<std::size_t>(level)].add_product(image, next);
-    return next;
-  }
+  State<T> exponential(const State<T>& v, int level) { return advance(v, a_times(v), {}, level); }
 
  private:
-  /// m += factor * other
-  void add(Matrix<T>& m, double factor, const Matrix<T>& other) const {
+  struct Length {
+    SparseMatrix<T> psi;
+    std::vector<State<T>> xi;  // times each ramp
+  };
+
+  const Length& at(int level) {
+    while (ladder_.last - level >= static_cast<int>(lengths_.size())) double_length();
+    return lengths_[static_cast<std::size_t>(ladder_.last - level)];
+  }
+
+  void double_length() {
+    const Length& half = lengths_.back();
+    const double h = ladder_.length(ladder_.last - static_cast<int>(lengths_.size()) + 1);
+    const SparseMatrix<T> e(e_);
+    std::vector<State<T>> xi = half.xi;
+    for (std::size_t r = 0; r < xi.size(); ++r) {
+      add(xi[r], 1.0, half.xi[r]);
+      e.add_product(half.xi[r], xi[r]);
+      State<T> psi{};
+      half.psi.add_product(ramps_[r], psi);
+      add(xi[r], h, psi);
+    }
+    const Matrix<T> psi = grown(psi_);
+    e_ = grown(e_);
+    push(psi, std::move(xi));
+  }
+
+  void push(const Matrix<T>& psi, std::vector<State<T>> xi) {
+    psi_ = psi;
+    lengths_.push_back({SparseMatrix<T>(psi), std::move(xi)});
+  }
+
+  /// 2 m + E m
+  Matrix<T> grown(const Matrix<T>& m) const {
+    Matrix<T> sum = product(e_, m, states_);
     for (std::size_t i = 0; i < states_; ++i)
-      for (std::size_t j = 0; j < states_; ++j) m[i][j] += factor * other[i][j];
+      for (std::size_t j = 0; j < states_; ++j) sum[i][j] += 2.0 * m[i][j];
+    return sum;
   }
-  /// m := 2 m + e m
-  void grow(Matrix<T>& m, const Matrix<T>& e) const {
-    const Matrix<T> image = product(e, m, states_);
-    add(m, 1.0, m);
-    add(m, 1.0, image);
-  }
-  Matrix<T> scaled_identity(double scale) const {
-    Matrix<T> m{};
-    for (std::size_t i = 0; i < states_; ++i) m[i][i] = T(scale);
-    return m;
+
+  static void add(State<T>& y, double factor, const State<T>& x) {
+    for (std::size_t i = 0; i < kStates; ++i) y[i] += factor * x[i];
   }
 
   std::size_t states_;
-  SparseMatrix<T> a_;
   Ladder ladder_;
-  std::vector<SparseMatrix<T>> psi_, xi_;  // by level
+  SparseMatrix<T> a_;
+  std::vector<State<T>> ramps_;
+  Matrix<T> e_, psi_;            // of the longest length so far
+  std::vector<Length> lengths_;  // from the shortest up
 };
 
 }  // namespace axisfit

@@ -10,8 +10,8 @@
 
 namespace axisfit {
 
-/// What a coupled simulation is held to: measured values at the instants of the simulation, those of
-/// a curve as target_corners(). A series that the coupling does not use may be empty.
+/// What a coupled simulation is held to: measured values at the instants of the simulation, those
+/// of a curve as target_corners(). A series that the coupling does not use may be empty.
 struct Measured {
   std::span<const double> velocity;  ///< m/s
   std::span<const double> position;  ///< m
@@ -55,7 +55,10 @@ SimulationOutcome simulate(const Model<T>& model, const Schedule& command,
                            const Coupling& coupling = {}, const Measured& measured = {},
                            const IntegratorOptions& options = {}) {
   SimulationOutcome outcome;
-  Integrator<T> axis(model, coupling, options);
+  IntegratorOptions even = options;
+  if (times.size() > 1)
+    even.interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  Integrator<T> axis(model, coupling, even);
   std::size_t next = 0;
   T in_force(0.0);
   const T delay = axis.command_delay();

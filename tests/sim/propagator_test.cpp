@@ -42,11 +42,19 @@ State<T> unit(std::size_t j) {
   return e;
 }
 
+/// One ramp for every state.
+template <class T>
+std::vector<State<T>> all_ramps() {
+  std::vector<State<T>> ramps;
+  for (std::size_t j = 0; j < kStates; ++j) ramps.push_back(unit<T>(j));
+  return ramps;
+}
+
 /// Largest errors of the columns of exp, Psi and Xi at a level, by the largest entry of each
 /// matrix.
 void expect_exact(const Matrix<double>& a, double step, int least, double tolerance) {
   const Ladder ladder = ladder_for(a, step, least);
-  const Propagator<double> propagator(a, ladder, true);
+  Propagator<double> propagator(a, ladder, all_ramps<double>());
   const State<double> zero{};
   const auto close = [&](const char* what, int level, std::size_t j, const State<double>& column,
                          const Long& truth) {
@@ -61,8 +69,8 @@ void expect_exact(const Matrix<double>& a, double step, int least, double tolera
     const Exact truth = exact(a, ladder.length(level));
     for (std::size_t j = 0; j < kStates; ++j) {
       const State<double> e = unit<double>(j);
-      close("Psi", level, j, propagator.advance(zero, e, nullptr, level), truth.psi);
-      close("Xi", level, j, propagator.advance(zero, zero, &e, level), truth.xi);
+      close("Psi", level, j, propagator.advance(zero, e, zero, level), truth.psi);
+      close("Xi", level, j, propagator.advance(zero, zero, e, level), truth.xi);
       close("exp", level, j, propagator.exponential(e, level), truth.exponential);
     }
   }
@@ -70,8 +78,8 @@ void expect_exact(const Matrix<double>& a, double step, int least, double tolera
   const Exact truth = exact(a, shorter);
   for (std::size_t j = 0; j < kStates; ++j) {
     const State<double> e = unit<double>(j);
-    close("Psi, series", -1, j, propagator.advance_by(zero, e, nullptr, shorter), truth.psi);
-    close("Xi, series", -1, j, propagator.advance_by(zero, zero, &e, shorter), truth.xi);
+    close("Psi, series", -1, j, propagator.advance_by(zero, e, zero, shorter), truth.psi);
+    close("Xi, series", -1, j, propagator.advance_by(zero, zero, e, shorter), truth.xi);
   }
 }
 
@@ -80,14 +88,14 @@ TEST(Propagator, OfADecayHasItsClosedForm) {
     Matrix<double> a{};
     a[2][2] = -rate;
     constexpr double h = 0.5e-3;
-    const Propagator<double> propagator(a, ladder_for(a, h, 0), true);
+    Propagator<double> propagator(a, ladder_for(a, h, 0), all_ramps<double>());
     const State<double> zero{}, e = unit<double>(2);
     const double z = -rate * h;
     // phi_2 by its series where the closed form cancels.
     const double phi2 = rate * h < 1e-2 ? 0.5 + z / 6.0 + z * z / 24.0 + z * z * z / 120.0
                                         : (std::expm1(z) - z) / (z * z);
-    EXPECT_NEAR(propagator.advance(zero, e, nullptr, 0)[2] / (-std::expm1(z) / rate), 1.0, 1e-13);
-    EXPECT_NEAR(propagator.advance(zero, zero, &e, 0)[2] / (h * h * phi2), 1.0, 1e-11);
+    EXPECT_NEAR(propagator.advance(zero, e, zero, 0)[2] / (-std::expm1(z) / rate), 1.0, 1e-13);
+    EXPECT_NEAR(propagator.advance(zero, zero, e, 0)[2] / (h * h * phi2), 1.0, 1e-11);
   }
 }
 
@@ -97,12 +105,12 @@ TEST(Propagator, OfAnOscillatorHasItsClosedForm) {
     a[0][1] = 1.0;
     a[1][0] = -w * w;
     constexpr double h = 0.5e-3;
-    const Propagator<double> propagator(a, ladder_for(a, h, 0), true);
+    Propagator<double> propagator(a, ladder_for(a, h, 0), all_ramps<double>());
     const State<double> zero{}, e = unit<double>(1);
-    const State<double> psi = propagator.advance(zero, e, nullptr, 0);
+    const State<double> psi = propagator.advance(zero, e, zero, 0);
     EXPECT_NEAR(psi[0], (1.0 - std::cos(w * h)) / (w * w), 1e-12 * h / w);
     EXPECT_NEAR(psi[1], std::sin(w * h) / w, 1e-12 / w);
-    const State<double> xi = propagator.advance(zero, zero, &e, 0);
+    const State<double> xi = propagator.advance(zero, zero, e, 0);
     EXPECT_NEAR(xi[1], (1.0 - std::cos(w * h)) / (w * w), 1e-12 * h / w);
   }
 }
@@ -112,10 +120,10 @@ TEST(Propagator, OfANilpotentMatrixIsAPolynomial) {
   for (std::size_t i = 0; i + 1 < kStates; ++i) a[i][i + 1] = 3.0;
   constexpr double h = 0.5;
   for (const int least : {0, 5}) {
-    const Propagator<double> propagator(a, ladder_for(a, h, least), true);
+    Propagator<double> propagator(a, ladder_for(a, h, least), all_ramps<double>());
     const State<double> zero{}, e = unit<double>(kStates - 1);
-    const State<double> psi = propagator.advance(zero, e, nullptr, 0);
-    const State<double> xi = propagator.advance(zero, zero, &e, 0);
+    const State<double> psi = propagator.advance(zero, e, zero, 0);
+    const State<double> xi = propagator.advance(zero, zero, e, 0);
     double term = h;  // h^(n+1) 3^n / (n+1)!
     for (std::size_t n = 0; n < kStates; ++n) {
       EXPECT_NEAR(psi[kStates - 1 - n] / term, 1.0, 1e-14) << n;
@@ -178,20 +186,18 @@ TEST(Propagator, OfStiffMatricesIsExact) {
 TEST(Propagator, StepsCompose) {
   // Two steps of half the length are one, with a slope in time as well.
   const Matrix<double> a = stiff_matrix(1e5);
-  const Propagator<double> propagator(a, ladder_for(a, 0.5e-3, 3), true);
-  const SparseMatrix<double> sparse(a);
+  Propagator<double> propagator(a, ladder_for(a, 0.5e-3, 3), all_ramps<double>());
   const State<double> y{0.1, 0.2, 15.0, 30.0, 2.0, -50.0, 3.0},
       slope{0.0, 1.0, 2.0, 3.0, 0.0, 5.0, 7.0};
   const auto rate = [&](const State<double>& at, double t) {
-    State<double> f{};
-    for (std::size_t i = 0; i < kStates; ++i) f[i] = slope[i] * t;
-    sparse.add_product(at, f);
+    State<double> f = propagator.a_times(at);
+    for (std::size_t i = 0; i < kStates; ++i) f[i] += slope[i] * t;
     return f;
   };
   const double half = propagator.ladder().length(1);
-  const State<double> once = propagator.advance(y, rate(y, 0.0), &slope, 0);
-  const State<double> middle = propagator.advance(y, rate(y, 0.0), &slope, 1);
-  const State<double> twice = propagator.advance(middle, rate(middle, half), &slope, 1);
+  const State<double> once = propagator.advance(y, rate(y, 0.0), slope, 0);
+  const State<double> middle = propagator.advance(y, rate(y, 0.0), slope, 1);
+  const State<double> twice = propagator.advance(middle, rate(middle, half), slope, 1);
   for (std::size_t i = 0; i < kStates; ++i)
     EXPECT_NEAR(twice[i], once[i], 1e-11 * (std::abs(once[i]) + std::abs(y[i]))) << i;
 }
@@ -206,13 +212,10 @@ TEST(Propagator, CarriesDerivatives) {
     SCOPED_TRACE(testing::Message() << row << " " << column);
     const auto step = [&](auto a) {
       using T = std::decay_t<decltype(a[0][0])>;
-      State<T> start, f{}, s;
-      for (std::size_t i = 0; i < kStates; ++i) {
-        start[i] = T(y[i]);
-        s[i] = T(slope[i]);
-      }
-      SparseMatrix<T>(a).add_product(start, f);
-      return Propagator<T>(a, ladder_for(a, 0.5e-3, 0), true).advance(start, f, &s, 0);
+      State<T> start;
+      for (std::size_t i = 0; i < kStates; ++i) start[i] = T(y[i]);
+      Propagator<T> propagator(a, ladder_for(a, 0.5e-3, 0), all_ramps<T>());
+      return propagator.advance(start, propagator.a_times(start), slope, 0);
     };
     const auto at = [&](double change) {
       Matrix<double> a = stiff_matrix(1e5);
