@@ -37,8 +37,8 @@
 namespace axisfit {
 
 struct IntegratorOptions {
-  /// s. Longest step of the Runge-Kutta method, for smooth effects. What is affine is exact at any
-  /// step; guards are then looked at as often as the state is read, see `interval`.
+  /// s. Longest step of a coupled axis and of the Runge-Kutta method, for smooth effects. What is
+  /// affine is exact at any step; guards are then looked at as often as the state is read.
   double step = 0.5e-3;
   /// s. Between the instants to which the integration will be advanced, if they are even; else
   /// about. Steps are a fraction of it. Zero: not known, steps are `step`.
@@ -169,10 +169,11 @@ class Integrator {
     return input;
   }
 
-  /// Readings that fall on steps are cheapest; Runge-Kutta steps are bounded besides.
+  /// Readings that fall on steps are cheapest. Runge-Kutta steps are bounded besides, and those of
+  /// a coupled axis: its target turns at every sample and sets off what a long step does not see.
   double longest_step() const {
     if (!(options_.interval > 0.0)) return options_.step;
-    if (!equations_.has_smooth_forces()) return options_.interval;
+    if (!equations_.has_smooth_forces() && !coupled()) return options_.interval;
     return options_.interval / std::ceil(options_.interval / options_.step - 1e-9);
   }
 

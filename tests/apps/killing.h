@@ -36,7 +36,8 @@ inline Contents contents_of_results(const TempFolder& folder) {
 class Killing {
  public:
   Killing(const TempFolder& folder, const std::string& arguments)
-      : folder_(folder), command_("fit-params " + arguments + " --quiet --output results --resume") {
+      : folder_(folder),
+        command_("fit-params " + arguments + " --quiet --output results --resume") {
     const auto begin = std::chrono::steady_clock::now();
     const Answer whole = shell(folder_, command_);
     longest_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -55,8 +56,9 @@ class Killing {
       begin(ended % 2 == 1);
       for (int i = 0; i < 3; ++i) {
         const double seconds = 0.01 + longest_ * uniform(generator);
-        const Answer answer =
-            shell(folder_, "timeout -s KILL " + std::to_string(seconds) + " " + command_);
+        // In the foreground it ends after the program has, and with it the lock on the folder.
+        const Answer answer = shell(
+            folder_, "timeout --foreground -s KILL " + std::to_string(seconds) + " " + command_);
         killed += answer.exit_code == 137 ? 1 : 0;
         ASSERT_TRUE(answer.exit_code == 137 || answer.exit_code == 0) << answer.err;
         const Contents found = contents();
