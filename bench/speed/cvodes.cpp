@@ -6,8 +6,6 @@
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include <algorithm>
-#include <cmath>
-#include <memory>
 #include <stdexcept>
 
 namespace axisfit::speed {
@@ -132,15 +130,9 @@ class Solver {
   }
   static int jacobian(double, N_Vector, N_Vector, SUNMatrix a, void* self, N_Vector, N_Vector,
                       N_Vector) {
-    // The system is affine within a mode: unit vectors give its matrix exactly.
-    Axis<N>& axis = static_cast<Solver*>(self)->axis_;
-    const State<double> offset = axis.rate(State<double>{});
-    for (std::size_t j = 0; j < kPaperStates; ++j) {
-      State<double> unit{};
-      unit[j] = 1.0;
-      const State<double> column = axis.rate(unit);
-      for (std::size_t i = 0; i < kPaperStates; ++i) SM_ELEMENT_D(a, i, j) = column[i] - offset[i];
-    }
+    const Matrix<double> matrix = static_cast<Solver*>(self)->axis_.matrix();
+    for (std::size_t i = 0; i < kPaperStates; ++i)
+      for (std::size_t j = 0; j < kPaperStates; ++j) SM_ELEMENT_D(a, i, j) = matrix[i][j];
     return 0;
   }
   static int sensitivity_rate(int, double, N_Vector y, N_Vector, N_Vector* sensitivities,

@@ -3,11 +3,10 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
 #include "fit/jet.h"
-#include "sim/equations.h"
+#include "sim/affine.h"
 #include "sim/rig.h"
 
 namespace axisfit::speed {
@@ -83,10 +82,8 @@ class Axis {
     input_.command = work.command;
     exact_input_.command = Jet<N>(work.command);
     start_ = initial_state(model_);
-    plain_start_ = initial_state(plain_model_);
     exact_.begin(start_, exact_input_);
-    plain_.begin(plain_start_, input_);
-    mode_ = plain_.mode_at(plain_start_, input_);
+    mode_ = exact_.mode_at(start_, exact_input_);
   }
   Axis(const Axis&) = delete;
   Axis& operator=(const Axis&) = delete;
@@ -101,6 +98,9 @@ class Axis {
     return plain_.rate(mode_, y, input_);
   }
   State<Jet<N>> rate(const State<Jet<N>>& y) const { return exact_.rate(mode_, y, exact_input_); }
+
+  /// d rate / d y
+  Matrix<double> matrix() const { return matrix_of(plain_, mode_); }
 
   /// Calls visit(i, value) for the guards of the mode; returns their number. Values are moved by
   /// rounding, so that those behind an event begin inside.
@@ -145,7 +145,6 @@ class Axis {
   Input<double> input_;
   Input<Jet<N>> exact_input_;
   State<Jet<N>> start_{};
-  State<double> plain_start_{};
   Mode mode_;
 };
 
