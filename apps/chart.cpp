@@ -117,13 +117,16 @@ std::size_t length_of(const ChartSeries& s, const ChartColumns& columns) {
 
 Scale scale_of(Extent extent, bool log, double margin, double from, double to) {
   if (!(extent.low <= extent.high)) extent = {log ? 0.1 : 0.0, 1.0};
+  // Values that differ by rounding are one: a scale cannot be divided between them.
+  constexpr double kRounding = 1e-12;
   if (log) {
-    const double factor = std::pow(extent.high / extent.low, margin);
-    const double least = extent.low == extent.high ? 2.0 : 1.0;
+    const double factor = std::pow(extent.high, margin) / std::pow(extent.low, margin);
+    const double least = extent.high <= (1.0 + kRounding) * extent.low ? 2.0 : 1.0;
     return {extent.low / factor / least, extent.high * factor * least, true, from, to};
   }
+  const double size = std::max(std::abs(extent.low), std::abs(extent.high));
   double room = margin * (extent.high - extent.low);
-  if (!(extent.high > extent.low)) room = std::max(1e-12, 0.1 * std::abs(extent.high));
+  if (!(extent.high - extent.low > kRounding * size)) room = std::max(1e-12, 0.1 * size);
   return {extent.low - room, extent.high + room, false, from, to};
 }
 

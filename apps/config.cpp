@@ -530,17 +530,23 @@ ConfigMap::ConfigMap(const ConfigNode& node) : node_(node) {
 
 std::optional<ConfigNode> ConfigMap::required(std::string_view key) {
   auto value = optional(key);
-  if (!value && node_.is_map() && !is_misspelt(key)) {
+  if (value || !node_.is_map()) return value;
+  if (const auto meant = misspelling_of(key); meant != entries_.end()) {
+    const std::string text = meant->key.text();
+    meant->key.error("unknown key " + in_quotes(text) + suggestion(text, std::array{std::string(key)}));
+    entries_.erase(meant);
+    all_known_ = false;
+  } else {
     node_.error("key " + in_quotes(key) + " is missing in " + node_.name());
   }
   return value;
 }
 
-bool ConfigMap::is_misspelt(std::string_view key) const {
-  if (keys_ == nullptr) return false;
+std::vector<ConfigMap::Entry>::iterator ConfigMap::misspelling_of(std::string_view key) {
+  if (keys_ == nullptr) return entries_.end();
   std::vector<std::string> names;
   for (const Key& known : *keys_) names.push_back(known.name);
-  return std::ranges::any_of(entries_, [&](const Entry& entry) {
+  return std::ranges::find_if(entries_, [&](const Entry& entry) {
     const std::string text = entry.key.text();
     return std::ranges::find(names, text) == names.end() && nearest(text, names) == key;
   });
@@ -571,7 +577,7 @@ const std::vector<ConfigMap::Entry>& ConfigMap::entries() {
 
 bool ConfigMap::finish() const {
   if (any_key_) return true;
-  bool all_known = true;
+  bool all_known = all_known_;
   for (const Entry& entry : entries_) {
     const std::string key = entry.key.text();
     if (std::ranges::find(known_, key) != known_.end()) continue;

@@ -190,8 +190,8 @@ class ConfigMap {
   /// The value of a described key: as required() or optional(), whichever its description says.
   std::optional<ConfigNode> given(std::string_view key);
 
-  /// The value of a key. When it is missing: nothing, with a diagnostic at the start of the map,
-  /// or that of finish() about the key that was probably meant to be this one.
+  /// The value of a key. When it is missing: nothing, with a diagnostic at the start of the map, or
+  /// at the key that was probably meant to be this one, which is then no entry any more.
   std::optional<ConfigNode> required(std::string_view key);
 
   /// The value of a key that may be missing.
@@ -201,18 +201,19 @@ class ConfigMap {
   const std::vector<Entry>& entries();
 
   /// Reports the keys that nobody asked for. To be called when reading is complete. Returns whether
-  /// there were none.
+  /// there were none, nor any that required() took for another.
   bool finish() const;
 
  private:
   const Key& described(std::string_view key) const;
-  bool is_misspelt(std::string_view key) const;
+  std::vector<Entry>::iterator misspelling_of(std::string_view key);
 
   ConfigNode node_;
   const Section* keys_ = nullptr;
   std::vector<Entry> entries_;
   std::vector<std::string> known_;  // the keys asked for
   bool any_key_ = false;
+  bool all_known_ = true;
 };
 
 /// What an optional holds, or the type itself.

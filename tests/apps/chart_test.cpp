@@ -173,6 +173,23 @@ TEST(Chart, IsDescribedToTheScript) {
   EXPECT_EQ(chart["series"][0]["y"], 1);
 }
 
+TEST(Chart, OfValuesThatDifferByRoundingIsDrawnAsOfOneValue) {
+  for (const bool log : {false, true}) {
+    ChartColumns columns;
+    const double value = 12345.678;
+    const auto x = columns.add({0.0, 1.0}, 1.0);
+    const auto y = columns.add({value, std::nextafter(value, INFINITY)}, 1e-300);
+    const Chart chart{.id = "flat",
+                      .title = "flat",
+                      .x = {"x"},
+                      .y = {"y", "", log},
+                      .series = {{"flat", "measured", x, y}}};
+    const std::string svg = figure(chart, columns).text();
+    EXPECT_LT(svg.size(), 5000u);
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+  }
+}
+
 TEST(Chart, OfNothingIsEmptyAndStillDrawn) {
   ChartColumns columns;
   const auto none = columns.add({}, 1.0);

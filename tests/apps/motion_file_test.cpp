@@ -177,6 +177,8 @@ TEST_F(MotionFileTest, EveryMistakeIsNamedWithItsPlace) {
   EXPECT_EQ(errors("type: stp\nlevel: 1 V\nduration: 1 s\n"),
             "motion.yaml:1:7: type must be one of step, levels, sine, chirp, prbs, move, recorded, "
             "not 'stp'; did you mean 'step'?");
+  EXPECT_EQ(errors("tipe: step\nlevel: 1 V\nduration: 1 s\n"),
+            "motion.yaml:1:1: unknown key 'tipe'; did you mean 'type'?");
   EXPECT_EQ(
       errors("type: chirp\nfrequency: 1 Hz\namplitude: 1\n"),
       "motion.yaml:1:1: key 'duration' is missing in the file\n"
