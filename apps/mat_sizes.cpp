@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -270,9 +271,12 @@ class Head4 {
   /// Throws Oversized where the name is not there.
   explicit Head4(Bytes& bytes) {
     bytes.read(words_.data(), sizeof words_);
-    if (words_[0] > kLargestType)
+    const bool swapped = words_[0] > kLargestType;
+    if (swapped)
       for (std::uint32_t& word : words_) word = __builtin_bswap32(word);
-    if (!is_valid() || words_[4] > bytes.left()) throw Oversized();
+    // The type itself says whether it is big-endian, and libmatio believes it.
+    const bool big_endian = digit(1000) == 1;
+    if (!is_valid() || big_endian != (swapped == (std::endian::native == std::endian::little)) || words_[4] > bytes.left()) throw Oversized();
     name_.resize(words_[4]);
     bytes.read(name_.data(), name_.size());
     if (!name_.ends_with('\0')) throw Oversized();
