@@ -10,6 +10,8 @@
 #include <limits>
 #include <new>
 
+#include "sim/sampling.h"
+
 namespace axisfit {
 namespace {
 
@@ -395,7 +397,7 @@ ChartColumns::Index ChartColumns::kept(ChartColumn column) {
 
 ChartColumns::Index ChartColumns::add_times(std::vector<double> times) {
   const std::size_t n = times.size();
-  const double interval = n > 1 ? (times.back() - times.front()) / static_cast<double>(n - 1) : 1.0;
+  const double interval = n > 1 ? mean_interval(times) : 1.0;
   double shortest = interval;
   bool even = true;
   for (std::size_t i = 1; i < n; ++i) {

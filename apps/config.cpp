@@ -39,8 +39,6 @@ bool is_control(char c) {
 // Whether a byte of UTF-8 text continues a character.
 bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
-std::string in_quotes(std::string_view text) { return "'" + shortened(text) + "'"; }
-
 std::string joined(std::span<const std::string> texts) {
   std::string result;
   for (const std::string& text : texts) {
@@ -533,7 +531,8 @@ std::optional<ConfigNode> ConfigMap::required(std::string_view key) {
   if (value || !node_.is_map()) return value;
   if (const auto meant = misspelling_of(key); meant != entries_.end()) {
     const std::string text = meant->key.text();
-    meant->key.error("unknown key " + in_quotes(text) + suggestion(text, std::array{std::string(key)}));
+    meant->key.error("unknown key " + in_quotes(text) +
+                     suggestion(text, std::array{std::string(key)}));
     entries_.erase(meant);
     all_known_ = false;
   } else {

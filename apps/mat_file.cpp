@@ -53,9 +53,6 @@ void keep_first_complaint(int /*level*/, char* message) {
                            "); save or copy it again");
 }
 
-/// A name for a message: of a damaged file it may be of any length.
-std::string in_quotes(const std::string& name) { return "'" + shortened(name) + "'"; }
-
 std::string in_variable(const std::string& name) { return "variable " + in_quotes(name) + ": "; }
 
 /// That there is something to read.

@@ -235,7 +235,7 @@ class Walk5 {
 
 [[noreturn]] void throw_damaged(const std::string& path, const std::string& name, int index) {
   const std::string variable =
-      name.empty() ? "variable " + std::to_string(index) : "variable '" + shortened(name) + "'";
+      name.empty() ? "variable " + std::to_string(index) : "variable " + in_quotes(name);
   throw RecordingError(path, 0,
                        variable +
                            ": the file is damaged or cut off: it has fewer bytes than this "
@@ -276,7 +276,9 @@ class Head4 {
       for (std::uint32_t& word : words_) word = __builtin_bswap32(word);
     // The type itself says whether it is big-endian, and libmatio believes it.
     const bool big_endian = digit(1000) == 1;
-    if (!is_valid() || big_endian != (swapped == (std::endian::native == std::endian::little)) || words_[4] > bytes.left()) throw Oversized();
+    if (!is_valid() || big_endian != (swapped == (std::endian::native == std::endian::little)) ||
+        words_[4] > bytes.left())
+      throw Oversized();
     name_.resize(words_[4]);
     bytes.read(name_.data(), name_.size());
     if (!name_.ends_with('\0')) throw Oversized();

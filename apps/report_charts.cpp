@@ -9,6 +9,7 @@
 
 #include "fit/residuals/spectrum.h"
 #include "fit/rest.h"
+#include "sim/sampling.h"
 
 namespace axisfit {
 namespace {
@@ -312,8 +313,7 @@ Html ReportCharts::views(const SeriesTest& test) {
   for (const std::size_t i : series.samples) times.push_back(recording.times[i]);
   scatter("time", {"time", "s"}, times);
 
-  const double interval = (recording.times.back() - recording.times.front()) /
-                          static_cast<double>(recording.times.size() - 1);
+  const double interval = mean_interval(recording.times);
   const std::size_t n = series.values.size();
   const auto wanted = static_cast<std::size_t>(std::max(40.0, 6.0 * test.autocorrelation_time));
   Values correlation = autocorrelation(series.values, std::min(n - 1, std::min(n / 2, wanted)));

@@ -7,6 +7,7 @@
 
 #include "fit/residual.h"
 #include "sim/random.h"
+#include "sim/sampling.h"
 
 namespace axisfit {
 namespace {
@@ -60,13 +61,23 @@ class Continuation {
     return solved;
   }
 
+  /// What was found while held at `rate`, reported.
+  SolveResult hold(const Eigen::VectorXd& start, double rate) {
+    SolveResult held = solve_stage(start, rate, false);
+    report();
+    return held;
+  }
+
   SolveResult run(const Eigen::VectorXd& start, double rate) {
+    return run(hold(start, rate), rate);
+  }
+
+  /// From what hold() found.
+  SolveResult run(SolveResult held, double rate) {
     // Below this rate the coupling cannot do anything within the recording any more.
     const double slowest = 1.0 / longest_duration(job_);
     double ratio = 3.0;
-    SolveResult held = solve_stage(start, rate, false);
-    report();
-    double held_cost = stages_.back().reduced_cost;
+    double held_cost = held.reduced_cost;
     while (held.usable && rate > 0.0) {
       double next = rate / ratio;
       if (next < slowest) next = 0.0;
@@ -84,7 +95,7 @@ class Continuation {
       held_cost = latest.reduced_cost;
       held = std::move(solved);
       rate = next;
-      ratio = std::min(ratio * 1.5, 5.0);
+      ratio = std::min(ratio * 2.0, 20.0);
     }
     return held;
   }
@@ -110,9 +121,8 @@ double first_coupling_rate(const Job& job) {
   double rate = std::numeric_limits<double>::infinity();
   for (const Recording& r : job.recordings) {
     if (r.role != Role::fit || !coupling_for(r, 1.0).active()) continue;
-    const double interval =
-        (r.times.back() - r.times.front()) / static_cast<double>(r.times.size() - 1);
-    rate = std::min(rate, (r.find(Signal::velocity) != nullptr ? 1.0 : 0.3) / interval);
+    rate =
+        std::min(rate, (r.find(Signal::velocity) != nullptr ? 1.0 : 0.3) / mean_interval(r.times));
   }
   return rate;
 }
@@ -138,45 +148,56 @@ ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
     continuation.report();
   } else {
     const double rate = first_coupling_rate(job);
+    // An end that is near the noise is not the wrong one of many: something small is missing.
+    constexpr double kExplained = 1.1, kNear = 5.0;
+    const auto explained = [&](double reduced_cost) {
+      return result.last.usable && result.last.reduced_cost < reduced_cost;
+    };
+    std::optional<double> known;  // cost of the best end when it is held again
     const auto take = [&](SolveResult solved) {
-      const bool better = !result.last.usable || (solved.usable && solved.cost < result.last.cost);
-      if (better) result.last = std::move(solved);
+      if (result.last.usable && !(solved.usable && solved.cost < result.last.cost)) return;
+      result.last = std::move(solved);
+      known.reset();
     };
-    const auto explained = [&] {
-      constexpr double kExplained = 1.1;
-      return result.last.usable && result.last.reduced_cost < kExplained;
+    const auto hold_best = [&] {
+      SolveResult held = continuation.hold(result.last.u, rate);
+      known = held.cost;
+      return held;
     };
-    take(continuation.run(start, rate));
+    const auto follow = [&](const Eigen::VectorXd& from, double at_rate) {
+      take(continuation.run(from, at_rate));
+      // Held again, an end in a wrong valley often finds the right one.
+      const bool wrong = result.last.usable && !explained(kNear) && !known;
+      if (wrong && job.options.attempts > 1) take(continuation.run(hold_best(), rate));
+    };
+    follow(start, rate);
     // Where the end does not explain the data, begin anew. Less firmly: a firm hold feeds the noise
     // of the measurement into the simulation, which can bias what the data hardly show beyond
     // return.
-    if (!explained() && job.options.attempts > 1) take(continuation.run(start, rate / 5.0));
+    if (!explained(kExplained) && job.options.attempts > 1) follow(start, rate / 5.0);
     // And from elsewhere: even held firmly, a controller that saturates has local minima. That
     // shows while it is held, so that only a start which is better there has to be followed.
     // One that cannot even be simulated costs little: there the moves go on for longer.
     // Several that end where the best did confirm it.
-    // An end that is near the noise is not the wrong one of many: something small is missing.
     constexpr int kMoves = 8, kMovesToBegin = 16, kConfirmed = 3;
-    constexpr double kNear = 5.0;
     int confirmed = 0;
     for (int attempt = 2; attempt < job.options.attempts; ++attempt) {
-      if (result.last.usable && result.last.reduced_cost < kNear) break;
-      double known = std::numeric_limits<double>::infinity();
-      if (result.last.usable) known = continuation.solve_stage(result.last.u, rate, false).cost;
-      double least = 0.9 * known;
+      if (explained(kNear)) break;
+      if (result.last.usable && !known) hold_best();
+      const double best = known.value_or(std::numeric_limits<double>::infinity());
+      double least = 0.9 * best;
       std::optional<Eigen::VectorXd> from;
       for (int move = 0; move < (from || result.last.usable ? kMoves : kMovesToBegin); ++move) {
-        const SolveResult held = continuation.solve_stage(
-            moved(space, start, attempt * kMovesToBegin + move), rate, false);
-        continuation.report();
-        if (held.usable && std::abs(held.cost - known) < 0.01 * known) ++confirmed;
+        const SolveResult held =
+            continuation.hold(moved(space, start, attempt * kMovesToBegin + move), rate);
+        if (held.usable && std::abs(held.cost - best) < 0.01 * best) ++confirmed;
         if (!from && confirmed >= kConfirmed) break;
         if (!held.usable || held.cost >= least) continue;
         least = held.cost;
         from = held.u;
       }
       if (confirmed >= kConfirmed && !from) break;
-      if (from) take(continuation.run(*from, rate));
+      if (from) follow(*from, rate);
     }
   }
   result.last.iterations = continuation.iterations();

@@ -9,6 +9,7 @@
 
 #include "fit/parallel.h"
 #include "fit/residuals/series.h"
+#include "sim/sampling.h"
 
 namespace axisfit {
 namespace {
@@ -208,7 +209,7 @@ Schedule commands_of(const Experiment& experiment, const Model<double>& model,
 std::vector<double> sampling_of_next(const Job& job) {
   const std::vector<double>& like = first_fitted(job).times;
   constexpr double kLongest = 10.0;  // s; longer motions repeat themselves
-  const double interval = (like.back() - like.front()) / static_cast<double>(like.size() - 1);
+  const double interval = mean_interval(like);
   std::vector<double> times;
   for (std::size_t i = 0; i < like.size() && static_cast<double>(i) * interval <= kLongest; ++i)
     times.push_back(static_cast<double>(i) * interval);

@@ -1,5 +1,6 @@
 #include "fit/residual.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -154,10 +155,26 @@ bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobia
 
 bool RecordingCost::Evaluate(double const* const* parameters, double* residuals,
                              double** jacobians) const {
-  const double* u = parameters[0];
-  if (jacobians == nullptr || jacobians[0] == nullptr)
-    return evaluate<double>(u, residuals, nullptr, {});
-  double* jacobian = jacobians[0];
+  const std::span<const double> u(parameters[0], space_.size());
+  double* const jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
+  if (is_set(stop_)) return false;
+  if (!std::ranges::equal(u, kept_.u)) {
+    if (jacobian == nullptr) return evaluate<double>(u.data(), residuals, nullptr, {});
+    const auto n = static_cast<std::size_t>(num_residuals());
+    kept_.u.clear();
+    kept_.residuals.resize(n);
+    kept_.jacobian.resize(n * u.size());
+    if (!evaluate_with_jacobian(u.data(), kept_.residuals.data(), kept_.jacobian.data()))
+      return false;
+    kept_.u.assign(u.begin(), u.end());
+  }
+  std::ranges::copy(kept_.residuals, residuals);
+  if (jacobian != nullptr) std::ranges::copy(kept_.jacobian, jacobian);
+  return true;
+}
+
+bool RecordingCost::evaluate_with_jacobian(const double* u, double* residuals,
+                                           double* jacobian) const {
   std::fill_n(jacobian, static_cast<std::size_t>(num_residuals()) * space_.size(), 0.0);
   // One pass for all parameters, in the narrowest dual number that holds them; more than the widest
   // holds take several passes.

@@ -47,9 +47,13 @@ Coupling coupling_for(const Recording& recording, double rate);
 /// A point whose simulation does not finish makes Evaluate return false: for the solver a rejected
 /// step. With a Huber loss every residual r is replaced by sign(r) sqrt(rho(r^2)), so that the sum
 /// of squares is the robust cost.
+///
+/// A solver with bounds asks for the Jacobian at a point that it tries, then for the residuals
+/// there, and if it takes it for the Jacobian once more: what was computed last is kept. Not to be
+/// used by two threads at once.
 class RecordingCost : public ceres::CostFunction {
  public:
-  /// Job and space must outlive the cost. When `stop` is set no point finishes any more.
+  /// Job and space must outlive the cost, and stay as they are. When `stop` is set no point finishes any more.
   RecordingCost(const Job& job, const ParameterSpace& space, std::size_t recording,
                 const Coupling& coupling, const StopFlag* stop = nullptr);
 
@@ -60,6 +64,7 @@ class RecordingCost : public ceres::CostFunction {
   template <class T>
   bool evaluate(const double* u, double* residuals, double* jacobian,
                 std::span<const std::size_t> columns) const;
+  bool evaluate_with_jacobian(const double* u, double* residuals, double* jacobian) const;
 
   const Job& job_;
   const ParameterSpace& space_;
@@ -69,6 +74,11 @@ class RecordingCost : public ceres::CostFunction {
   std::vector<std::size_t> fitted_;      // indices of measurements
   std::vector<Signal> signals_;          // their signals
   std::vector<std::size_t> applicable_;  // indices of parameters
+
+  struct Kept {
+    std::vector<double> u, residuals, jacobian;
+  };
+  mutable Kept kept_;
 };
 
 }  // namespace axisfit

@@ -1,9 +1,9 @@
-// The equations and guards of one mode as what they are without smooth forces: affine,
+// The equations of one mode as what they are without smooth forces: affine,
 //
-//   y' = A y + B w,  guards = G y + H w
+//   y' = A y + B w
 //
-// in the state y and the inputs w. A, B, G and H are read off the one description that there is,
-// equations.h.
+// in the state y and the inputs w. A and B are read off the one description that there is,
+// equations.h, as are the guards in guards.h.
 #pragma once
 
 #include <array>
@@ -59,78 +59,5 @@ Driven<State<T>> driven_by(const Equations<T>& equations, const Mode& mode) {
     for (std::size_t i = 0; i < kStates; ++i) b[c][i] = (b[c][i] - b[kByConstants][i]) / kLarge;
   return b;
 }
-
-/// Values, rates and tolerances of all guards of a mode at one instant.
-struct Look {
-  struct Node {
-    double value, rate, tolerance;
-  };
-  std::array<Node, kGuards> nodes;
-  std::size_t count = 0;
-};
-
-/// All guards of a mode without smooth forces, and their rates.
-class LinearGuards {
- public:
-  /// `a`, `b`: A and B of the mode.
-  LinearGuards(const Equations<double>& equations, const Mode& mode, const Matrix<double>& a,
-               const Driven<State<double>>& b)
-      : states_used_(equations.states()), coupled_(equations.coupling().active()) {
-    const auto read = [&](const State<double>& y, const Input<double>& input, Form& form) {
-      count_ = 0;
-      equations.visit_guards(mode, y, input, [&](Guard, double g, double) { form[count_++] = g; });
-    };
-    for (std::size_t c = 0; c < kInputs; ++c)
-      read(State<double>{}, large_input<double>(c), inputs_[c]);
-    for (std::size_t j = 0; j < kStates; ++j) {
-      State<double> large{};
-      large[j] = kLarge;
-      read(large, {}, states_[j]);
-    }
-    for (std::size_t i = 0; i < count_; ++i) {
-      const double constant = inputs_[kByConstants][i];
-      for (std::size_t c = kByConstants + 1; c < kInputs; ++c)
-        inputs_[c][i] = (inputs_[c][i] - constant) / kLarge;
-      for (Form& form : states_) form[i] = (form[i] - constant) / kLarge;
-      // Rates behind the values: G A and G B.
-      for (std::size_t k = 0; k < kStates; ++k) {
-        for (std::size_t j = 0; j < kStates; ++j)
-          states_[j][kGuards + i] += states_[k][i] * a[k][j];
-        for (std::size_t c = 0; c < kInputs; ++c)
-          inputs_[c][kGuards + i] += states_[k][i] * b[c][k];
-      }
-    }
-  }
-
-  /// Without tolerances. `slope`: of the target, per second.
-  Look look(const State<double>& y, const Input<double>& input, const Target& slope) const {
-    Form sum = inputs_[kByConstants];
-    add(sum, input.command, inputs_[kByCommand]);
-    for (std::size_t j = 0; j < states_used_; ++j) add(sum, y[j], states_[j]);
-    if (coupled_) {
-      const Form &velocity = inputs_[kByTargetVelocity], &position = inputs_[kByTargetPosition];
-      add(sum, input.target.velocity, velocity);
-      add(sum, input.target.position, position);
-      for (std::size_t i = 0; i < kGuards; ++i)
-        sum[kGuards + i] += slope.velocity * velocity[i] + slope.position * position[i];
-    }
-    Look seen;
-    seen.count = count_;
-    for (std::size_t i = 0; i < count_; ++i) seen.nodes[i] = {sum[i], sum[kGuards + i], 0.0};
-    return seen;
-  }
-
- private:
-  using Form = std::array<double, 2 * kGuards>;  // values, then rates
-  static void add(Form& sum, double factor, const Form& form) {
-    for (std::size_t i = 0; i < 2 * kGuards; ++i) sum[i] += factor * form[i];
-  }
-
-  std::size_t states_used_;
-  bool coupled_;
-  std::size_t count_ = 0;
-  std::array<Form, kStates> states_{};
-  Driven<Form> inputs_{};
-};
 
 }  // namespace axisfit

@@ -5,15 +5,15 @@
 // moving frame of the affine part, with its value at the start of the step frozen into that part:
 // a constant rest is exact too. Stiffness of the current loop or the gear does not limit the step.
 //
-// Events. Every step is first tried on plain values, in pieces that are short against the mode's
-// fastest oscillation, and all guards of the mode are looked at: at the ends of the pieces, by a
-// cubic through values and rates within, and in the middle where that turns much. A step that meets
-// one is cut in halves down to the shortest length of the ladder, where Newton's method on the
-// guard ends the search. Then the step is taken in T, and the crossing time is corrected by -g / g'
-// in T: the event time carries its derivatives, and so does every length that is measured from it.
-// After each event, and after each switch of the command, steps grow again from the shortest, so
-// that fast transients are resolved and what they set off is seen. Where all is affine, guards are
-// looked at as linear forms (affine.h), and steps grow to the interval of the readings.
+// Events. Every step is first tried on plain values, and all guards of the mode are looked at: at
+// instants that are close against the mode's fastest oscillation, by a cubic through values and
+// rates between them, and halfway where that turns much. A step that meets one is cut in halves
+// until one that is short enough for the Taylor series leads across the guard, where Newton's
+// method ends the search. Then the step is taken in T, and the crossing time is corrected by
+// -g / g' in T: the event time carries its derivatives, and so does every length that is measured
+// from it. After each event, and after each switch of the command, steps grow again from a short
+// one, so that fast transients are resolved and what they set off is seen. Where all is affine,
+// guards are looked at as linear forms (guards.h), and steps grow to the interval of the readings.
 //
 // Limits. Derivatives are those of a fixed sequence of transversal events; where two events
 // coincide or a guard is touched without crossing, they are one-sided. The smooth forces must not
@@ -30,15 +30,16 @@
 #include <utility>
 #include <vector>
 
-#include "sim/affine.h"
 #include "sim/equations.h"
+#include "sim/guards.h"
 #include "sim/propagator.h"
 
 namespace axisfit {
 
 struct IntegratorOptions {
-  /// s. Longest step of a coupled axis and of the Runge-Kutta method, for smooth effects. What is
-  /// affine is exact at any step; guards are then looked at as often as the state is read.
+  /// s. Longest step of the Runge-Kutta method, for smooth effects, and the longest time between
+  /// looks at the guards of a coupled axis. What is affine is exact at any step; guards are then
+  /// looked at as often as the state is read.
   double step = 0.5e-3;
   /// s. Between the instants to which the integration will be advanced, if they are even; else
   /// about. Steps are a fraction of it. Zero: not known, steps are `step`.
@@ -66,7 +67,8 @@ class Integrator {
         plain_model_(convert<double>(model)),
         equations_(model_, coupling),
         plain_(plain_model_, coupling, equations_.parts()),
-        step_(longest_step()) {}
+        step_(longest_step()),
+        bounded_(coupled() ? level_of(step_ / options.step - 1e-9) : 0) {}
 
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
@@ -93,7 +95,6 @@ class Integrator {
     input_.target = {T(target.velocity), T(target.position)};
     copy_plain_input();
     slope_ = slope;
-    slopes_ = {slope.velocity, slope.position};
     here_.reset();
   }
 
@@ -122,14 +123,14 @@ class Integrator {
     Matrix<double> a;
     Propagator<T> exact;
     Propagator<double> plain;
-    std::vector<Oscillation> oscillations;
+    std::vector<std::pair<Oscillation, int>> oscillations;  // with the level that follows each
   };
   /// Everything that one mode needs.
   struct Flow {
     System& system;
-    Driven<State<T>> exact;
-    Driven<State<double>> plain;
+    SparseMatrix<T> driven;  // B, by states and inputs
     std::optional<LinearGuards> guards;
+    std::map<std::pair<int, int>, GuardForms> forms;  // by level and halvings
   };
 
   struct Hit {
@@ -141,11 +142,10 @@ class Integrator {
   struct View {  // one of the two scalar types
     const Equations<S>& equations;
     Propagator<S>& propagator;
-    const Driven<State<S>>& driven;
     const Input<S>& input;
   };
-  View<T> exact() const { return {equations_, flow_->system.exact, flow_->exact, input_}; }
-  View<double> plain() const { return {plain_, flow_->system.plain, flow_->plain, plain_input_}; }
+  View<T> exact() const { return {equations_, flow_->system.exact, input_}; }
+  View<double> plain() const { return {plain_, flow_->system.plain, plain_input_}; }
 
   State<double> plain_state() const {
     State<double> y;
@@ -153,6 +153,9 @@ class Integrator {
     return y;
   }
   bool coupled() const { return equations_.coupling().active(); }
+  bool affine() const { return !equations_.has_smooth_forces(); }
+  /// Whether nothing but switches and events sets anything off.
+  bool left_alone() const { return affine() && !coupled(); }
   const Ladder& ladder() const { return flow_->system.plain.ladder(); }
 
   void copy_plain_input() {
@@ -160,6 +163,10 @@ class Integrator {
                     {value_of(input_.target.velocity), value_of(input_.target.position)},
                     value_of(input_.time),
                     {value_of(input_.memory.position), value_of(input_.memory.hysteresis)}};
+  }
+  /// Level of the longest step that is at most 1 / ratio of level 0.
+  static int level_of(double ratio, int most = 60) {
+    return ratio > 1.0 ? static_cast<int>(std::min(double(most), std::ceil(std::log2(ratio)))) : 0;
   }
   /// The input after `length` seconds.
   template <class S, class U>
@@ -169,67 +176,62 @@ class Integrator {
     return input;
   }
 
-  /// Readings that fall on steps are cheapest. Runge-Kutta steps are bounded besides, and those of
-  /// a coupled axis: its target turns at every sample and sets off what a long step does not see.
+  /// Readings that fall on steps are cheapest. Runge-Kutta steps are bounded besides.
   double longest_step() const {
     if (!(options_.interval > 0.0)) return options_.step;
-    if (!equations_.has_smooth_forces() && !coupled()) return options_.interval;
+    if (affine()) return options_.interval;
     return options_.interval / std::ceil(options_.interval / options_.step - 1e-9);
   }
 
-  /// rad/s. The fastest oscillation that guards may show. Where nothing but switches sets any off,
-  /// one is forgotten when it has died away to what a cubic does not follow either.
-  double oscillation() const {
+  /// Level at which a cubic follows the fastest oscillation that guards may show. Where nothing but
+  /// switches sets any off, one is forgotten when it has died away to what a cubic does not follow
+  /// either.
+  int followed() const {
     constexpr double kForgotten = 9.0;  // e^-9 = 1e-4
-    const bool at_rest = !coupled() && !equations_.has_smooth_forces();
-    const double since = at_rest ? value_of(input_.time) - switched_ : 0.0;
-    for (const Oscillation& o : flow_->system.oscillations)
-      if (o.damping * since < kForgotten) return o.frequency;
-    return 0.0;
+    const double since = left_alone() ? value_of(input_.time) - switched_ : 0.0;
+    for (const auto& [oscillation, level] : flow_->system.oscillations)
+      if (oscillation.damping * since < kForgotten) return level;
+    return 0;
   }
-  /// Level of the longest step that shows it: one radian to either side of the middle, where guards
-  /// are looked at too.
-  int longest() const {
-    const double radians = oscillation() * step_;
-    if (radians <= 2.0) return 0;
-    return std::min(static_cast<int>(std::ceil(std::log2(radians / 2.0))), ladder().last);
-  }
+  /// Level of the longest stretch between two looks at the guards: one radian to either side of its
+  /// middle, where they are looked at too. The target of a coupled axis turns at every sample and
+  /// sets off what a longer one does not see.
+  int stretch() const { return std::max(bounded_, followed() - 2); }
+  /// Level of the longest step: of few stretches where these are parts of a step, else of one.
+  int longest() const { return affine() ? std::max(0, stretch() - kMostStretches) : stretch(); }
 
   void switch_mode(const Mode& mode);
-  System& system_of(const Mode& mode);
+  /// With B, exact and plain.
+  System& system_of(const Mode& mode, const Driven<State<T>>& exact_b,
+                    const Driven<State<double>>& plain_b);
   Flow& flow_of(const Mode& mode);
 
   /// f(y), with smooth forces.
   template <class S>
   State<S> rate(const View<S>& view, const State<S>& y) const {
-    // Values by the equations, which rounds least; with derivatives the matrix is cheaper.
-    if constexpr (std::is_same_v<S, double>) return view.equations.rate(mode_, y, view.input);
-    State<S> f = view.propagator.a_times(y);
-    const auto add = [&](const S& factor, const State<S>& x) {
-      for (std::size_t i = 0; i < equations_.states(); ++i) f[i] += factor * x[i];
-    };
-    for (std::size_t i = 0; i < equations_.states(); ++i) f[i] += view.driven[kByConstants][i];
-    add(view.input.command, view.driven[kByCommand]);
-    if (coupled()) {
-      add(view.input.target.velocity, view.driven[kByTargetVelocity]);
-      add(view.input.target.position, view.driven[kByTargetPosition]);
+    // Values by the equations, which rounds least; with derivatives the matrices are cheaper.
+    if constexpr (std::is_same_v<S, double>) {
+      return view.equations.rate(mode_, y, view.input);
+    } else {
+      const auto& [command, target, time, memory] = view.input;
+      State<S> f = view.propagator.a_times(y);
+      flow_->driven.add_product({S(1.0), command, target.velocity, target.position}, f);
+      if (!affine()) {
+        const State<S> smooth = view.equations.smooth_rate(mode_, y, view.input);
+        for (std::size_t i = 0; i < kStates; ++i) f[i] += smooth[i];
+      }
+      return f;
     }
-    if (view.equations.has_smooth_forces()) {
-      const State<S> smooth = view.equations.smooth_rate(mode_, y, view.input);
-      for (std::size_t i = 0; i < kStates; ++i) f[i] += smooth[i];
-    }
-    return f;
   }
   /// Of the coupling's target, in the order of the propagator's ramps.
-  std::span<const double> slopes() const {
-    return coupled() ? std::span<const double>(slopes_) : std::span<const double>();
-  }
+  Slopes slopes() const { return {slope_.velocity, slope_.position}; }
 
+  /// From the state y with the rate f.
   template <class S>
-  State<S> step(const View<S>& view, const State<S>& y, int level) const;
+  State<S> step(const View<S>& view, const State<S>& y, const State<S>& f, int level) const;
   template <class S>
-  State<S> step_by(const View<S>& view, const State<S>& y, double length) const {
-    return view.propagator.advance_by(y, rate(view, y), slopes(), length);
+  Series<S> series(const View<S>& view, const State<S>& y, double length) const {
+    return view.propagator.series(y, rate(view, y), slopes(), length);
   }
 
   /// With tolerances.
@@ -240,11 +242,13 @@ class Integrator {
     });
     return seen;
   }
-  static bool met_between(const Look& start, const Look* middle, const Look& end, double length);
-  /// Tries a step of `length` on plain values, in pieces that are short enough to see every
-  /// oscillation; `level` is its place in the ladder, or past its end for a step by the series.
-  /// Returns whether a guard is met on the way, otherwise the end in `to` and the guards there.
-  bool meets_guard(const State<double>& from, int level, double length, State<double>& to);
+  /// As linear forms, without tolerances, where all is affine.
+  Look glance(const View<double>& view, const State<double>& y) const {
+    return affine() ? flow_->guards->look(y, view.input, slopes()) : look(view, y);
+  }
+  /// Tries a step of `length` on plain values; `level` is its place in the ladder, or past its end
+  /// for a step by the series. Leaves the end in `to` and unless a guard is met the guards there.
+  Crossing try_step(const State<double>& from, int level, double length, State<double>& to);
   std::optional<Hit> locate(const State<double>& from, const State<double>& to,
                             double length) const;
   void move_time(double length);
@@ -270,12 +274,15 @@ class Integrator {
         });
   }
 
+  static constexpr int kMostStretches = 4;  // of a step, as a power of two
+
   const IntegratorOptions options_;
   const Model<T> model_;
   const Model<double> plain_model_;
   const Equations<T> equations_;
   const Equations<double> plain_;
   const double step_;      // s, at level 0
+  const int bounded_;      // level of the longest stretch because of the coupling
   double switched_ = 0.0;  // s, time of the latest switch
   std::map<int, System> systems_;
   std::map<int, Flow> flows_;
@@ -285,7 +292,6 @@ class Integrator {
   Input<T> input_;
   Input<double> plain_input_;
   Target slope_;
-  std::array<double, 2> slopes_{};  // the same
   Flow* flow_ = nullptr;
   int level_ = 0;  // of the longest step now allowed; falls to 0 as steps grow after an event
   std::optional<Look> here_;  // the guards at the present state, while they are known
@@ -305,7 +311,9 @@ void Integrator<T>::switch_mode(const Mode& mode) {
 }
 
 template <class T>
-typename Integrator<T>::System& Integrator<T>::system_of(const Mode& mode) {
+typename Integrator<T>::System& Integrator<T>::system_of(const Mode& mode,
+                                                         const Driven<State<T>>& exact_b,
+                                                         const Driven<State<double>>& plain_b) {
   // The sign of a limit changes constants, not the matrix; those of contact, motion and load change
   // it where friction depends on them.
   const int contact = mode.contact == 0 ? 0 : equations_.signs_matter() ? mode.contact : 1;
@@ -318,18 +326,19 @@ typename Integrator<T>::System& Integrator<T>::system_of(const Mode& mode) {
   // nothing is stiff it has to be short.
   const double shortest = std::ldexp(options_.step, -12);
   const Matrix<double> plain = axisfit::value_of(a);
-  const Ladder ladder =
-      ladder_for(a, step_, std::max(0, static_cast<int>(std::ceil(std::log2(step_ / shortest)))));
-  const std::size_t n = equations_.states();
-  const auto ramps = [&]<class S>(const Equations<S>& equations) -> std::vector<State<S>> {
+  const Ladder ladder = ladder_for(a, step_, level_of(step_ / shortest));
+  const auto ramps = [&]<class S>(const Driven<State<S>>& b) -> std::vector<State<S>> {
     if (!coupled()) return {};
-    const Driven<State<S>> b = driven_by(equations, mode);
     return {b[kByTargetVelocity], b[kByTargetPosition]};
   };
+  std::vector<std::pair<Oscillation, int>> followed;
+  constexpr double kFollowed = 0.5;  // rad
+  for (const Oscillation& o : oscillations(plain))
+    followed.emplace_back(o, level_of(o.frequency * step_ / kFollowed, ladder.last));
+  const std::size_t n = equations_.states();
   return systems_
-      .emplace(key,
-               System{plain, Propagator<T>(a, ladder, ramps(equations_), n),
-                      Propagator<double>(plain, ladder, ramps(plain_), n), oscillations(plain)})
+      .emplace(key, System{plain, Propagator<T>(a, ladder, ramps(exact_b), n),
+                           Propagator<double>(plain, ladder, ramps(plain_b), n), followed})
       .first->second;
 }
 
@@ -338,19 +347,23 @@ typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
   const int key = (mode.contact + 1) | (mode.v_c + 1) << 2 | (mode.v_m + 1) << 4 |
                   (mode.sliding + 1) << 6 | (mode.load + 1) << 8 | mode.doublet << 10;
   if (const auto found = flows_.find(key); found != flows_.end()) return found->second;
-  System& system = system_of(mode);
+  const Driven<State<T>> exact = driven_by(equations_, mode);
   const Driven<State<double>> plain = driven_by(plain_, mode);
+  System& system = system_of(mode, exact, plain);
   std::optional<LinearGuards> guards;
-  if (!equations_.has_smooth_forces()) guards.emplace(plain_, mode, system.a, plain);
-  return flows_.emplace(key, Flow{system, driven_by(equations_, mode), plain, std::move(guards)})
+  if (affine()) guards.emplace(plain_, mode, system.a, plain);
+  Matrix<T> driven{};
+  for (std::size_t c = 0; c < kInputs; ++c)
+    for (std::size_t i = 0; i < kStates; ++i) driven[i][c] = exact[c][i];
+  return flows_.emplace(key, Flow{system, SparseMatrix<T>(driven), std::move(guards), {}})
       .first->second;
 }
 
 template <class T>
 template <class S>
-State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, int level) const {
+State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, const State<S>& f,
+                             int level) const {
   Propagator<S>& p = view.propagator;
-  const State<S> f = rate(view, y);
   const State<S> end = p.advance(y, f, slopes(), level);
   if (!view.equations.has_smooth_forces() || level == p.ladder().last) return end;
   // Classical Runge-Kutta for n(y) = N(y) - N(y at the start) in the frame that moves with the
@@ -370,7 +383,7 @@ State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, int level) 
   const State<S> k2 = n(middle, 0.5 * h);  // k1 = 0
   // Behind an event steps are so short that the midpoint rule is as good.
   constexpr int kShort = 4;
-  if (level >= longest() + kShort) return plus(end, h, p.exponential(k2, level + 1));
+  if (level >= stretch() + kShort) return plus(end, h, p.exponential(k2, level + 1));
   const State<S> k3 = n(plus(middle, 0.5 * h, k2), 0.5 * h);
   const State<S> k4 = n(plus(end, h, p.exponential(k3, level + 1)), h);
   const State<S> inner = p.exponential(plus(k2, 1.0, k3), level + 1);
@@ -378,90 +391,60 @@ State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, int level) 
 }
 
 template <class T>
-bool Integrator<T>::met_between(const Look& start, const Look* middle, const Look& end,
-                                double length) {
-  using Node = Look::Node;
-  // Whether the cubic through values and rates dips below the margin between its ends.
-  const auto dips = [](const Node& p, const Node& q, double h, double margin) {
-    if (!(p.rate < 0.0 && q.rate > 0.0) || p.value <= 0.0) return false;
-    const double d = q.value - p.value, b = 3.0 * d - (2.0 * p.rate + q.rate) * h,
-                 a = (p.rate + q.rate) * h - 2.0 * d,
-                 c = p.rate * h;  // a s^3 + b s^2 + c s + value
-    const double root = b * b - 3.0 * a * c;
-    if (root < 0.0) return false;
-    const double s = -c / (b + std::sqrt(root));
-    return s > 0.0 && s < 1.0 && ((a * s + b) * s + c) * s + p.value < margin;
-  };
-  for (std::size_t n = 0; n < end.count; ++n) {
-    const Node &p = start.nodes[n], &q = end.nodes[n];
-    if (q.value < -q.tolerance) return true;
-    if (middle == nullptr) {
-      if (dips(p, q, length, -q.tolerance)) return true;
-      continue;
-    }
-    const Node& half = middle->nodes[n];
-    if (half.value < -half.tolerance) return true;
-    // What the cubic over the whole step gets wrong in the middle tells how far to trust the
-    // halves.
-    const double error =
-        std::abs(half.value - 0.5 * (p.value + q.value) - 0.125 * length * (p.rate - q.rate));
-    const double margin = 0.25 * error - q.tolerance;
-    if (dips(p, half, 0.5 * length, margin) || dips(half, q, 0.5 * length, margin)) return true;
-  }
-  return false;
-}
-
-template <class T>
-bool Integrator<T>::meets_guard(const State<double>& from, int level, double length,
-                                State<double>& to) {
+Crossing Integrator<T>::try_step(const State<double>& from, int level, double length,
+                                 State<double>& to) {
+  ++steps_;  // also one that meets a guard: a search without end has to end
   const View<double> now = plain();
-  const LinearGuards* guards = flow_->guards ? &*flow_->guards : nullptr;
   const bool by_series = level > ladder().last;
-  const int fine = by_series ? level : std::max(level, longest());
-  const long pieces = by_series ? 1 : 1L << (fine - level);
-  const double piece = length / static_cast<double>(pieces);
-  Input<double> input = now.input;
-  const View<double> view{now.equations, now.propagator, now.driven, input};
-  // A cubic does without the middle where the fastest oscillation turns by less than this.
-  constexpr double kSmooth = 0.5;  // rad
-  const bool halved = !by_series && fine < ladder().last && oscillation() * piece > kSmooth;
-  const auto see = [&](const State<double>& y) {
-    return guards != nullptr ? guards->look(y, input, slope_) : look(view, y);
+  const State<double> f = rate(now, from);
+  to = by_series ? now.propagator.series(from, f, slopes(), length).at(length)
+                 : step(now, from, f, level);
+  for (const double x : to)
+    if (!std::isfinite(x)) return Crossing::none;  // to nowhere, which the caller sees
+
+  const int fine = by_series ? level : std::max(level, stretch());
+  const bool doubted = !by_series && fine < std::min(followed(), ladder().last);
+  const int halvings = fine - level + doubted;
+  const Input<double> input = moved(now.input, length);
+  const View<double> then{now.equations, now.propagator, input};
+  if (!here_) here_ = glance(now, from);
+  const Look end = glance(then, to);
+  GuardCourse course(*here_, end, std::size_t{1} << halvings, length);
+  std::array<double, kGuards> tolerance{};
+  const auto with_tolerances = [&](const Look& seen) {
+    for (std::size_t i = 0; i < seen.count; ++i)
+      tolerance[i] = std::max(tolerance[i], seen.nodes[i].tolerance);
   };
-  if (!here_) here_ = see(from);
-  Look start = *here_;
-  to = from;
-  for (long i = 0; i < pieces && steps_ <= options_.step_budget; ++i) {
-    ++steps_;  // also one that meets a guard: a search without end has to end
-    const State<double> begin = to;
-    const Input<double> at_begin = input;
-    State<double> middle;
-    if (halved) middle = step(view, begin, fine + 1);
-    to = by_series ? step_by(view, begin, piece) : step(view, begin, fine);
-    for (const double x : to)
-      if (!std::isfinite(x)) return false;
-    Look end;
-    const auto met = [&](const Look& first, auto&& seen) {
-      Look half;
-      if (halved) {
-        input = moved(at_begin, 0.5 * piece);
-        half = seen(middle);
-      }
-      input = moved(at_begin, piece);
-      end = seen(to);
-      return met_between(first, halved ? &half : nullptr, end, piece);
-    };
-    if (met(start, see)) {
-      if (guards == nullptr) return true;
-      // Nearly, at least: it may be within the tolerances.
-      const auto closely = [&](const State<double>& y) { return look(view, y); };
-      input = at_begin;
-      if (met(closely(begin), closely)) return true;
+  if (affine()) {
+    if (halvings > 0) {
+      auto forms = flow_->forms.find({level, halvings});
+      if (forms == flow_->forms.end())
+        forms = flow_->forms
+                    .emplace(std::pair(level, halvings),
+                             GuardForms(*flow_->guards, now.propagator, level, halvings, coupled()))
+                    .first;
+      forms->second.follow(*here_, f, slopes(), course);
     }
-    start = end;
+    if (course.review(doubted, tolerance) == Crossing::none) {
+      here_ = end;
+      return Crossing::none;
+    }
+    // Nearly, at least: it may be within the tolerances.
+    for (const auto& [seen, instant] : {std::pair(look(now, from), std::size_t{0}),
+                                        std::pair(look(then, to), std::size_t{1} << halvings)}) {
+      course.set(instant, seen);
+      with_tolerances(seen);
+    }
+  } else {
+    if (doubted) {
+      const Input<double> halfway = moved(now.input, 0.5 * length);
+      course.set(1, look({now.equations, now.propagator, halfway}, step(now, from, f, level + 1)));
+    }
+    with_tolerances(end);
   }
-  here_ = start;
-  return false;
+  const Crossing seen = course.review(doubted, tolerance);
+  if (seen == Crossing::none) here_ = end;
+  return seen;
 }
 
 template <class T>
@@ -470,26 +453,26 @@ std::optional<typename Integrator<T>::Hit> Integrator<T>::locate(const State<dou
                                                                  double length) const {
   std::optional<Hit> first;
   const View<double> view = plain();
+  const Series<double> path = series(view, from, length);
+  std::size_t n = 0;
   view.equations.visit_guards(
       mode_, to, moved(view.input, length), [&](Guard guard, double g, double scale) {
+        const std::size_t index = n++;
         if (g >= -1e-12 * scale) return;
         double low = 0.0, high = length, t = 0.0, newton = 0.0;
         for (int i = 0; i < 60 && high - low > 1e-15 * length; ++i) {
           const Input<double> input = moved(view.input, t);
-          const State<double> y = t > 0.0 ? step_by(view, from, t) : from;
-          double value = 0.0, rate = 0.0;
-          visit_guards_and_rates({view.equations, view.propagator, view.driven, input}, y,
-                                 [&](Guard other, double g_t, double rate_t, double) {
-                                   if (other == guard) value = g_t, rate = rate_t;
-                                 });
+          const Look::Node node =
+              look({view.equations, view.propagator, input}, t > 0.0 ? path.at(t) : from)
+                  .nodes[index];
           // A guard that starts at zero and rises, as that of an arm which has just broken away,
           // was not met there.
-          if (value <= 0.0 && !(t == 0.0 && rate > 0.0))
+          if (node.value <= 0.0 && !(t == 0.0 && node.rate > 0.0))
             high = t;
           else
             low = t;
-          newton = t - value / rate;
-          if (high <= 0.0 || (value == 0.0 && t > 0.0)) break;
+          newton = t - node.value / node.rate;
+          if (high <= 0.0 || (node.value == 0.0 && t > 0.0)) break;
           const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
           if (next == t) break;
           t = next;
@@ -509,7 +492,7 @@ void Integrator<T>::move_time(double length) {
 
 template <class T>
 void Integrator<T>::pass_event(const Hit& hit) {
-  if (hit.delay != 0.0) y_ = step_by(exact(), y_, hit.delay);
+  if (hit.delay != 0.0) y_ = series(exact(), y_, std::abs(hit.delay)).at(hit.delay);
   move_time(hit.delay);
   // One Newton step on the guard in T. Its value is rounding; its derivatives are those of the
   // event time.
@@ -526,7 +509,7 @@ void Integrator<T>::pass_event(const Hit& hit) {
   const Mode next = equations_.cross(mode_, hit.guard, y_, input_);
   copy_plain_input();
   switch_mode(next);
-  level_ = ladder().last;  // another event may follow closely
+  if (!affine()) level_ = ladder().last;  // another event may follow closely
 }
 
 template <class T>
@@ -542,11 +525,11 @@ bool Integrator<T>::advance_to(const T& end) {
     const double remaining = last - value_of(input_.time);
     if (!(remaining > negligible)) break;
     const Ladder& ladder = this->ladder();
-    int level = std::max(level_, search);
+    int level = std::max({level_, search, longest()});
     // The last piece of an interval, of whatever length, is for the series, where that holds.
-    const bool piece = ladder.length(level) > remaining + negligible && search == 0 &&
-                       !equations_.has_smooth_forces() &&
-                       remaining <= ladder.length(ladder.resolved);
+    const double resolved = affine() ? ladder.length(ladder.resolved) : 0.0;
+    const bool piece =
+        ladder.length(level) > remaining + negligible && search == 0 && remaining <= resolved;
     while (level <= ladder.last && ladder.length(level) > remaining + negligible) ++level;
     const bool shortest = level >= ladder.last;
     const bool by_series = piece || level > ladder.last;
@@ -555,13 +538,13 @@ bool Integrator<T>::advance_to(const T& end) {
 
     const State<double> from = plain_state();
     State<double> to;
-    const bool met = meets_guard(from, by_series ? ladder.last + 1 : level, length, to);
+    const Crossing course = try_step(from, by_series ? ladder.last + 1 : level, length, to);
     if (steps_ > options_.step_budget ||
         (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)))
       return false;
-    if (met) {
-      if (!shortest) {
-        search = piece ? level : std::max(level, longest() - 1) + 1;
+    if (course != Crossing::none) {
+      if (!shortest && !(course == Crossing::passed && length <= resolved)) {
+        search = piece ? level : level + 1;
         continue;
       }
       if (const std::optional<Hit> hit = locate(from, to, length)) {
@@ -574,13 +557,16 @@ bool Integrator<T>::advance_to(const T& end) {
     }
     for (const double x : to)
       if (!std::isfinite(x)) return false;
-    if constexpr (std::is_same_v<T, double>)
+    if constexpr (std::is_same_v<T, double>) {
       y_ = to;
-    else
-      y_ = by_series ? step_by(exact(), y_, length) : step(exact(), y_, level);
+    } else {
+      const View<T> view = exact();
+      const State<T> f = rate(view, y_);
+      y_ = by_series ? view.propagator.series(y_, f, slopes(), length).at(length)
+                     : step(view, y_, f, level);
+    }
     move_time(length);
-    // Pieces are as exact as the whole only where there is nothing but the affine part.
-    level_ = std::max(equations_.has_smooth_forces() ? longest() : 0, level_ - 1);
+    level_ = std::max(0, level_ - 1);
     if (search > 0 && ++search > ladder.last + 1) search = 0;
   }
   // What is left is the derivatives of the two instants, and rounding.

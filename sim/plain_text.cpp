@@ -69,4 +69,6 @@ std::string shortened(std::string_view text, std::size_t most) {
   return std::string(text.substr(0, most)) + "...";
 }
 
+std::string in_quotes(std::string_view text) { return "'" + shortened(text) + "'"; }
+
 }  // namespace axisfit

@@ -21,4 +21,7 @@ bool is_harmless(std::string_view text);
 /// The text; of a long one as many whole characters as fit so many bytes, and "...".
 std::string shortened(std::string_view text, std::size_t most = 60);
 
+/// The same in single quotes: what was read may be of any length.
+std::string in_quotes(std::string_view text);
+
 }  // namespace axisfit

@@ -8,15 +8,16 @@
 // however stiff A is, and without error where f is zero. Psi and Xi come from their Taylor series
 // at the shortest length and from doubling: with E = exp(hA) - I, E(2h) = 2E + E E,
 // Psi(2h) = 2 Psi + E Psi and Xi(2h) = 2 Xi + E Xi + h Psi. (E = A Psi, but that product cancels
-// badly when A is stiff.) The slope s is a sum of few given vectors r, ramps, so that Xi is only
-// needed times these. The lengths are made when they are asked for; all of them are kept: they are
-// what the location of events needs, see integrator.h.
-// Literature: N. J. Higham, Functions of Matrices, SIAM 2008, chapter 10.
+// badly when A is stiff.) The slope s is a sum of two given vectors r, ramps, or zero, so that Xi
+// is only needed times these. The lengths are made when they are asked for; all of them are kept:
+// they are what the location of events needs, see integrator.h. Literature: N. J. Higham, Functions
+// of Matrices, SIAM 2008, chapter 10.
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <span>
+#include <cstdint>
 #include <vector>
 
 #include "sim/axis.h"
@@ -103,7 +104,10 @@ struct Ladder {
   double step;   ///< h, s
   int last;      ///< the shortest length is h / 2^last
   int resolved;  ///< at h / 2^resolved the fastest motion is resolved; at most `last`
-  double length(int level) const { return std::ldexp(step, -level); }
+  /// Of a level below 1000; std::ldexp takes as long as a row of the step.
+  double length(int level) const {
+    return step * std::bit_cast<double>(static_cast<std::uint64_t>(1023 - level) << 52);
+  }
 };
 
 /// Enough halvings of `step` for the series to be exact to rounding, and at least `least`.
@@ -124,21 +128,38 @@ Ladder ladder_for(const Matrix<T>& a, double step, int least) {
   const double size = norm(power);
   if (!(size > 0.0)) return {step, least, 0};
   const double log_rate = (log_scale + std::log2(size)) / 8.0;
-  constexpr double kLogTheta = -2.0;  // ||A|| h / 2^last <= 1/4
-  const double halvings = std::ceil(log_rate + std::log2(step) - kLogTheta);
+  const double halvings = std::ceil(log_rate + std::log2(step));  // ||A|| h / 2^resolved <= 1
   const int resolved =
       std::isfinite(halvings) ? static_cast<int>(std::clamp(halvings, 0.0, 60.0)) : 60;
   return {step, std::max(resolved, least), resolved};
 }
 
-/// Terms of the series: (1/4)^13 / 13! is far below rounding.
-inline constexpr int kSeriesTerms = 12;
+/// Terms of the series: 1 / 21! is far below rounding.
+inline constexpr int kSeriesTerms = 20;
+
+/// Factors of the ramps in s.
+inline constexpr std::size_t kRamps = 2;
+using Slopes = std::array<double, kRamps>;
+
+/// y(t) for a short time, as a polynomial: the Taylor series.
+template <class T>
+struct Series {
+  std::array<State<T>, kSeriesTerms + 1> terms;
+  std::size_t last = 0;  ///< of the terms that count
+
+  State<T> at(double t) const {
+    State<T> y = terms[last];
+    for (std::size_t n = last; n-- > 0;)
+      for (std::size_t i = 0; i < kStates; ++i) y[i] = terms[n][i] + t * y[i];
+    return y;
+  }
+};
 
 /// Not to be used by two threads at once.
 template <class T>
 class Propagator {
  public:
-  /// `a` = df/dy, of which the first n states are in use. `ramps`: the vectors r of s.
+  /// `a` = df/dy, of which the first n states are in use. `ramps`: the vectors r of s, or none.
   Propagator(const Matrix<T>& a, const Ladder& ladder, std::vector<State<T>> ramps = {},
              std::size_t n = kStates)
       : states_(n), ladder_(ladder), a_(a), ramps_(std::move(ramps)) {
@@ -176,33 +197,50 @@ class Propagator {
     return image;
   }
 
-  /// y(t + h / 2^level), from f = f(y(t)) and, per ramp, its factor in s.
-  State<T> advance(const State<T>& y, const State<T>& f, std::span<const double> slopes,
-                   int level) {
+  /// f += t times each ramp times its slope
+  void add_ramps(State<T>& f, const Slopes& slopes, double t) const {
+    for (std::size_t r = 0; r < ramps_.size(); ++r) add(f, t * slopes[r], ramps_[r]);
+  }
+
+  /// y(t + h / 2^level), from f = f(y(t)).
+  State<T> advance(const State<T>& y, const State<T>& f, const Slopes& slopes, int level) {
     const Length& length = at(level);
     State<T> next = y;
     length.psi.add_product(f, next);
-    for (std::size_t r = 0; r < slopes.size(); ++r) add(next, slopes[r], length.xi[r]);
-    return next;
-  }
-
-  /// y(t + length) by the series, 0 <= length <= h / 2^last.
-  State<T> advance_by(const State<T>& y, const State<T>& f, std::span<const double> slopes,
-                      double length) const {
-    State<T> next = y, derivative = f;
-    double factor = length;  // length^n / n!
-    for (int n = 1; n <= kSeriesTerms; ++n) {
-      add(next, factor, derivative);
-      derivative = a_times(derivative);
-      if (n == 1)
-        for (std::size_t r = 0; r < slopes.size(); ++r) add(derivative, slopes[r], ramps_[r]);
-      factor *= length / (n + 1);
-    }
+    for (std::size_t r = 0; r < ramps_.size(); ++r) add(next, slopes[r], length.xi[r]);
     return next;
   }
 
   /// exp(A h / 2^level) v
-  State<T> exponential(const State<T>& v, int level) { return advance(v, a_times(v), {}, level); }
+  State<T> exponential(const State<T>& v, int level) {
+    State<T> image = v;
+    at(level).psi.add_product(a_times(v), image);
+    return image;
+  }
+
+  /// y(t + ...), exact to rounding up to `length`, which is at most h / 2^resolved.
+  Series<T> series(const State<T>& y, const State<T>& f, const Slopes& slopes,
+                   double length) const {
+    Series<T> result;
+    result.terms[0] = y;
+    State<T> derivative = f;
+    const double theta = length / ladder_.length(ladder_.resolved);
+    double factor = 1.0;     // 1 / n!
+    double largest = theta;  // of the term, theta^n / n!
+    for (std::size_t n = 1;; ++n) {
+      State<T>& term = result.terms[n];
+      for (std::size_t i = 0; i < kStates; ++i) term[i] = factor * derivative[i];
+      factor /= static_cast<double>(n + 1);
+      largest *= theta / static_cast<double>(n + 1);
+      constexpr double kNegligible = 0x1p-62;
+      // Rates do not tell of a chain of integrators, which ends after as many terms as it has links.
+      constexpr std::size_t kLongestChain = 8;
+      result.last = n;
+      if (n == kSeriesTerms || (n > kLongestChain && largest < kNegligible)) return result;
+      derivative = a_times(derivative);
+      if (n == 1) add_ramps(derivative, slopes, 1.0);
+    }
+  }
 
  private:
   struct Length {

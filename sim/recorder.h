@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/integrator.h"
@@ -53,15 +54,17 @@ class Recorder {
   }
 
   /// What the instrument for signals[s] shows at the samples that were reached.
-  /// In the signal's unit, one value per sample.
-  std::vector<T> readings(std::size_t s) const {
+  /// In the signal's unit, one value per sample. To be called once: it takes what was read.
+  std::vector<T> readings(std::size_t s) {
     const Instrument<T>& instrument = instruments_[index_of(signals_[s])];
-    std::vector<T> fine = raw_[s];
+    std::vector<T> fine = std::move(raw_[s]);
     if (is_in_play(instrument.lag)) fine = lagging(fine, instrument.lag);
+    const bool delayed = is_in_play(instrument.delay);
+    if (pieces_ == 1 && !delayed) return fine;
     std::vector<T> shown;
     shown.reserve(fine.size() / pieces_ + 1);
     for (std::size_t k = 0; k < fine.size(); k += pieces_)
-      shown.push_back(is_in_play(instrument.delay) ? at(fine, k, instrument.delay) : fine[k]);
+      shown.push_back(delayed ? at(fine, k, instrument.delay) : fine[k]);
     return shown;
   }
 

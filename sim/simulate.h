@@ -7,6 +7,7 @@
 
 #include "sim/command.h"
 #include "sim/integrator.h"
+#include "sim/sampling.h"
 
 namespace axisfit {
 
@@ -56,8 +57,7 @@ SimulationOutcome simulate(const Model<T>& model, const Schedule& command,
                            const IntegratorOptions& options = {}) {
   SimulationOutcome outcome;
   IntegratorOptions even = options;
-  if (times.size() > 1)
-    even.interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  if (times.size() > 1) even.interval = mean_interval(times);
   Integrator<T> axis(model, coupling, even);
   std::size_t next = 0;
   T in_force(0.0);

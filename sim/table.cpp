@@ -27,7 +27,7 @@ std::string place(const std::string& file, std::size_t line) {
 }
 
 // Text of the file in quotes for a message, cut to a readable length.
-std::string quote(std::string_view text) { return "'" + shortened(text, 40) + "'"; }
+std::string quote(std::string_view text) { return in_quotes(shortened(text, 40)); }
 
 std::string counted(std::size_t count, std::string_view noun) {
   return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : "s");
@@ -46,12 +46,13 @@ std::string read_whole_file(const std::string& path) {
                          "cannot be opened (" + std::generic_category().message(errno) +
                              "); check the path and the permissions");
   }
-  // By chunks rather than by size, so that pipes can be read as well.
-  constexpr std::size_t kFirst = std::size_t{1} << 14;
+  // By chunks, the first of which is as large as the file, for pipes have no size.
+  constexpr std::uintmax_t kFirst = std::uintmax_t{1} << 14;
+  const std::uintmax_t stated = std::filesystem::file_size(path, ignored);
   std::string text;
   std::size_t size = 0;
   while (in) {
-    text.resize(std::max(kFirst, 2 * size));
+    text.resize(size > 0 ? 2 * size : std::max(kFirst, ignored ? 0 : stated + 1));
     in.read(text.data() + size, static_cast<std::streamsize>(text.size() - size));
     size += static_cast<std::size_t>(in.gcount());
   }
@@ -86,6 +87,13 @@ class LineReader {
     ++number_;
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     return line;
+  }
+
+  std::string_view rest() const { return rest_; }
+  // Takes a line of which this is the rest behind it.
+  void take_to(const char* behind) {
+    rest_.remove_prefix(static_cast<std::size_t>(behind - rest_.data()));
+    ++number_;
   }
 
  private:
@@ -344,6 +352,31 @@ void append_row(Table& table, std::size_t line_number, std::string_view line, Fo
   table.lines.push_back(line_number);
 }
 
+// Takes a line that holds nothing but numbers and delimiters, as nearly all do, in one go. Of any
+// other it takes nothing.
+bool append_plain_row(Table& table, LineReader& lines, const Format& format) {
+  if (format.delimiter != ',' && format.decimal != '.') return false;
+  const char* at = lines.rest().data();
+  const char* const end = at + lines.rest().size();
+  const std::size_t columns = table.columns.size();
+  for (std::size_t c = 0; c < columns; ++c) {
+    double value = 0;
+    const auto [stop, code] = std::from_chars(at, end, value);
+    const bool last = c + 1 == columns;
+    at = stop + (last && stop != end && *stop == '\r');
+    if (code != std::errc() || !std::isfinite(value) || at == end ||
+        *at != (last ? '\n' : format.delimiter)) {
+      for (std::size_t taken = 0; taken < c; ++taken) table.columns[taken].values.pop_back();
+      return false;
+    }
+    table.columns[c].values.push_back(value);
+    ++at;
+  }
+  lines.take_to(at);
+  table.lines.push_back(lines.number());
+  return true;
+}
+
 std::string csv_field(const std::string& text) {
   // Beyond ASCII even the first bytes could pass for the mark of another encoding.
   const bool plain = std::all_of(text.begin(), text.end(), [](char c) {
@@ -425,6 +458,8 @@ Table read_csv(const std::string& path) {
 
   std::size_t blank_line = 0;  // the first one that was not yet seen to be at the end of the file
   while (!lines.done()) {
+    const bool below_units = lines.number() >= 2;
+    if (below_units && blank_line == 0 && append_plain_row(table, lines, format)) continue;
     const std::string_view line = lines.next();
     if (is_blank(line)) {
       if (blank_line == 0) blank_line = lines.number();

@@ -1,7 +1,6 @@
 // speed [REPEATS]: the time of one residual with its Jacobian, for 1, 5, 10 and 20 parameters, by
 // axisfit, by its finite differences, by SUNDIALS CVODES and by Boost.odeint, with the errors of
 // the states and their sensitivities beside it (README.md in this folder).
-#include <ceres/cost_function.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,10 +9,9 @@
 #include <functional>
 
 #include "apps/axis_file.h"
-#include "bench/simulated.h"
 #include "bench/speed/cvodes.h"
+#include "bench/speed/evaluation.h"
 #include "bench/speed/odeint.h"
-#include "fit/residual.h"
 
 namespace {
 
@@ -41,27 +39,6 @@ Trajectory by_axisfit(const Work& work) {
       work.model<N>(), Schedule{{-1.0}, {work.command}}, work.times,
       [&](std::size_t, const Integrator<Jet<N>>& axis) { trajectory.add<N>(axis.state()); });
   return trajectory;
-}
-
-/// What a fit evaluates: velocity and acceleration at every sample.
-template <int N>
-double time_of_residual_and_jacobian(const Work& work) {
-  Job job;
-  job.model = work.rig.model;
-  RecordingOptions options;
-  options.duration = work.times.back();
-  options.signals = {Signal::velocity, Signal::acceleration};
-  job.recordings.push_back(simulated(work.rig, StepMotion{work.command}, options));
-  for (std::size_t k = 0; k < N; ++k) job.free.push_back(free_parameter(job.model, kParameters[k]));
-  const ParameterSpace space(job);
-  std::vector<double> u;
-  for (std::size_t i = 0; i < N; ++i) u.push_back(space.internal(i, job.free[i].initial));
-  const RecordingCost cost(job, space, 0, {});
-  std::vector<double> residuals(static_cast<std::size_t>(cost.num_residuals())),
-      jacobian(residuals.size() * N);
-  const double* at = u.data();
-  double* columns = jacobian.data();
-  return time_of([&] { cost.Evaluate(&at, residuals.data(), &columns); });
 }
 
 /// One-sided differences of our own simulation.
@@ -103,7 +80,8 @@ void compare(const Work& work) {
     fmt::print("{:>3}  {:<44} {:>9.3f} {:>8.1f} {:>9.1e} {:>9.1e}\n", N, name, ms, ms / ours,
                error.states, error.sensitivities);
   };
-  ours = time_of_residual_and_jacobian<N>(work);
+  Evaluation evaluation(work.rig, N, work.times.back());
+  ours = time_of([&] { evaluation.run(); });
   row("axisfit", ours, error_of(by_axisfit<N>(work), reference));
   const auto other = [&](const std::string& name, const std::function<Trajectory()>& run) {
     Trajectory found;

@@ -6,6 +6,8 @@
 #include <complex>
 #include <numbers>
 
+#include "sim/sampling.h"
+
 namespace axisfit {
 namespace {
 
@@ -57,8 +59,7 @@ std::vector<double> periods_in(const Recording& recording, const Prediction& pre
     speed = std::max(speed, std::abs(s.velocity));
   }
   const double stroke = high - low;
-  const double interval =
-      (recording.times.back() - recording.times.front()) / static_cast<double>(n - 1);
+  const double interval = mean_interval(recording.times);
   const double shortest = std::max(4.0 * speed * interval, stroke / 400.0);
   if (!(stroke > 0.0) || !(shortest < stroke)) return {};
 

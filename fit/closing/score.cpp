@@ -8,6 +8,7 @@
 #include "fit/continuation.h"
 #include "fit/parallel.h"
 #include "fit/residual.h"
+#include "sim/sampling.h"
 
 namespace axisfit {
 namespace {
@@ -55,8 +56,7 @@ Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::Vecto
     }
     s.start = std::min(s.start, recording.times.front());
     s.end = std::max(s.end, recording.times.back());
-    s.interval = std::max(s.interval, (recording.times.back() - recording.times.front()) /
-                                          static_cast<double>(recording.times.size() - 1));
+    s.interval = std::max(s.interval, mean_interval(recording.times));
     const Eigen::Index rows = RecordingCost(job, space, r, coupling).num_residuals();
     constexpr std::size_t kPeriods = 3;
     for (const bool of_drive : {false, true}) {

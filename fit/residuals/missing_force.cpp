@@ -5,6 +5,8 @@
 #include <complex>
 #include <numbers>
 
+#include "sim/sampling.h"
+
 namespace axisfit {
 namespace {
 
@@ -86,8 +88,7 @@ MissingForce missing_force(const Job& job, const FitResult& result, std::size_t 
   const Eigen::VectorXd u = space.internal(values_of(result));
   const Model<double> model = model_at(job, space, u.data(), index);
   const double mass = Equations<double>(model).moving_mass();
-  const double interval = (recording.times.back() - recording.times.front()) /
-                          static_cast<double>(recording.times.size() - 1);
+  const double interval = mean_interval(recording.times);
   double largest = 0.0;
   for (const Sample& s : result.recordings[index].prediction.samples)
     largest = std::max(largest, std::abs(s.drive_force));

@@ -194,6 +194,34 @@ TEST_F(TableTest, TellsWhichColumnARowLacksOrExceeds) {
             "or remove them");
 }
 
+TEST_F(TableTest, ARowReadsAlikeWhereverItStands) {
+  // The first row may be units and is split into fields; below it plain rows are read in one go.
+  const auto outcome = [&](const std::string& row, int line) {
+    const std::string above = line == 3 ? "a,b\n0,0.5\n" : "a,b\n";
+    for (const char* const below : {"\n7,8\n", "\n", ""}) {
+      const std::string text = above + row + below;
+      const std::string message = error(text);
+      if (message != "no error") return message.substr(message.find(' '));
+      std::vector<double> values;
+      for (const Column& column : read(text).columns)
+        values.insert(values.end(), column.values.begin() + (line - 2), column.values.end());
+      const std::vector<double> rows = *below == '\0' || below[1] == '\0'
+                                           ? std::vector<double>{1.0, -2.5e3}
+                                           : std::vector<double>{1.0, 7.0, -2.5e3, 8.0};
+      if (values != rows) return std::string("other values");
+    }
+    return std::string("these values");
+  };
+  for (const char* const row : {"1,-2.5e3", "+1,-2500", " 1 ,\t-2500 ", "\"1\",-2500", "1,-2500\r"})
+    for (const int line : {2, 3}) EXPECT_EQ(outcome(row, line), "these values") << row << line;
+  for (const char* const row : {"1", "1,2,3", "1,2,", "1,", ",2", "1,inf", "1,nan", "1,2x",
+                                "1e999,2", "1,2\r\r", "0x1,2", "1;2", "\"1,2", "1,2 3"}) {
+    EXPECT_NE(outcome(row, 3), "these values") << row;
+    if (std::string_view(row).find_first_of("in") == std::string_view::npos)
+      EXPECT_EQ(outcome(row, 2), outcome(row, 3)) << row;
+  }
+}
+
 TEST_F(TableTest, RefusesBlankLinesBetweenRows) {
   EXPECT_EQ(error("t\r\n0\r\n\r\n1\r\n"),
             "rec.csv:3: the line is blank, but rows follow; remove it, or complete the row");

@@ -1,0 +1,85 @@
+// counts [none|step|held|fit]: what one evaluation costs, counted, not timed: steps, events and
+// allocations of the paper's step with five parameters, of the same held to its data, and of a
+// whole fit. With a name that work alone is done once, for a profiler; "none" of them.
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <string>
+
+#include "apps/axis_file.h"
+#include "bench/speed/evaluation.h"
+#include "fit/estimate.h"
+
+namespace {
+std::atomic<long> allocations = 0;
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* const p = std::malloc(size > 0 ? size : 1)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+
+namespace {
+
+using namespace axisfit;
+using namespace axisfit::speed;
+
+constexpr std::size_t kFree = 5;
+constexpr double kDuration = 2.5;  // s
+
+/// Steps and events of a simulation with derivatives, as the cost runs it.
+SimulationOutcome simulated_once(const Evaluation& evaluation, double rate) {
+  const Recording& recording = evaluation.job().recordings[0];
+  const Model<Jet<6>> model = convert<Jet<6>>(evaluation.job().model);
+  const Measurement* velocity = recording.find(Signal::velocity);
+  const std::vector<double> target = target_corners(recording.times, velocity->values);
+  return simulate<Jet<6>>(
+      model, recording.command, recording.times, [](std::size_t, const Integrator<Jet<6>>&) {},
+      coupling_for(recording, rate), {target, {}},
+      recording_options(recording.times, FitOptions{}.step));
+}
+
+void count(const Rig& rig, const std::string& name, double rate) {
+  Evaluation evaluation(rig, kFree, kDuration, rate);
+  const SimulationOutcome outcome = simulated_once(evaluation, rate);
+  const long before = allocations;
+  if (!evaluation.run()) throw std::runtime_error("a simulation does not finish");
+  fmt::print("{}.allocations {}\n{}.events {}\n{}.steps {}\n", name, allocations - before, name,
+             outcome.events, name, outcome.steps);
+}
+
+/// From a factor of three off, one way and the other.
+FitResult fit(const Rig& rig) {
+  Job job = Evaluation(rig, kFree, kDuration).job();
+  for (std::size_t i = 0; i < job.free.size(); ++i)
+    job.free[i] = free_parameter(job.model, kParameters[i], i % 2 == 0 ? 3.0 : 1.0 / 3.0);
+  return estimate(job);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string only = argc > 1 ? argv[1] : "";
+  Diagnostics diagnostics;
+  const Rig rig = *read_axis_file(AXISFIT_CONFIGS "/axes/x.yaml", diagnostics);
+  constexpr double kHeld = 1000.0;  // 1/s
+  if (only == "step" || only == "held") {
+    Evaluation(rig, kFree, kDuration, only == "held" ? kHeld : 0.0).run();
+  } else if (only == "fit") {
+    fit(rig);
+  } else if (only == "none") {
+    const Evaluation made(rig, kFree, kDuration);
+  } else {
+    count(rig, "step", 0.0);
+    count(rig, "held", kHeld);
+    const long before = allocations;
+    const FitResult result = fit(rig);
+    fmt::print("fit.allocations {}\nfit.iterations {}\n", allocations - before, result.iterations);
+  }
+  return 0;
+}

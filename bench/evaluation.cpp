@@ -1,0 +1,109 @@
+// evaluation [OPTIONS OF GOOGLE BENCHMARK]: the time of one residual with its Jacobian over the
+// number of parameters, the duration and the coupling; the multiply-adds that the exact method
+// needs for it; and how many of them this machine does, at most, compiled as axisfit is.
+#include "bench/speed/evaluation.h"
+
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <span>
+#include <string>
+
+#include "apps/axis_file.h"
+
+namespace {
+
+using namespace axisfit;
+using namespace axisfit::speed;
+
+Rig x_axis() {
+  Diagnostics diagnostics;
+  return *read_axis_file(AXISFIT_CONFIGS "/axes/x.yaml", diagnostics);
+}
+
+/// Multiply-adds of products with a matrix, given by columns, of which a dual number needs one for
+/// the value and per parameter one for the vector's derivative and one for the matrix's own, where
+/// it has any.
+template <int N>
+double multiply_adds(std::span<const State<Jet<N>>> columns) {
+  double count = 0.0;
+  for (const State<Jet<N>>& column : columns)
+    for (const Jet<N>& x : column) {
+      if (!is_in_play(x)) continue;
+      count += 1.0 + N;
+      for (int k = 0; k < N; ++k) count += x.v[k] != 0.0;
+    }
+  return count;
+}
+
+/// Of a sample of the paper's step: f = A y + B w and y + Psi f, in the mode in which it rests at
+/// the end, teeth in contact and no limit reached. The reading of y1' is an element of f.
+template <int N>
+double multiply_adds_of_sample() {
+  const Work work{x_axis(), Work{}.command, {}};
+  const Model<Jet<N>> model = work.model<N>();
+  const Equations<Jet<N>> equations(model);
+  Mode mode;
+  mode.contact = mode.sliding = 1;
+  const Matrix<Jet<N>> a = matrix_of(equations, mode);
+  Propagator<Jet<N>> propagator(a, ladder_for(a, 1e-3, 0));
+  std::array<State<Jet<N>>, kStates> columns_of_a, columns_of_psi;
+  for (std::size_t j = 0; j < kStates; ++j) {
+    State<Jet<N>> unit{};
+    unit[j] = Jet<N>(1.0);
+    columns_of_a[j] = propagator.a_times(unit);
+    columns_of_psi[j] = propagator.advance(State<Jet<N>>{}, unit, {}, 0);
+    // Beyond the paper's states it is the identity, times the step.
+    if (j >= kPaperStates) columns_of_psi[j] = {};
+  }
+  const Driven<State<Jet<N>>> b = driven_by(equations, mode);
+  return multiply_adds<N>(columns_of_a) + multiply_adds<N>(columns_of_psi) + multiply_adds<N>(b);
+}
+
+template <int N>
+void residual_and_jacobian(benchmark::State& state) {
+  const double duration = 1e-3 * static_cast<double>(state.range(0));
+  Evaluation evaluation(x_axis(), N, duration, static_cast<double>(state.range(1)));
+  for (auto _ : state)
+    if (!evaluation.run()) state.SkipWithError("does not finish");
+  const double needed = static_cast<double>(state.range(0)) * multiply_adds_of_sample<N>();
+  using benchmark::Counter;
+  state.counters["needed"] = Counter(needed, Counter::kDefaults);
+  state.counters["needed/s"] = Counter(needed, Counter::kIsIterationInvariantRate);
+}
+
+/// Multiply-adds of this machine's widest registers that need no run-time dispatch, in so many
+/// chains that none waits for another.
+void peak(benchmark::State& state) {
+  constexpr std::size_t kChains = 12, kRounds = 1000;
+  using Pair = double __attribute__((vector_size(16)));
+  std::array<Pair, kChains> sums{};
+  Pair factor{1.0 + 1e-9, 1.0 - 1e-9}, term{1e-9, -1e-9};
+  benchmark::DoNotOptimize(factor);
+  benchmark::DoNotOptimize(term);
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < kRounds; ++i)
+      for (Pair& sum : sums) sum = sum * factor + term;
+    benchmark::DoNotOptimize(sums);
+  }
+  using benchmark::Counter;
+  state.counters["done/s"] = Counter(2.0 * kChains * kRounds, Counter::kIsIterationInvariantRate);
+}
+
+// Duration in ms, coupling in 1/s.
+BENCHMARK(residual_and_jacobian<1>)->Args({2500, 0})->Unit(benchmark::kMillisecond);
+BENCHMARK(residual_and_jacobian<5>)
+    ->Args({2500, 0})
+    ->Args({5000, 0})
+    ->Args({10000, 0})
+    ->Args({20000, 0})
+    ->Args({2500, 1000})
+    ->Args({2500, 30})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(residual_and_jacobian<10>)->Args({2500, 0})->Unit(benchmark::kMillisecond);
+BENCHMARK(residual_and_jacobian<20>)->Args({2500, 0})->Unit(benchmark::kMillisecond);
+BENCHMARK(peak);
+
+}  // namespace
+
+BENCHMARK_MAIN();
