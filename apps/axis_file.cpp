@@ -205,14 +205,14 @@ void read_effects(const ConfigNode& node, Model<double>& model) {
 }
 
 std::optional<Rig> read_axis_file(const std::string& path, Diagnostics& diagnostics) {
-  const std::size_t before = diagnostics.sorted().size();
+  const std::size_t before = diagnostics.count();
   const auto root = ConfigNode::load(path, diagnostics);
   auto rig = root ? read_axis(*root, diagnostics) : std::nullopt;
-  return diagnostics.sorted().size() > before ? std::nullopt : std::move(rig);
+  return diagnostics.count() > before ? std::nullopt : std::move(rig);
 }
 
 std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
-  const std::size_t before = diagnostics.sorted().size();
+  const std::size_t before = diagnostics.count();
   Rig rig;
   ConfigMap map(root, axis_keys());
   map.read("name", rig.name);
@@ -236,7 +236,7 @@ std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
   if (const auto controller = map.optional("controller"))
     read_controller(*controller, rig.controller);
   map.finish();
-  if (diagnostics.sorted().size() > before) return std::nullopt;
+  if (diagnostics.count() > before) return std::nullopt;
   if (const std::string reason = refusal(rig.model); !reason.empty()) {
     parameters->error(reason);
     return std::nullopt;

@@ -126,6 +126,7 @@ ConfigError::ConfigError(std::vector<Diagnostic> diagnostics)
       diagnostics_(std::make_shared<const std::vector<Diagnostic>>(std::move(diagnostics))) {}
 
 void Diagnostics::add(Diagnostic diagnostic) {
+  ++count_;
   if (full()) return;
   diagnostic.file = harmless(diagnostic.file);
   diagnostic.message = harmless(diagnostic.message);
@@ -203,7 +204,8 @@ struct ConfigNode::Source {
   Diagnostics* diagnostics;
 
   void error(const YAML::Mark& mark, std::string message) const {
-    if (diagnostics->full()) return;  // finding the place takes time in a large file
+    // Finding the place takes time in a large file.
+    if (diagnostics->full()) return diagnostics->add({});
     // yaml-cpp counts from 0, and columns in bytes.
     const std::size_t position =
         std::min(mark.pos < 0 ? 0 : static_cast<std::size_t>(mark.pos), contents.size());

@@ -59,10 +59,12 @@ class Diagnostics {
   Diagnostics(const Diagnostics&) = delete;
   Diagnostics& operator=(const Diagnostics&) = delete;
 
-  /// What is not harmless() in it is replaced, so that it stays one line. Does nothing when full().
+  /// What is not harmless() in it is replaced, so that it stays one line. Kept unless full().
   void add(Diagnostic diagnostic);
 
   bool empty() const { return diagnostics_.empty(); }
+  /// How many were added, kept or not.
+  std::size_t count() const { return count_; }
   /// Whether there are more diagnostics than anybody would read.
   bool full() const { return diagnostics_.size() >= 1000; }
 
@@ -75,6 +77,7 @@ class Diagnostics {
 
  private:
   std::vector<Diagnostic> diagnostics_;
+  std::size_t count_ = 0;
 };
 
 /// A value of a configuration file together with its place; cheap to copy.

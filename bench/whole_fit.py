@@ -168,8 +168,8 @@ def main():
         folder = pathlib.Path(name)
         seconds, result = by_axisfit(apps, folder)
         values = {p["name"]: p["value"] for p in result["parameters"]}
-        row("axisfit, all of fit-params", seconds, result["fit"]["iterations"],
-            result["fit"]["reduced_chi_square"], [values[name] for name in NAMES])
+        row("axisfit, all of fit-params", seconds, result["iterations"],
+            result["reduced_chi_square"], [values[name] for name in NAMES])
         for method, fit in (("SciPy least_squares", by_scipy), ("lmfit leastsq", by_lmfit)):
             for solver in ("LSODA", "Radau"):
                 rig = Rig(folder / "step.csv", solver)

@@ -465,20 +465,22 @@ std::optional<typename Integrator<T>::Hit> Integrator<T>::locate(const State<dou
           const Look::Node node =
               look({view.equations, view.propagator, input}, t > 0.0 ? path.at(t) : from)
                   .nodes[index];
-          // A guard that starts at zero and rises, as that of an arm which has just broken away,
-          // was not met there.
-          if (node.value <= 0.0 && !(t == 0.0 && node.rate > 0.0))
+          // A guard that rises from zero, as that of an arm which has just broken away, was not met
+          // there. Within a step it may fall again: that is looked for.
+          const bool rises = node.rate > 0.0;
+          if (node.value <= 0.0 && !(rises && (t == 0.0 || node.value > -1e-12 * scale)))
             high = t;
           else
             low = t;
           newton = t - node.value / node.rate;
-          if (high <= 0.0 || (node.value == 0.0 && t > 0.0)) break;
-          const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
+          if (high <= 0.0 || (node.value == 0.0 && t > 0.0 && !rises)) break;
+          const double next = !rises && newton > low && newton < high ? newton : 0.5 * (low + high);
           if (next == t) break;
           t = next;
         }
         // It may have been passed by less than the tolerance: back then.
-        const double delay = high > 0.0 ? t : newton < 0.0 && newton > -length ? newton : 0.0;
+        const double shortest = ladder().length(ladder().last);
+        const double delay = high > 0.0 ? t : newton < 0.0 && newton > -shortest ? newton : 0.0;
         if (!first || delay < first->delay) first = Hit{guard, delay};
       });
   return first;

@@ -64,6 +64,11 @@ template <class T>
 class SparseMatrix {
  public:
   explicit SparseMatrix(const Matrix<T>& dense) {
+    std::size_t size = 0;
+    for (const State<T>& row : dense)
+      size += static_cast<std::size_t>(std::ranges::count_if(row, is_in_play<T>));
+    columns_.reserve(size);
+    values_.reserve(size);
     for (std::size_t i = 0; i < kStates; ++i) {
       for (std::size_t j = 0; j < kStates; ++j) {
         if (!is_in_play(dense[i][j])) continue;
@@ -233,7 +238,8 @@ class Propagator {
       factor /= static_cast<double>(n + 1);
       largest *= theta / static_cast<double>(n + 1);
       constexpr double kNegligible = 0x1p-62;
-      // Rates do not tell of a chain of integrators, which ends after as many terms as it has links.
+      // Rates do not tell of a chain of integrators, which ends after as many terms as it has
+      // links.
       constexpr std::size_t kLongestChain = 8;
       result.last = n;
       if (n == kSeriesTerms || (n > kLongestChain && largest < kNegligible)) return result;

@@ -397,6 +397,14 @@ TEST_F(AxisFileTest, FilesThatAreNoAxisAreRefused) {
   EXPECT_EQ(diagnostics.sorted()[1].message, "not a file");
 }
 
+TEST_F(AxisFileTest, WithMoreMistakesThanAreKeptIsStillRefused) {
+  std::string text = "drive: none\ntransmission: rigid\n";
+  for (int i = 0; i < 1500; ++i) text += "name: a\n";
+  Diagnostics diagnostics;
+  EXPECT_FALSE(read_axis_file(folder_.write("axis.yaml", text), diagnostics).has_value());
+  EXPECT_TRUE(diagnostics.full());
+}
+
 TEST_F(AxisFileTest, MistakesOfOtherFilesDoNotCount) {
   Diagnostics diagnostics;
   diagnostics.add({"job.yaml", 1, 1, "something else"});

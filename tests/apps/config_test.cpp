@@ -135,6 +135,7 @@ TEST(Config, KeepsNoMoreDiagnosticsThanAnybodyReads) {
   for (int line = 1; line <= 5000; ++line) diagnostics.add({"a.yaml", line, 1, "wrong"});
   EXPECT_TRUE(diagnostics.full());
   EXPECT_EQ(diagnostics.sorted().size(), 1000U);
+  EXPECT_EQ(diagnostics.count(), 5000U);
 }
 
 TEST(Config, CountsColumnsInCharacters) {
