@@ -3,26 +3,13 @@
 // whole fit. With a name that work alone is done once, for a profiler; "none" of them.
 #include <fmt/format.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
+#include <stdexcept>
 #include <string>
 
 #include "apps/axis_file.h"
+#include "bench/allocations.h"
 #include "bench/speed/evaluation.h"
 #include "fit/estimate.h"
-
-namespace {
-std::atomic<long> allocations = 0;
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* const p = std::malloc(size > 0 ? size : 1)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace {
 
@@ -47,9 +34,9 @@ SimulationOutcome simulated_once(const Evaluation& evaluation, double rate) {
 void count(const Rig& rig, const std::string& name, double rate) {
   Evaluation evaluation(rig, kFree, kDuration, rate);
   const SimulationOutcome outcome = simulated_once(evaluation, rate);
-  const long before = allocations;
+  const long before = allocations();
   if (!evaluation.run()) throw std::runtime_error("a simulation does not finish");
-  fmt::print("{}.allocations {}\n{}.events {}\n{}.steps {}\n", name, allocations - before, name,
+  fmt::print("{}.allocations {}\n{}.events {}\n{}.steps {}\n", name, allocations() - before, name,
              outcome.events, name, outcome.steps);
 }
 
@@ -77,9 +64,10 @@ int main(int argc, char** argv) {
   } else {
     count(rig, "step", 0.0);
     count(rig, "held", kHeld);
-    const long before = allocations;
+    const long before = allocations();
     const FitResult result = fit(rig);
-    fmt::print("fit.allocations {}\nfit.iterations {}\n", allocations - before, result.iterations);
+    fmt::print("fit.allocations {}\nfit.iterations {}\n", allocations() - before,
+               result.iterations);
   }
   return 0;
 }
