@@ -1,15 +1,20 @@
 // evaluation [OPTIONS OF GOOGLE BENCHMARK]: the time of one residual with its Jacobian over the
 // number of parameters, the duration and the coupling; the multiply-adds that the exact method
-// needs for it; and how many of them this machine does, at most, compiled as axisfit is.
+// needs for it; how many of them this machine does, at most, compiled as axisfit is; and the speed
+// of reading a CSV file of a million rows, beside that of reading its bytes.
 #include "bench/speed/evaluation.h"
 
 #include <benchmark/benchmark.h>
 
 #include <array>
+#include <filesystem>
+#include <fstream>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "apps/axis_file.h"
+#include "sim/table.h"
 
 namespace {
 
@@ -90,6 +95,47 @@ void peak(benchmark::State& state) {
   state.counters["done/s"] = Counter(2.0 * kChains * kRounds, Counter::kIsIterationInvariantRate);
 }
 
+/// A recording of the x axis, a million samples of the velocity.
+class LongFile {
+ public:
+  LongFile() : path_(std::filesystem::temp_directory_path() / "axisfit-evaluation.csv") {
+    RecordingOptions options;
+    options.duration = 1000.0;
+    options.signals = {Signal::velocity};
+    std::ofstream out(path_, std::ios::binary);
+    write_csv(out, record(x_axis(), PrbsMotion{2.0, 0.2}, options), 9);
+  }
+  ~LongFile() { std::filesystem::remove(path_); }
+  LongFile(const LongFile&) = delete;
+  LongFile& operator=(const LongFile&) = delete;
+
+  std::string path() const { return path_.string(); }
+  /// Bytes that so many readings take.
+  std::int64_t bytes(std::int64_t readings) const {
+    return readings * static_cast<std::int64_t>(std::filesystem::file_size(path_));
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+void reading_csv(benchmark::State& state) {
+  const LongFile file;
+  for (auto _ : state) benchmark::DoNotOptimize(read_csv(file.path()));
+  state.SetBytesProcessed(file.bytes(state.iterations()));
+}
+
+void reading_bytes(benchmark::State& state) {
+  const LongFile file;
+  std::vector<char> part(1 << 16);
+  for (auto _ : state) {
+    std::ifstream in(file.path(), std::ios::binary);
+    while (in) in.read(part.data(), static_cast<std::streamsize>(part.size()));
+    benchmark::DoNotOptimize(part);
+  }
+  state.SetBytesProcessed(file.bytes(state.iterations()));
+}
+
 // Duration in ms, coupling in 1/s.
 BENCHMARK(residual_and_jacobian<1>)->Args({2500, 0})->Unit(benchmark::kMillisecond);
 BENCHMARK(residual_and_jacobian<5>)
@@ -103,6 +149,8 @@ BENCHMARK(residual_and_jacobian<5>)
 BENCHMARK(residual_and_jacobian<10>)->Args({2500, 0})->Unit(benchmark::kMillisecond);
 BENCHMARK(residual_and_jacobian<20>)->Args({2500, 0})->Unit(benchmark::kMillisecond);
 BENCHMARK(peak);
+BENCHMARK(reading_csv)->Unit(benchmark::kMillisecond);
+BENCHMARK(reading_bytes)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

@@ -1,0 +1,100 @@
+#include "sim/guards.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/sim/axes.h"
+
+namespace axisfit {
+namespace {
+
+/// Guards as the equations have them, with rates by a unit step along f.
+Look by_equations(const Equations<double>& equations, const Mode& mode, const State<double>& y,
+                  Input<double> input, const Target& slope) {
+  Look seen;
+  equations.visit_guards(mode, y, input, [&](Guard, double g, double scale) {
+    seen.nodes[seen.count++] = {g, 0.0, scale};
+  });
+  State<double> ahead = y;
+  const State<double> f = equations.rate(mode, y, input);
+  for (std::size_t i = 0; i < kStates; ++i) ahead[i] += f[i];
+  input.target.move(slope, 1.0);
+  std::size_t n = 0;
+  equations.visit_guards(mode, ahead, input, [&](Guard, double g, double) {
+    seen.nodes[n].rate = g - seen.nodes[n].value;
+    ++n;
+  });
+  return seen;
+}
+
+TEST(GuardForms, FollowTheGuardsThroughAStep) {
+  const Model<double> model = paper_axis();
+  const Coupling coupling = Coupling::to_velocity(300.0, true);
+  const Equations<double> equations(model, coupling);
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  for (const int contact : {-1, 0, 1})
+    for (const int v_c : {0, 1})
+      for (const int v_m : {-1, 0}) {
+        Mode mode;
+        mode.contact = static_cast<std::int8_t>(contact);
+        mode.v_c = static_cast<std::int8_t>(v_c);
+        mode.v_m = static_cast<std::int8_t>(v_m);
+        mode.sliding = 1;
+        const Matrix<double> a = matrix_of(equations, mode);
+        const Driven<State<double>> b = driven_by(equations, mode);
+        Propagator<double> propagator(a, ladder_for(a, 1e-3, 12),
+                                      {b[kByTargetVelocity], b[kByTargetPosition]},
+                                      equations.states());
+        const LinearGuards guards(equations, mode, a, b);
+        constexpr int kLevel = 1, kHalvings = 3;
+        const GuardForms forms(guards, propagator, kLevel, kHalvings, true);
+        const Target slope{normal(random), normal(random)};
+        const Slopes slopes{slope.velocity, slope.position};
+        State<double> y{0.1 * normal(random), 0.1, 0.0, 20.0, normal(random), 50.0, 3.0};
+        y[2] = (y[0] + 1e-5 * contact) / model.axis.r_g;
+        Input<double> input{4.0, {0.2, y[0]}, 0.0, {}};
+        const auto look = [&] { return guards.look(y, input, slopes); };
+
+        const Look start = look();
+        GuardCourse course(start, start, std::size_t{1} << kHalvings, 0.5e-3);
+        forms.follow(start, equations.rate(mode, y, input), slopes, course);
+        const double* inner = course.inner();
+        const double part = propagator.ladder().length(kLevel + kHalvings);
+        for (int k = 1; k < 1 << kHalvings; ++k) {
+          y = propagator.advance(y, equations.rate(mode, y, input), slopes, kLevel + kHalvings);
+          input.target.move(slope, part);
+          const Look linear = look(), exact = by_equations(equations, mode, y, input, slope);
+          ASSERT_EQ(linear.count, exact.count);
+          for (std::size_t i = 0; i < exact.count; ++i, ++inner) {
+            const auto& [value, rate, scale] = exact.nodes[i];
+            const double tolerance = 1e-11 * (scale + std::abs(value));
+            EXPECT_NEAR(linear.nodes[i].value, value, tolerance) << k << " " << i;
+            EXPECT_NEAR(*inner, value, tolerance) << k << " " << i;
+            EXPECT_NEAR(inner[exact.count], rate, 1e-9 * (std::abs(rate) + scale / part));
+          }
+          inner += exact.count;
+        }
+      }
+}
+
+TEST(GuardCourse, SeesADipBetweenInstants) {
+  const auto crossing = [](double start, double start_rate, double end, double end_rate) {
+    Look a, b;
+    a.count = b.count = 1;
+    a.nodes[0] = {start, start_rate, 0.0};
+    b.nodes[0] = {end, end_rate, 0.0};
+    return GuardCourse(a, b, 1, 1.0).review(false, {});
+  };
+  // g = (t - 1/2)^2 - c
+  for (const double c : {-0.1, -1e-6})
+    EXPECT_EQ(crossing(0.25 - c, -1.0, 0.25 - c, 1.0), Crossing::none);
+  for (const double c : {1e-6, 0.1})
+    EXPECT_EQ(crossing(0.25 - c, -1.0, 0.25 - c, 1.0), Crossing::touched);
+  EXPECT_EQ(crossing(1.0, -2.0, -1.0, -2.0), Crossing::passed);
+  EXPECT_EQ(crossing(1.0, 1.0, 2.0, 1.0), Crossing::none);
+}
+
+}  // namespace
+}  // namespace axisfit
