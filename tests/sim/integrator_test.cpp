@@ -99,6 +99,26 @@ TEST(Integrator, DoesNotDependOnItsStepHoweverStiffTheCurrentLoop) {
   std::cout << "\n";
 }
 
+TEST(Integrator, OfWhatIsAffineAgreesWithTheRungeKuttaMethod) {
+  // A drag of 1e-200 changes nothing, but is not affine: steps of half a millisecond by the
+  // Runge-Kutta method, and guards looked at as the equations have them.
+  const auto times = instants(1000, 1e-3);
+  for (const double K_v : {10.0, 1e3, 1e5}) {
+    const Model<double> affine = axis_with_gain(K_v);
+    Model<double> smooth = affine;
+    add_effect<QuadraticDrag>(smooth).c = 1e-200;
+    for (const auto& [name, command] : commands()) {
+      SCOPED_TRACE(testing::Message() << "K_v " << K_v << ", " << name);
+      const auto fast = run(affine, command, times), slow = run(smooth, command, times);
+      ASSERT_TRUE(fast.finished && slow.finished);
+      EXPECT_EQ(fast.events.back(), slow.events.back());
+      const State<double> e = errors(fast.states, slow.states);
+      for (std::size_t i = 0; i < 6; ++i) EXPECT_LT(e[i], 1e-9) << "y" << i;
+      EXPECT_LT(e[6], 1e-8);  // as above
+    }
+  }
+}
+
 TEST(Integrator, DoesNotDependOnItsStepWhereTheLoopRings) {
   // At the lower end of T_p the tachometer loop rings at some 2e4 rad/s, faster than the step.
   Model<double> model = paper_axis();

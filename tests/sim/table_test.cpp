@@ -217,8 +217,10 @@ TEST_F(TableTest, ARowReadsAlikeWhereverItStands) {
   for (const char* const row : {"1", "1,2,3", "1,2,", "1,", ",2", "1,inf", "1,nan", "1,2x",
                                 "1e999,2", "1,2\r\r", "0x1,2", "1;2", "\"1,2", "1,2 3"}) {
     EXPECT_NE(outcome(row, 3), "these values") << row;
-    if (std::string_view(row).find_first_of("in") == std::string_view::npos)
+    const bool may_be_a_unit = std::string_view(row).find_first_of("in") != std::string_view::npos;
+    if (!may_be_a_unit) {
       EXPECT_EQ(outcome(row, 2), outcome(row, 3)) << row;
+    }
   }
 }
 
