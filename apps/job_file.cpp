@@ -48,8 +48,7 @@ Section fit_keys() {
       Key::optional("seed", Whole{}, standard.seed, "of the random starts"),
       Key::optional("step", Amount{"s", 1e-7, 0.1}, standard.step,
                     "longest Runge-Kutta step; of a simulation held to the data, longest time "
-                    "between two looks "
-                    "for events")};
+                    "between two looks for events")};
 }
 
 Section limit_keys() {

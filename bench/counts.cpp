@@ -1,4 +1,4 @@
-// counts [none|step|held|fit]: what one evaluation costs, counted, not timed: steps, events and
+// counts [none|step|held]: what one evaluation costs, counted, not timed: steps, events and
 // allocations of the paper's step with five parameters, of the same held to its data, and of a
 // whole fit. With a name that work alone is done once, for a profiler; "none" of them.
 #include <fmt/format.h>
@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "apps/axis_file.h"
 #include "bench/allocations.h"
 #include "bench/speed/evaluation.h"
 #include "fit/estimate.h"
@@ -19,7 +18,7 @@ using namespace axisfit::speed;
 constexpr std::size_t kFree = 5;
 constexpr double kDuration = 2.5;  // s
 
-/// Steps and events of a simulation with derivatives, as the cost runs it.
+/// Steps and events of a simulation in dual numbers, as the cost runs it.
 SimulationOutcome simulated_once(const Evaluation& evaluation, double rate) {
   const Recording& recording = evaluation.job().recordings[0];
   const Model<Jet<6>> model = convert<Jet<6>>(evaluation.job().model);
@@ -52,13 +51,10 @@ FitResult fit(const Rig& rig) {
 
 int main(int argc, char** argv) {
   const std::string only = argc > 1 ? argv[1] : "";
-  Diagnostics diagnostics;
-  const Rig rig = *read_axis_file(AXISFIT_CONFIGS "/axes/x.yaml", diagnostics);
+  const Rig rig = x_axis();
   constexpr double kHeld = 1000.0;  // 1/s
   if (only == "step" || only == "held") {
     Evaluation(rig, kFree, kDuration, only == "held" ? kHeld : 0.0).run();
-  } else if (only == "fit") {
-    fit(rig);
   } else if (only == "none") {
     const Evaluation made(rig, kFree, kDuration);
   } else {

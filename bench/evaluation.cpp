@@ -13,18 +13,12 @@
 #include <string>
 #include <vector>
 
-#include "apps/axis_file.h"
 #include "sim/table.h"
 
 namespace {
 
 using namespace axisfit;
 using namespace axisfit::speed;
-
-Rig x_axis() {
-  Diagnostics diagnostics;
-  return *read_axis_file(AXISFIT_CONFIGS "/axes/x.yaml", diagnostics);
-}
 
 /// Multiply-adds of products with a matrix, given by columns, of which a dual number needs one for
 /// the value and per parameter one for the vector's derivative and one for the matrix's own, where

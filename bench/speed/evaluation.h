@@ -5,11 +5,18 @@
 #include <cmath>
 #include <vector>
 
+#include "apps/axis_file.h"
 #include "bench/simulated.h"
 #include "bench/speed/work.h"
 #include "fit/residual.h"
 
 namespace axisfit::speed {
+
+/// As shipped.
+inline Rig x_axis() {
+  Diagnostics diagnostics;
+  return *read_axis_file(AXISFIT_CONFIGS "/axes/x.yaml", diagnostics);
+}
 
 class Evaluation {
  public:

@@ -8,7 +8,6 @@
 #include <ctime>
 #include <functional>
 
-#include "apps/axis_file.h"
 #include "bench/speed/cvodes.h"
 #include "bench/speed/evaluation.h"
 #include "bench/speed/odeint.h"
@@ -113,9 +112,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   if (argc == 2) repeats = std::max(1, std::atoi(argv[1]));
-  Diagnostics diagnostics;
   Work work;
-  work.rig = *read_axis_file(AXISFIT_CONFIGS "/axes/x.yaml", diagnostics);
+  work.rig = x_axis();
   for (int i = 0; i <= 2500; ++i) work.times.push_back(i * 1e-3);
   fmt::print("{:>3}  {:<44} {:>9} {:>8} {:>9} {:>9}\n", "n", "method", "ms", "times", "states",
              "sens.");
