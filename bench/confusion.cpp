@@ -173,7 +173,6 @@ Job job_of(const Rig& rig, const Model<double>& declared, const std::vector<Moti
            std::uint64_t seed, Draw& draw) {
   Job job;
   job.model = declared;
-  job.options.threads = 1;
   for (std::size_t r = 0; r < motions.size(); ++r) {
     RecordingOptions options;
     options.duration = 3.0;
@@ -329,7 +328,8 @@ int main(int argc, char** argv) {
 
   std::vector<Outcome> outcomes(cases.size());
   std::mutex mutex;
-  parallel_for(cases.size(), thread_count(threads), [&](std::size_t i) {
+  const Crew crew(threads);
+  parallel_for(cases.size(), [&](std::size_t i) {
     outcomes[i] = run(cases[i], *paper, seed);
     const std::lock_guard lock(mutex);
     fmt::print("{:24} target {:4} chi2 {:8.3f} -> {:7.3f} accepted [{}] undecided [{}]{}\n",

@@ -65,7 +65,6 @@ Job job_of(Rig rig, Scenario scenario, std::uint64_t seed) {
     rig.model.structure.effects.set(*effect_named("coulomb_friction"));
   job.model = rig.model;
   job.options.coupling = CouplingMode::none;
-  job.options.threads = 1;
   for (const char* quantity : {"V_L", "B_a", "b_g", "k_g", "T_p"})
     job.free.push_back(free_parameter(job.model, quantity));
   if (scenario == Scenario::bound) {
@@ -101,13 +100,14 @@ int main(int argc, char** argv) {
   const std::optional<Rig> rig = read_axis_file(axis_path, diagnostics);
   diagnostics.throw_if_any();
 
+  const Crew crew(threads);
   bool met = true;
   fmt::print("| scenario | parameter | fits | contain the truth | rms error / standard error |\n");
   fmt::print("|---|---|---|---|---|\n");
   for (const Scenario scenario :
        {Scenario::white, Scenario::coloured, Scenario::bound, Scenario::prior}) {
     std::vector<FitResult> fits(static_cast<std::size_t>(recordings));
-    parallel_for(fits.size(), thread_count(threads), [&](std::size_t i) {
+    parallel_for(fits.size(), [&](std::size_t i) {
       fits[i] = estimate(job_of(*rig, scenario, seed * 1000000 + i));
     });
     const Job job = job_of(*rig, scenario, seed);

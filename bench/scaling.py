@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""scaling.py [BUILD]: wall-clock time of starts, profiles, shortlists and grids on one and on two
-threads, the least of three runs, and what the second thread is worth."""
+"""scaling.py [BUILD]: wall-clock time of starts, profiles, recordings, loops and grids on one and on
+two threads, the least of three runs, and what the second thread is worth."""
 import pathlib
 import subprocess
 import sys
@@ -13,7 +13,8 @@ FIT, GRID = BUILD / "apps" / "fit-params", BUILD / "bench" / "confusion"
 WORK = {
     "24 starts": [FIT, JOBS / "paper.yaml", "--starts", "24"],
     "starts and profiles": [FIT, JOBS / "paper.yaml", "--starts", "24", "--profile"],
-    "shortlists of the loop": [FIT, JOBS / "close-loop.yaml", "--close-loop"],
+    "two recordings": [FIT, JOBS / "payload.yaml"],
+    "a fit and its loop": [FIT, JOBS / "close-loop.yaml", "--close-loop"],
     "grid of loops": [GRID, ROOT / "configs" / "axes" / "x.yaml", "--effects", "added_mass",
                       "--targets", "3", "--repeats", "4", "--clean", "0", "--pairs", "0"],
 }
@@ -28,7 +29,14 @@ def seconds(command, threads):
     return min(once() for _ in range(3))
 
 
+def row(name, one, two):
+    print(f"{name:<24} {one:>7.2f} s {two:>8.2f} s {100.0 * one / (2.0 * two):>9.0f} %", flush=True)
+
+
 print(f"{'':<24} {'1 thread':>9} {'2 threads':>10} {'efficiency':>11}")
 for name, command in WORK.items():
     one, two = seconds(command, 1), seconds(command, 2)
-    print(f"{name:<24} {one:>7.2f} s {two:>8.2f} s {100.0 * one / (2.0 * two):>9.0f} %", flush=True)
+    row(name, one, two)
+    if "--close-loop" in command:
+        fit = command[:-1]
+        row("the loop alone", one - seconds(fit, 1), two - seconds(fit, 2))

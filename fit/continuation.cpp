@@ -92,12 +92,25 @@ class Continuation {
         ratio = std::sqrt(ratio);
         continue;
       }
+      if (next > 0.0 && been_there(next, solved)) return {};
       held_cost = latest.reduced_cost;
       held = std::move(solved);
       rate = next;
       ratio = std::min(ratio * 2.0, 20.0);
     }
     return held;
+  }
+
+  /// Whether an earlier path came by here, so that its end is this one's, too.
+  bool been_there(double rate, const SolveResult& solved) {
+    constexpr double kSame = 1e-2;  // of costs, and of the parameters that the data determine
+    const bool known = std::ranges::any_of(places_, [&](const Place& place) {
+      return std::abs(place.rate - rate) < kSame * rate &&
+             std::abs(place.cost - solved.cost) < kSame * solved.cost &&
+             (place.u - solved.u).lpNorm<Eigen::Infinity>() < kSame;
+    });
+    if (!known) places_.push_back({rate, solved.cost, solved.u});
+    return known;
   }
 
   void report() const {
@@ -110,6 +123,11 @@ class Continuation {
   const Job& job_;
   const ParameterSpace& space_;
   const std::function<void(const Stage&)>& progress_;
+  struct Place {
+    double rate = 0.0, cost = 0.0;
+    Eigen::VectorXd u;
+  };
+  std::vector<Place> places_;  ///< minima on the way, of all paths
   std::vector<Stage> stages_;
   int iterations_ = 0;
 };
@@ -156,8 +174,9 @@ ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
     std::optional<double> known;  // cost of the best end when it is held again
     const auto take = [&](SolveResult solved) {
       if (result.last.usable && !(solved.usable && solved.cost < result.last.cost)) return;
+      const bool same_end = result.last.usable && solved.cost > 0.99 * result.last.cost;
       result.last = std::move(solved);
-      known.reset();
+      if (!same_end) known.reset();
     };
     const auto hold_best = [&] {
       SolveResult held = continuation.hold(result.last.u, rate);

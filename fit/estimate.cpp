@@ -36,7 +36,7 @@ std::vector<Trial> run_starts(const Job& job, const ParameterSpace& space,
   std::mutex mutex;
   Progress all{.phase = "starts", .of = starts};
   if (progress && starts > 1) progress(all);
-  parallel_for(trials.size(), thread_count(job.options.threads), [&](std::size_t i) {
+  parallel_for(trials.size(), [&](std::size_t i) {
     Trial& trial = trials[i];
     trial.interrupted = is_set(job.options.stop);
     if (trial.interrupted) return;  // a million starts would take their time to throw
@@ -195,6 +195,7 @@ std::vector<double> draw_start(const Job& job, int start) {
 }
 
 FitResult estimate(const Job& job, const ProgressReport& progress) {
+  const Crew crew(job.options.threads);
   const ParameterSpace space(job);
   std::vector<Trial> trials = run_starts(job, space, progress);
   const bool interrupted = std::erase_if(trials, [](const Trial& t) { return t.interrupted; }) > 0;
@@ -215,8 +216,10 @@ FitResult estimate(const Job& job, const ProgressReport& progress) {
   result.iterations = solved.iterations;
   result.stages = best.result.stages;
   result.coupling_rate = last_coupling_rate(job);
-  for (std::size_t r = 0; r < job.recordings.size(); ++r)
-    result.recordings.push_back(judge(job, space, r, solved.u, result.coupling_rate));
+  result.recordings.resize(job.recordings.size());
+  parallel_for(job.recordings.size(), [&](std::size_t r) {
+    result.recordings[r] = judge(job, space, r, solved.u, result.coupling_rate);
+  });
 
   result.at_solution =
       std::make_shared<const Linearization>(linearize(job, space, solved.u, result.coupling_rate));

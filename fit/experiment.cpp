@@ -63,10 +63,11 @@ std::vector<Linearization> shown_by(const std::vector<Experiment>& family, const
   const Model<double> model = fitted_model(next, fit);
   const ParameterSpace space(next);
   const Eigen::VectorXd u = space.internal(values_of(fit));
+  const Crew crew(next.options.threads);
   std::vector<Linearization> shown(family.size());
   std::mutex mutex;
   int done = 0;
-  parallel_for(family.size(), thread_count(next.options.threads), [&](std::size_t i) {
+  parallel_for(family.size(), [&](std::size_t i) {
     if (is_set(next.options.stop)) throw Interrupted();
     Job trial = next;
     Recording& recording = trial.recordings[added];

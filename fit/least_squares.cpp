@@ -1,5 +1,6 @@
 #include "fit/least_squares.h"
 
+#include <ceres/evaluation_callback.h>
 #include <ceres/iteration_callback.h>
 #include <ceres/manifold.h>
 #include <ceres/problem.h>
@@ -7,7 +8,12 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <atomic>
+#include <iterator>
 #include <limits>
+#include <span>
+
+#include "fit/parallel.h"
 
 namespace axisfit {
 namespace {
@@ -60,7 +66,62 @@ class KeepCost : public ceres::CostFunction {
   Eigen::VectorXd start_;
 };
 
-Costs with_priors(const ParameterSpace& space, Costs costs) {
+/// Keeps what another cost gave last. A solver with bounds asks for the Jacobian at a point that it
+/// tries, then for the residuals there, and if it takes it for the Jacobian once more.
+class KeptCost : public ceres::CostFunction {
+ public:
+  explicit KeptCost(std::unique_ptr<ceres::CostFunction> cost)
+      : cost_(std::move(cost)),
+        size_(static_cast<std::size_t>(cost_->parameter_block_sizes().front())) {
+    set_num_residuals(cost_->num_residuals());
+    *mutable_parameter_block_sizes() = cost_->parameter_block_sizes();
+    residuals_.resize(static_cast<std::size_t>(num_residuals()));
+  }
+
+  void compute(const double* u, bool with_jacobian) const {
+    const std::span<const double> at(u, size_);
+    if (std::ranges::equal(at, u_) && (has_jacobian_ || !with_jacobian)) return;
+    u_.assign(at.begin(), at.end());
+    has_jacobian_ = with_jacobian;
+    finished_ = false;  // also where it throws
+    if (with_jacobian) jacobian_.resize(residuals_.size() * size_);
+    double* jacobian = jacobian_.data();
+    finished_ = cost_->Evaluate(&u, residuals_.data(), with_jacobian ? &jacobian : nullptr);
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const bool with_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
+    compute(parameters[0], with_jacobian);
+    if (!finished_) return false;
+    std::ranges::copy(residuals_, residuals);
+    if (with_jacobian) std::ranges::copy(jacobian_, jacobians[0]);
+    return true;
+  }
+
+ private:
+  std::unique_ptr<ceres::CostFunction> cost_;
+  std::size_t size_;  ///< of u
+  mutable std::vector<double> u_, residuals_, jacobian_;
+  mutable bool has_jacobian_ = false, finished_ = false;
+};
+
+/// Computes costs side by side, at a point where a solver is about to ask for one after the other.
+class SideBySide : public ceres::EvaluationCallback {
+ public:
+  explicit SideBySide(const double* u) : u_(u) {}
+  void add(const KeptCost* cost) { costs_.push_back(cost); }
+  void PrepareForEvaluation(bool with_jacobian, bool) override {
+    parallel_for(costs_.size(), [&](std::size_t i) { costs_[i]->compute(u_, with_jacobian); });
+  }
+
+ private:
+  const double* u_;
+  std::vector<const KeptCost*> costs_;
+};
+
+Costs priors_of(const ParameterSpace& space) {
+  Costs costs;
   for (std::size_t i = 0; i < space.size(); ++i)
     if (space[i].prior) costs.push_back(std::make_unique<PriorCost>(space, i));
   return costs;
@@ -163,10 +224,17 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
   (void)silent;
   SolveResult result;
   result.u = start;
-  ceres::Problem problem;
   double* u = result.u.data();
-  for (auto& cost : with_priors(space, std::move(costs)))
-    problem.AddResidualBlock(cost.release(), nullptr, u);
+  SideBySide side_by_side(u);
+  ceres::Problem::Options of_problem;
+  of_problem.evaluation_callback = &side_by_side;
+  ceres::Problem problem(of_problem);
+  for (auto& cost : costs) {
+    auto* kept = new KeptCost(std::move(cost));  // the problem's
+    problem.AddResidualBlock(kept, nullptr, u);
+    side_by_side.add(kept);
+  }
+  for (auto& cost : priors_of(space)) problem.AddResidualBlock(cost.release(), nullptr, u);
   if (options.keep_to_start) problem.AddResidualBlock(new KeepCost(start), nullptr, u);
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
@@ -213,23 +281,21 @@ Linearization linearize(const ParameterSpace& space, Costs costs, const Eigen::V
   Linearization result;
   SeriesRows& all = result.series.emplace_back();
   for (const auto& cost : costs) all.count += cost->num_residuals();
-  const Costs list = with_priors(space, std::move(costs));
-  Eigen::Index rows = 0;
-  for (const auto& cost : list) rows += cost->num_residuals();
-  result.residuals.resize(rows);
-  result.jacobian.resize(rows, u.size());
-  result.finite = true;
-  Eigen::Index row = 0;
-  for (const auto& cost : list) {
-    const Eigen::Index n = cost->num_residuals();
+  std::ranges::move(priors_of(space), std::back_inserter(costs));
+  std::vector<Eigen::Index> first{0};
+  for (const auto& cost : costs) first.push_back(first.back() + cost->num_residuals());
+  result.residuals.resize(first.back());
+  result.jacobian.resize(first.back(), u.size());
+  std::atomic<bool> finite = true;
+  parallel_for(costs.size(), [&](std::size_t i) {
+    const Eigen::Index row = first[i], n = costs[i]->num_residuals();
     RowMajor block(n, u.size());
     const double* parameters = u.data();
     double* jacobian = block.data();
-    result.finite =
-        result.finite && cost->Evaluate(&parameters, result.residuals.data() + row, &jacobian);
+    if (!costs[i]->Evaluate(&parameters, result.residuals.data() + row, &jacobian)) finite = false;
     result.jacobian.middleRows(row, n) = block;
-    row += n;
-  }
+  });
+  result.finite = finite;
   return result;
 }
 

@@ -36,8 +36,8 @@ struct SolveResult {
   std::string message;  ///< the solver's own reason to stop
 };
 
-/// Minimises the costs and the space's priors from u, within the space's bounds. Single-threaded
-/// and deterministic.
+/// Minimises the costs and the space's priors from u, within the space's bounds. A crew evaluates
+/// costs side by side; the result does not depend on it.
 SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u,
                      const SolveOptions& options);
 
@@ -55,7 +55,8 @@ struct Linearization {
   Eigen::MatrixXd jacobian;
 };
 
-/// Of the costs and the space's priors. All rows are one series.
+/// Of the costs, which a crew evaluates side by side, and the space's priors. All rows are one
+/// series.
 Linearization linearize(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u);
 
 }  // namespace axisfit

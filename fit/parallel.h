@@ -1,43 +1,35 @@
 // Independent pieces of work spread over threads.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
-#include <exception>
-#include <mutex>
-#include <thread>
-#include <vector>
+#include <functional>
+#include <memory>
 
 namespace axisfit {
 
 /// Number of threads for a wish of `wanted`; zero means as many as the machine has.
-inline int thread_count(int wanted) {
-  return wanted > 0 ? wanted : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
+int thread_count(int wanted);
 
-/// Calls work(i) for every i below `count`, on up to `threads` threads, in no particular order.
-/// The first exception is thrown on when all have ended.
-template <class Work>
-void parallel_for(std::size_t count, int threads, Work&& work) {
-  std::atomic<std::size_t> next = 0;
-  std::exception_ptr failure;
-  std::mutex mutex;
-  const auto run = [&] {
-    try {
-      for (std::size_t i = next++; i < count; i = next++) work(i);
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      if (!failure) failure = std::current_exception();
-      next = count;
-    }
-  };
-  {
-    std::vector<std::jthread> others;
-    for (int i = 1; i < threads && static_cast<std::size_t>(i) < count; ++i)
-      others.emplace_back(run);
-    run();
-  }
-  if (failure) std::rethrow_exception(failure);
-}
+/// For as long as it lives, parallel_for() on this thread has `threads` threads to spread its work
+/// over, this one included; 0 as for thread_count(). Inside of such work the same threads are
+/// shared: there another crew is none.
+class Crew {
+ public:
+  explicit Crew(int threads);
+  ~Crew();
+  Crew(const Crew&) = delete;
+  Crew& operator=(const Crew&) = delete;
+
+  class Members;
+
+ private:
+  std::unique_ptr<Members> members_;
+};
+
+/// Calls work(i) for every i below `count`, on all threads of the crew that have nothing else to
+/// do, in no particular order; without a crew on this one. Work may call it in turn: who has come
+/// to the end of the outer loop helps with the inner ones. The first exception is thrown on when
+/// all that was begun has ended.
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& work);
 
 }  // namespace axisfit

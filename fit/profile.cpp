@@ -123,10 +123,11 @@ class Walk {
 std::vector<Profile> profiles(const Job& job, const FitResult& fit,
                               std::span<const std::size_t> parameters,
                               const std::function<void(int done, int of)>& progress) {
+  const Crew crew(job.options.threads);
   std::vector<Side> sides(2 * parameters.size());
   std::mutex mutex;
   int done = 0;
-  parallel_for(sides.size(), thread_count(job.options.threads), [&](std::size_t i) {
+  parallel_for(sides.size(), [&](std::size_t i) {
     sides[i] = Walk(job, fit, parameters[i / 2], i % 2 == 0 ? -1.0 : 1.0).run();
     const std::lock_guard lock(mutex);
     if (progress) progress(++done, static_cast<int>(sides.size()));

@@ -155,22 +155,10 @@ bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobia
 
 bool RecordingCost::Evaluate(double const* const* parameters, double* residuals,
                              double** jacobians) const {
-  const std::span<const double> u(parameters[0], space_.size());
-  double* const jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
   if (is_set(stop_)) return false;
-  if (!std::ranges::equal(u, kept_.u)) {
-    if (jacobian == nullptr) return evaluate<double>(u.data(), residuals, nullptr, {});
-    const auto n = static_cast<std::size_t>(num_residuals());
-    kept_.u.clear();
-    kept_.residuals.resize(n);
-    kept_.jacobian.resize(n * u.size());
-    if (!evaluate_with_jacobian(u.data(), kept_.residuals.data(), kept_.jacobian.data()))
-      return false;
-    kept_.u.assign(u.begin(), u.end());
-  }
-  std::ranges::copy(kept_.residuals, residuals);
-  if (jacobian != nullptr) std::ranges::copy(kept_.jacobian, jacobian);
-  return true;
+  if (jacobians == nullptr || jacobians[0] == nullptr)
+    return evaluate<double>(parameters[0], residuals, nullptr, {});
+  return evaluate_with_jacobian(parameters[0], residuals, jacobians[0]);
 }
 
 bool RecordingCost::evaluate_with_jacobian(const double* u, double* residuals,

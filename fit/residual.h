@@ -47,10 +47,6 @@ Coupling coupling_for(const Recording& recording, double rate);
 /// A point whose simulation does not finish makes Evaluate return false: for the solver a rejected
 /// step. With a Huber loss every residual r is replaced by sign(r) sqrt(rho(r^2)), so that the sum
 /// of squares is the robust cost.
-///
-/// A solver with bounds asks for the Jacobian at a point that it tries, then for the residuals
-/// there, and if it takes it for the Jacobian once more: what was computed last is kept. Not to be
-/// used by two threads at once.
 class RecordingCost : public ceres::CostFunction {
  public:
   /// Job and space must outlive the cost, and stay as they are. When `stop` is set no point finishes any more.
@@ -74,11 +70,6 @@ class RecordingCost : public ceres::CostFunction {
   std::vector<std::size_t> fitted_;      // indices of measurements
   std::vector<Signal> signals_;          // their signals
   std::vector<std::size_t> applicable_;  // indices of parameters
-
-  struct Kept {
-    std::vector<double> u, residuals, jacobian;
-  };
-  mutable Kept kept_;
 };
 
 }  // namespace axisfit

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -25,10 +26,7 @@ class Loop {
  public:
   Loop(const Job& job, const FitResult& first, const CloseLoopOptions& options,
        const ProgressReport& progress)
-      : options_(options),
-        first_(first),
-        progress_(progress),
-        threads_(thread_count(job.options.threads)) {
+      : options_(options), first_(first), progress_(progress) {
     result_.models.push_back({"", job, first});
     if (std::ranges::none_of(job.recordings,
                              [](const Recording& r) { return r.role == Role::validate; })) {
@@ -199,14 +197,20 @@ class Loop {
     ++round_;
     tell("looking for suspects");
     const Shortlist list =
-        shortlist(current().job, values_of(current().fit), curves, options_.shortlist, threads_);
+        shortlist(current().job, values_of(current().fit), curves, options_.shortlist);
     const std::vector<Promise>& promises = list.promises;
     tried_ = list.tried;
     const auto before = residual_series(current().job, current().fit);
     std::vector<Extension> extensions(promises.size());
+    // What takes longest first, so that nobody waits for it at the end.
+    std::vector<std::size_t> order(promises.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::greater{},
+                             [&](std::size_t i) { return promises[i].candidate.parameters(); });
     int done = 0;
     std::mutex mutex;
-    parallel_for(promises.size(), threads_, [&](std::size_t i) {
+    parallel_for(order.size(), [&](std::size_t k) {
+      const std::size_t i = order[k];
       const Promise& p = promises[i];
       {
         const std::lock_guard lock(mutex);
@@ -407,7 +411,7 @@ class Loop {
       const auto best = residual_series(current().job, current().fit);
       std::vector<Extension> list(std::min<std::size_t>(accepted.rivals.size(), 4));
       tell("are there rivals of " + accepted.candidate.name + "?");
-      parallel_for(list.size(), threads_, [&](std::size_t i) {
+      parallel_for(list.size(), [&](std::size_t i) {
         const Rival& rival = accepted.rivals[i];
         list[i] = extend(rest.job, rival.candidate, values_of(rest.fit), rival.values.strengths,
                          rival.values.shapes);
@@ -454,7 +458,6 @@ class Loop {
   const CloseLoopOptions options_;
   const FitResult& first_;
   const ProgressReport& progress_;
-  const int threads_;
   ClosedLoop result_;
   Path safe_;                 ///< the latest state that can be a result
   bool provisional_ = false;  ///< what is accepted has yet to prove better than that
@@ -528,6 +531,7 @@ std::string Loop::verdict() const {
 
 ClosedLoop close_loop(const Job& job, const FitResult& first, const CloseLoopOptions& options,
                       const ProgressReport& progress) {
+  const Crew crew(job.options.threads);
   return Loop(job, first, options, progress).run();
 }
 

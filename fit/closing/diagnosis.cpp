@@ -14,8 +14,7 @@ Diagnosis diagnose(const Job& job, const FitResult& result) {
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     diagnosis.forces.push_back(missing_force(job, result, r));
   if (diagnosis.explained || !result.usable) return diagnosis;
-  const ScoreTest test =
-      score_test(job, values_of(result), score_rates(job).front(), job.options.threads);
+  const ScoreTest test = score_test(job, values_of(result), score_rates(job).front());
   constexpr std::size_t kSuspects = 5;
   constexpr double kLeastShare = 0.02;
   for (const Score& score : test.scores) {

@@ -14,7 +14,6 @@ FitResult refit(const Job& job) {
   quick.options.max_iterations = std::min(job.options.max_iterations, 25);
   // Smooth effects are then a few parts in a hundred thousand off, and twice as quick.
   quick.options.step = 2.0 * job.options.step;
-  quick.options.threads = 1;
   if (job.options.coupling == CouplingMode::continuation)
     quick.options.coupling_rate = score_rates(job).front();
   return estimate(quick);

@@ -74,8 +74,8 @@ Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::Vecto
 
 }  // namespace
 
-ScoreTest score_test(const Job& job, const std::vector<double>& values, double rate, int threads,
-                     bool curves) {
+ScoreTest score_test(const Job& job, const std::vector<double>& values, double rate, bool curves) {
+  const Crew crew(job.options.threads);
   ScoreTest test;
   const ParameterSpace space(job);
   SolveOptions options;
@@ -99,7 +99,7 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
 
   const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> base_solver(base.jacobian);
   const Job fixed = fixed_at(job, held_values);
-  parallel_for(test.scores.size(), thread_count(threads), [&](std::size_t i) {
+  parallel_for(test.scores.size(), [&](std::size_t i) {
     if (is_set(job.options.stop)) throw Interrupted();
     Score& score = test.scores[i];
     const Candidate& candidate = test.candidates[score.candidate];

@@ -37,7 +37,7 @@ struct ScoreTest {
 /// Scores all named effects of the catalogue, or all curves, from a fit with the given values of
 /// the free parameters. `coupling_rate` as in coupling_for().
 ScoreTest score_test(const Job& job, const std::vector<double>& values, double coupling_rate,
-                     int threads, bool curves = false);
+                     bool curves = false);
 
 /// The coupling rates (1/s) at which a job's residual is scored.
 std::vector<double> score_rates(const Job& job);

@@ -68,8 +68,9 @@ Separation what_separates(const ClosedLoop& loop, const Rivals& rivals,
     trials.push_back({experiment.words, nullptr, &experiment,
                       commands_of(experiment, rivals.with_chosen, controller, times), times});
 
+  const Crew crew(job.options.threads);
   std::vector<Separation> found(trials.size());
-  parallel_for(trials.size(), thread_count(job.options.threads), [&](std::size_t i) {
+  parallel_for(trials.size(), [&](std::size_t i) {
     if (is_set(job.options.stop)) throw Interrupted();
     const Trial& trial = trials[i];
     const Course a = simulated(rivals.with_chosen, trial, signals, within),

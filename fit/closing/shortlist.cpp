@@ -35,8 +35,7 @@ std::vector<Promise> best_of(const ScoreTest& test, std::size_t length) {
 }
 
 /// Fits each while it is held at `rate`, and keeps those that may yet turn out the best.
-std::vector<Promise> preliminary(const Job& job, std::vector<Promise> list, double rate,
-                                 int threads) {
+std::vector<Promise> preliminary(const Job& job, std::vector<Promise> list, double rate) {
   constexpr std::size_t kKept = 3;
   constexpr double kBehind = 1.05;  // of the best cost: the free run will not make up for more
   if (list.size() <= kKept) return list;
@@ -45,7 +44,7 @@ std::vector<Promise> preliminary(const Job& job, std::vector<Promise> list, doub
     std::vector<double> values;
   };
   std::vector<Run> runs(list.size());
-  parallel_for(list.size(), threads, [&](std::size_t i) {
+  parallel_for(list.size(), [&](std::size_t i) {
     const Promise& p = list[i];
     const Job extended =
         with_candidate(job, p.candidate, p.score.values, p.score.strengths, p.score.shapes);
@@ -78,15 +77,21 @@ std::vector<Promise> preliminary(const Job& job, std::vector<Promise> list, doub
 
 }  // namespace
 
-Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curves, int length,
-                    int threads) {
+Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curves, int length) {
+  const Crew crew(job.options.threads);
+  // What a slow hold shows may be hidden under a firm one: each has its own best.
+  const std::vector<double> rates = score_rates(job);
+  std::vector<Shortlist> of_rate(rates.size());
+  parallel_for(rates.size(), [&](std::size_t i) {
+    const ScoreTest test = score_test(job, values, rates[i], curves);
+    of_rate[i].tried = test.scores.size();
+    of_rate[i].promises =
+        preliminary(job, best_of(test, static_cast<std::size_t>(length)), rates[i]);
+  });
   Shortlist result;
-  for (const double rate : score_rates(job)) {
-    const ScoreTest test = score_test(job, values, rate, threads, curves);
-    result.tried = std::max(result.tried, test.scores.size());
-    auto list = best_of(test, static_cast<std::size_t>(length));
-    // What a slow hold shows may be hidden under a firm one: each has its own best.
-    for (Promise& promise : preliminary(job, std::move(list), rate, threads)) {
+  for (Shortlist& list : of_rate) {
+    result.tried = std::max(result.tried, list.tried);
+    for (Promise& promise : list.promises) {
       const bool known = std::ranges::any_of(
           result.promises, [&](const Promise& p) { return nearly_same(p, promise); });
       if (!known) result.promises.push_back(std::move(promise));

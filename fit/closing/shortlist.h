@@ -23,7 +23,6 @@ struct Shortlist {
 /// the given values of the free parameters; those of the catalogue or, with `curves`, those without
 /// a name. Those of a rate are then fitted with the simulation still held at it, which is quick:
 /// what is far behind there is dropped, and the others start from there.
-Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curves, int length,
-                    int threads);
+Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curves, int length);
 
 }  // namespace axisfit

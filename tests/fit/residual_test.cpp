@@ -136,25 +136,6 @@ TEST(RecordingCost, IsNotFinishedOnceItIsToStop) {
   EXPECT_FALSE(evaluate(cost, truth).finite);
 }
 
-TEST(RecordingCost, GivesWhatItKeptOnlyForTheSamePoint) {
-  const Job job = example_job();
-  const ParameterSpace space(job);
-  const Eigen::VectorXd a = space.internal({{2.7, 200.0, 1500.0, 5e6, 0.04}}),
-                        b = space.internal({{2.7, 201.0, 1500.0, 5e6, 0.04}});
-  const RecordingCost cost(job, space, 0, {});
-  const auto residuals_at = [&](const RecordingCost& at, const Eigen::VectorXd& u) {
-    std::vector<double> residuals(static_cast<std::size_t>(at.num_residuals()));
-    const double* parameters = u.data();
-    EXPECT_TRUE(at.Evaluate(&parameters, residuals.data(), nullptr));
-    return residuals;
-  };
-  const auto with_jacobian = evaluate(cost, a);
-  EXPECT_TRUE(std::ranges::equal(residuals_at(cost, a), with_jacobian.residuals));
-  EXPECT_EQ(residuals_at(cost, b), residuals_at(RecordingCost(job, space, 0, {}), b));
-  EXPECT_EQ(evaluate(cost, a).jacobian, with_jacobian.jacobian);
-  EXPECT_NE(evaluate(cost, b).jacobian, with_jacobian.jacobian);
-}
-
 TEST(RecordingCost, HuberCountsOutliersLinearly) {
   Job job = example_job();
   const ParameterSpace space(job);

@@ -25,7 +25,7 @@ std::vector<Score> best_settings(const ScoreTest& test) {
 ScoreTest score(const Job& job) {
   const FitResult fit = estimate(job);
   EXPECT_TRUE(fit.usable) << fit.verdict;
-  return score_test(job, values_of(fit), score_rates(job).front(), 1);
+  return score_test(job, values_of(fit), score_rates(job).front());
 }
 
 class ScoreOf : public testing::TestWithParam<Secret> {};
@@ -89,9 +89,12 @@ TEST(ScoreTestOf, APeriodicForceFindsItsPeriod) {
 }
 
 TEST(ScoreTestOf, TheScoresDoNotDependOnTheNumberOfThreads) {
-  const Job job = secrets().front().job();
+  Job job = secrets().front().job();
   const std::vector<double> values{20.0, 30.0};
-  const ScoreTest one = score_test(job, values, 30.0, 1), two = score_test(job, values, 30.0, 2);
+  job.options.threads = 1;
+  const ScoreTest one = score_test(job, values, 30.0);
+  job.options.threads = 2;
+  const ScoreTest two = score_test(job, values, 30.0);
   ASSERT_EQ(one.scores.size(), two.scores.size());
   for (std::size_t i = 0; i < one.scores.size(); ++i) {
     EXPECT_EQ(one.scores[i].candidate, two.scores[i].candidate);
@@ -115,7 +118,7 @@ TEST(ScoreTestOf, ADuplicateOfAFreeParameterGainsNothing) {
 TEST(ScoreTestOf, AModelThatCannotBeSimulatedIsNotUsable) {
   Job job = two_recordings(slide(), slide(), {"B_a"});
   job.model.axis.M = std::nan("");
-  EXPECT_FALSE(score_test(job, {30.0}, 30.0, 1).usable);
+  EXPECT_FALSE(score_test(job, {30.0}, 30.0).usable);
 }
 
 }  // namespace
