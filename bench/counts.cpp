@@ -18,15 +18,15 @@ using namespace axisfit::speed;
 constexpr std::size_t kFree = 5;
 constexpr double kDuration = 2.5;  // s
 
-/// Steps and events of a simulation in dual numbers, as the cost runs it.
+/// Steps and events of the simulation, as the cost runs it. In plain numbers: in dual ones this
+/// program would bring its own code for them, and that would be measured, not the library's.
 SimulationOutcome simulated_once(const Evaluation& evaluation, double rate) {
   const Recording& recording = evaluation.job().recordings[0];
-  const Model<Jet<6>> model = convert<Jet<6>>(evaluation.job().model);
   const Measurement* velocity = recording.find(Signal::velocity);
   const std::vector<double> target = target_corners(recording.times, velocity->values);
-  return simulate<Jet<6>>(
-      model, recording.command, recording.times, [](std::size_t, const Integrator<Jet<6>>&) {},
-      coupling_for(recording, rate), {target, {}},
+  return simulate<double>(
+      evaluation.job().model, recording.command, recording.times,
+      [](std::size_t, const Integrator<double>&) {}, coupling_for(recording, rate), {target, {}},
       recording_options(recording.times, FitOptions{}.step));
 }
 

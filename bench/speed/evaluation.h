@@ -2,7 +2,6 @@
 // paper's step of the x axis, read at 1 kHz, and their Jacobian.
 #pragma once
 
-#include <cmath>
 #include <vector>
 
 #include "apps/axis_file.h"
@@ -29,18 +28,14 @@ class Evaluation {
         jacobian_(residuals_.size() * parameters) {
     for (std::size_t i = 0; i < parameters; ++i)
       u_.push_back(space_.internal(i, job_.free[i].initial));
-    first_ = u_[0];
   }
   Evaluation(const Evaluation&) = delete;
   Evaluation& operator=(const Evaluation&) = delete;
 
   const Job& job() const { return job_; }
 
-  /// Whether the simulation finished. At another point each time, if only by rounding: the cost
-  /// keeps what it computed last.
+  /// Whether the simulation finished.
   bool run() {
-    const double towards = u_[0] > first_ ? -INFINITY : INFINITY;
-    u_[0] = std::nextafter(u_[0], towards);
     const double* at = u_.data();
     double* columns = jacobian_.data();
     return cost_.Evaluate(&at, residuals_.data(), &columns);
@@ -63,7 +58,6 @@ class Evaluation {
   ParameterSpace space_;
   RecordingCost cost_;
   std::vector<double> residuals_, jacobian_, u_;
-  double first_ = 0.0;
 };
 
 }  // namespace axisfit::speed
