@@ -10,9 +10,10 @@
 namespace axisfit {
 
 Effort expected_effort(const Job& job) {
-  // Of the jobs in configs/jobs: the mean, on a logarithmic scale. From a start to the end of its
-  // continuation, and then for the tests of the residual.
-  constexpr double kOfStart = 100.0, kOfDiagnosis = 150.0;
+  // Of the jobs in configs/jobs whose model explains them, and that with a generous hand: from a
+  // start to its end, by continuation or without, and then for the tests of the residual.
+  const double of_start = job.options.coupling == CouplingMode::continuation ? 100.0 : 50.0;
+  constexpr double kOfDiagnosis = 10.0;
   using Clock = std::chrono::steady_clock;
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(draw_start(job, 0));
@@ -26,10 +27,11 @@ Effort expected_effort(const Job& job) {
     effort.evaluation = turn == 0 ? time : std::min(effort.evaluation, time);
     spent += time;
   }
-  const int starts = std::max(1, job.options.starts);
-  const int threads = thread_count(job.options.threads);
-  const int turns = (starts + threads - 1) / threads;
-  effort.expected = effort.evaluation * (kOfStart * turns + kOfDiagnosis);
+  const double starts = std::max(1, job.options.starts);
+  const auto recordings = std::ranges::count(job.recordings, Role::fit, &Recording::role);
+  const double threads =
+      std::min<double>(thread_count(job.options.threads), starts * static_cast<double>(recordings));
+  effort.expected = effort.evaluation * (of_start * starts / threads + kOfDiagnosis);
   return effort;
 }
 
