@@ -29,15 +29,7 @@ thread_local int depth = 0;
 
 class Crew::Members {
  public:
-  explicit Members(int threads) {
-    crew = this;
-    helpers_.reserve(static_cast<std::size_t>(threads));
-    try {
-      for (int i = 1; i < threads; ++i) helpers_.emplace_back([this] { help(); });
-    } catch (const std::exception&) {
-      // The system has no more threads to give: it takes longer with what there are.
-    }
-  }
+  explicit Members(int threads) : most_(static_cast<std::size_t>(threads - 1)) { crew = this; }
   ~Members() {
     {
       const std::lock_guard lock(mutex_);
@@ -52,6 +44,7 @@ class Crew::Members {
     Loop loop{work, count, depth};
     std::unique_lock lock(mutex_);
     const auto place = loops_.insert(loops_.end(), &loop);
+    hire(count - 1);
     changed_.notify_all();
     while (loop.next < loop.count) take(loop, lock);
     // Only what lies deeper is worth a delay of this loop's end. Nor can two threads then wait for
@@ -69,11 +62,25 @@ class Crew::Members {
   void help() {
     crew = this;
     std::unique_lock lock(mutex_);
-    while (!dismissed_)
-      if (Loop* loop = open_loop(0))
+    while (!dismissed_) {
+      if (Loop* loop = open_loop(0)) {
         take(*loop, lock);
-      else
-        changed_.wait(lock);
+        continue;
+      }
+      ++idle_;
+      changed_.wait(lock);
+      --idle_;
+    }
+  }
+
+  /// Helpers for so many pieces, as far as nobody is idle.
+  void hire(std::size_t pieces) {
+    try {
+      for (std::size_t i = idle_; i < pieces && helpers_.size() < most_; ++i)
+        helpers_.emplace_back([this] { help(); });
+    } catch (const std::exception&) {
+      // The system has no more threads to give: it takes longer with those there are.
+    }
   }
 
   /// Of the loops with something left to begin that are no less deep than `least` the first.
@@ -109,6 +116,7 @@ class Crew::Members {
   std::condition_variable changed_;
   std::list<Loop*> loops_;
   bool dismissed_ = false;
+  std::size_t most_, idle_ = 0;  ///< of the helpers
   std::vector<std::jthread> helpers_;
 };
 
