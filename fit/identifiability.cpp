@@ -44,11 +44,15 @@ Identifiability identifiability(const ParameterSpace& space, const Eigen::Vector
   const Eigen::VectorXd& s = svd.singularValues();
   const Eigen::MatrixXd& v = svd.matrixV();
   result.singular_values.assign(s.begin(), s.end());
-
-  // (J'J)^-1 without the weak directions.
-  Eigen::MatrixXd strong = Eigen::MatrixXd::Zero(s.size(), s.size());
-  for (Eigen::Index m = 0; m < s.size(); ++m)
-    if (s[m] > scale) strong += v.col(m) * v.col(m).transpose() / (s[m] * s[m]);
+  // Standard error of g'u in all directions but one.
+  const auto error_without = [&](Eigen::Index m, const Eigen::VectorXd& g) {
+    constexpr double kRounding = 1e-9;
+    double variance = 0.0;
+    for (Eigen::Index k = 0; k < s.size(); ++k)
+      if (const double part = v.col(k).dot(g); k != m && std::abs(part) > kRounding * g.norm())
+        variance += std::pow(part / s[k], 2);
+    return scale * std::sqrt(variance);
+  };
 
   for (Eigen::Index m = s.size() - 1; m >= 0 && s[m] <= scale; --m) {
     WeakDirection& weak = result.weak.emplace_back();
@@ -78,14 +82,18 @@ Identifiability identifiability(const ParameterSpace& space, const Eigen::Vector
       Eigen::VectorXd g = Eigen::VectorXd::Zero(s.size());
       g[column(a)] = 1.0;
       g[column(b)] = exponent;
+      const double error = error_without(m, g);
       Combination c;
       c.name = product(name(0), name(1), exponent);
       c.value =
           std::exp(u[static_cast<Eigen::Index>(a)] + exponent * u[static_cast<Eigen::Index>(b)]);
-      c.standard_error = c.value * scale * std::sqrt(g.dot(strong * g));
-      weak.words = fmt::format("Of {} and {} only {} is seen.", name(0), name(1), c.name);
-      result.combinations.push_back(std::move(c));
-      continue;
+      c.standard_error = c.value * error;
+      // Unless another weak direction hides it, too.
+      if (error < 1.0 && std::isfinite(c.value)) {
+        weak.words = fmt::format("Of {} and {} only {} is seen.", name(0), name(1), c.name);
+        result.combinations.push_back(std::move(c));
+        continue;
+      }
     }
     std::vector<std::string> changes;
     for (const WeakDirection::Part& part : weak.parts) changes.push_back(change_of(space, part));

@@ -171,6 +171,19 @@ TEST_F(UncertaintyTest, NamesWhatIsSeenOfTwoParameters) {
   EXPECT_EQ(seen.singular_values.size(), 3u);
 }
 
+// Where neither the ratio nor the product is seen, none is claimed.
+TEST_F(UncertaintyTest, ClaimsNoCombinationThatAnotherWeakDirectionHides) {
+  for (const std::size_t i : {0, 1}) job_.free[i].logarithmic = true;
+  for (const std::size_t i : {0, 1}) job_.free[i].lower = 1e-6;
+  linear_.jacobian.col(1) = -linear_.jacobian.col(0);
+  linear_.jacobian.leftCols(2) *= 1e-6 * kWhite;
+  const Identifiability seen = known({std::log(6.0), std::log(2.0), 0.0});
+  ASSERT_EQ(seen.weak.size(), 2u);
+  EXPECT_TRUE(seen.combinations.empty()) << seen.combinations[0].name;
+  for (const WeakDirection& weak : seen.weak)
+    EXPECT_TRUE(weak.words.starts_with("These can change together, hardly seen:")) << weak.words;
+}
+
 TEST_F(UncertaintyTest, NamesWhatNoSignalShows) {
   linear_.jacobian.col(2).setZero();
   const Identifiability seen = known();
