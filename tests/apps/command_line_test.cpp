@@ -293,10 +293,10 @@ TEST_F(CommandLineTest, TheLoopIsClosedOnDemand) {
 }
 
 TEST_F(CommandLineTest, CtrlCKeepsWhatIsFinished) {
-  interrupt_after_ = std::chrono::milliseconds(1500);
+  interrupt_after_ = kSlower * std::chrono::milliseconds(1500);
   const auto begin = std::chrono::steady_clock::now();
   const Outcome stopped = fit({job(), "--starts", "100000", "--output", outputs_.path("results")});
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, kSlower * std::chrono::seconds(20));
   EXPECT_EQ(stopped.exit_code, 130);
   EXPECT_NE(stopped.out.find("Stopped before all was finished"), std::string::npos) << stopped.err;
   const Json json = Json::parse(outputs_.read("results/result.json"));
@@ -333,14 +333,16 @@ TEST_F(CommandLineTest, CtrlCBeforeAnythingIsFinishedSaysSo) {
 }
 
 TEST_F(CommandLineTest, ATimeLimitKeepsWhatIsFinished) {
+  const std::string limit = kSlower == 1 ? "1.5" : "15";
   const auto begin = std::chrono::steady_clock::now();
-  const Outcome stopped = fit({job(), "--starts", "100000", "--time-limit", "1.5", "--output",
-                               outputs_.path("results")});
-  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(1500));
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+  const Outcome stopped = fit(
+      {job(), "--starts", "100000", "--time-limit", limit, "--output", outputs_.path("results")});
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, kSlower * std::chrono::milliseconds(1500));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, kSlower * std::chrono::seconds(20));
   EXPECT_EQ(stopped.exit_code, 124);
-  EXPECT_NE(stopped.out.find("Stopped by the time limit of 1.5 s before all was finished"),
-            std::string::npos)
+  EXPECT_NE(
+      stopped.out.find("Stopped by the time limit of " + limit + " s before all was finished"),
+      std::string::npos)
       << stopped.err;
   EXPECT_NE(stopped.err.find("To go on from here:"), std::string::npos) << stopped.err;
   const Json json = Json::parse(outputs_.read("results/result.json"));
@@ -434,7 +436,7 @@ TEST_F(CommandLineTest, WhatCanBeDeterminedIsToldBeforeTheFit) {
                            "500 Hz, no gaps\n"))
       << text.out;
   EXPECT_NE(text.out.find("\nWhat these recordings can tell"), std::string::npos) << text.out;
-  EXPECT_NE(text.out.find("\nThe fit will take about a second on this machine"), std::string::npos);
+  EXPECT_NE(text.out.find("\nThe fit will take about "), std::string::npos) << text.out;
   EXPECT_EQ(text.out.find("\n  ! "), std::string::npos) << text.out;  // nothing looks wrong
   EXPECT_EQ(text.out.find("chi-square"), std::string::npos);
   const Json json = Json::parse(fit({job(), "--check", "--json"}).out);
@@ -545,7 +547,8 @@ TEST_F(CommandLineTest, TheNextExperimentCanBeRun) {
   EXPECT_GT(next.at("allowed"), 0);
   const Outcome run = simulate({results + "/fitted.yaml", results + "/next-motion.yaml"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  for (const double x : recorded(run.out).columns[2].values) {
+  const Table recording = recorded(run.out);
+  for (const double x : recording.columns[2].values) {
     EXPECT_GE(x, next.at("limits").at("travel_m")[0].get<double>() - 1e-3);
     EXPECT_LE(x, next.at("limits").at("travel_m")[1].get<double>() + 1e-3);
   }
@@ -555,7 +558,8 @@ TEST_F(CommandLineTest, ResultsServeBothPrograms) {
   const std::string results = folder_.path("results");
   const Outcome first = fit({job(), "--output", results, "--json"});
   ASSERT_EQ(first.exit_code, 0);
-  EXPECT_EQ(folder_.names("results"), (Names{"fitted.yaml", "report.html", "residuals.csv", "result.json"}));
+  EXPECT_EQ(folder_.names("results"),
+            (Names{"fitted.yaml", "report.html", "residuals.csv", "result.json"}));
   EXPECT_EQ(folder_.read("results/result.json"), first.out);
   EXPECT_TRUE(folder_.read("results/residuals.csv").starts_with("recording,time_s,velocity_"));
   const Json found = Json::parse(first.out);

@@ -10,6 +10,13 @@
 
 namespace axisfit {
 
+/// How many times as long a program takes, in tests that stop it by the clock.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr int kSlower = 10;
+#else
+inline constexpr int kSlower = 1;
+#endif
+
 /// Records an axis file's rig at some levels of the command.
 inline Table record_levels(const std::string& axis, const LevelsMotion& motion, double duration,
                            const std::vector<Signal>& signals, double rate,
