@@ -72,7 +72,7 @@ class Continuation {
     return run(hold(start, rate), rate);
   }
 
-  /// From what hold() found.
+  /// From what hold() found. Not usable where an earlier path went the same way.
   SolveResult run(SolveResult held, double rate) {
     // Below this rate the coupling cannot do anything within the recording any more.
     const double slowest = 1.0 / longest_duration(job_);
@@ -92,7 +92,10 @@ class Continuation {
         ratio = std::sqrt(ratio);
         continue;
       }
-      if (next > 0.0 && been_there(next, solved)) return {};
+      if (next > 0.0 && been_there(next, solved)) {
+        solved.usable = false;
+        return solved;
+      }
       held_cost = latest.reduced_cost;
       held = std::move(solved);
       rate = next;
@@ -101,7 +104,7 @@ class Continuation {
     return held;
   }
 
-  /// Whether an earlier path came by here, so that its end is this one's, too.
+  /// Whether an earlier path came by here, so that its end would be this one's, too.
   bool been_there(double rate, const SolveResult& solved) {
     constexpr double kSame = 1e-2;  // of costs, and of the parameters that the data determine
     const bool known = std::ranges::any_of(places_, [&](const Place& place) {
