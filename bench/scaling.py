@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""scaling.py [BUILD]: wall-clock time of starts, profiles, recordings, loops and grids on one and on
-two threads, the least of three runs, and what the second thread is worth."""
+"""scaling.py [BUILD]: wall-clock time of starts, profiles, loops and grids on one and on two
+threads, the least of three runs in turns, and what the second thread is worth."""
 import pathlib
 import subprocess
 import sys
@@ -13,20 +13,22 @@ FIT, GRID = BUILD / "apps" / "fit-params", BUILD / "bench" / "confusion"
 WORK = {
     "24 starts": [FIT, JOBS / "paper.yaml", "--starts", "24"],
     "starts and profiles": [FIT, JOBS / "paper.yaml", "--starts", "24", "--profile"],
-    "two recordings": [FIT, JOBS / "payload.yaml"],
     "a fit and its loop": [FIT, JOBS / "close-loop.yaml", "--close-loop"],
     "grid of loops": [GRID, ROOT / "configs" / "axes" / "x.yaml", "--effects", "added_mass",
                       "--targets", "3", "--repeats", "4", "--clean", "0", "--pairs", "0"],
 }
 
 
-def seconds(command, threads):
-    def once():
+def seconds(command):
+    """On one thread and on two."""
+
+    def once(threads):
         begin = time.perf_counter()
         subprocess.run([*command, "--threads", str(threads)], stdout=subprocess.DEVNULL, check=True)
         return time.perf_counter() - begin
 
-    return min(once() for _ in range(3))
+    turns = [(once(1), once(2)) for _ in range(3)]
+    return map(min, zip(*turns))
 
 
 def row(name, one, two):
@@ -35,8 +37,8 @@ def row(name, one, two):
 
 print(f"{'':<24} {'1 thread':>9} {'2 threads':>10} {'efficiency':>11}")
 for name, command in WORK.items():
-    one, two = seconds(command, 1), seconds(command, 2)
+    one, two = seconds(command)
     row(name, one, two)
     if "--close-loop" in command:
-        fit = command[:-1]
-        row("the loop alone", one - seconds(fit, 1), two - seconds(fit, 2))
+        fit_one, fit_two = seconds(command[:-1])
+        row("the loop alone", one - fit_one, two - fit_two)

@@ -6,7 +6,7 @@
 namespace axisfit {
 
 /// Minimises over all `fit` recordings, from u, within the bounds, with the coupling's rate
-/// (coupling_for each recording). Single-threaded and deterministic, so that a solution which the
+/// (coupling_for each recording). The same for any number of threads, so that a solution which the
 /// job's journal knows is taken from there, and others are put into it. Throws Interrupted when the
 /// job's stop flag is set.
 SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
