@@ -104,7 +104,8 @@ class Continuation {
     return held;
   }
 
-  /// Whether an earlier path came by here, so that its end would be this one's, too.
+  /// Whether an earlier path came by here, so that its end would be this one's, too. If not, later
+  /// ones will know that this one did.
   bool been_there(double rate, const SolveResult& solved) {
     constexpr double kSame = 1e-2;  // of costs, and of the parameters that the data determine
     const bool known = std::ranges::any_of(places_, [&](const Place& place) {
@@ -123,13 +124,14 @@ class Continuation {
   int iterations() const { return iterations_; }
 
  private:
-  const Job& job_;
-  const ParameterSpace& space_;
-  const std::function<void(const Stage&)>& progress_;
   struct Place {
     double rate = 0.0, cost = 0.0;
     Eigen::VectorXd u;
   };
+
+  const Job& job_;
+  const ParameterSpace& space_;
+  const std::function<void(const Stage&)>& progress_;
   std::vector<Place> places_;  ///< minima on the way, of all paths
   std::vector<Stage> stages_;
   int iterations_ = 0;

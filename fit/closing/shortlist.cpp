@@ -78,7 +78,6 @@ std::vector<Promise> preliminary(const Job& job, std::vector<Promise> list, doub
 }  // namespace
 
 Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curves, int length) {
-  const Crew crew(job.options.threads);
   // What a slow hold shows may be hidden under a firm one: each has its own best.
   const std::vector<double> rates = score_rates(job);
   std::vector<Shortlist> of_rate(rates.size());

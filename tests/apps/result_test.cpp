@@ -311,7 +311,7 @@ TEST(ResultTest, ARecordingThatCannotBeSimulatedHasNoErrors) {
   const std::string text = report_text(outcome);
   EXPECT_NE(text.find(" - "), std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
-  EXPECT_TRUE(text.ends_with(paragraph(outcome.first.verdict)));
+  EXPECT_TRUE(text.ends_with(std::string("\n").append(paragraph(outcome.first.verdict))));
 }
 
 TEST(ResultTest, LongNamesAndNumbersFitInTheWidth) {
