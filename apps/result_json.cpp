@@ -214,7 +214,7 @@ Json test_json(const Job& job, const SeriesTest& test) {
                         })},
       {"drift",
        {{"over_sigma_per_second", test.drift.per_second},
-        {"standard_error", test.drift.standard_error},
+        {"standard_error", finite(test.drift.standard_error)},
         {"p_value", test.drift.p_value}}},
       {"grid", test.grid}};
 }

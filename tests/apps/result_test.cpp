@@ -394,6 +394,14 @@ TEST(ResultTest, WhatAResidualDependsOnIsNamed) {
       std::string::npos);
 }
 
+TEST(ResultTest, ADriftOfUnknownErrorHasNone) {
+  Found fit(rubbing_job());
+  fit.outcome.diagnosis->tests[1].drift.standard_error = INFINITY;
+  const Json drift = result_json(fit.outcome).at("residual").at("tests")[1].at("drift");
+  EXPECT_TRUE(drift.at("standard_error").is_null());  // and no infinity, which becomes one in text
+  EXPECT_TRUE(drift.at("over_sigma_per_second").is_number());
+}
+
 TEST(ResultTest, SamplesAtRestAreCounted) {
   const Found fit(rubbing_job());
   const Json& acceleration = fit.json.at("recordings")[0].at("signals")[1];
