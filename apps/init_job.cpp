@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +11,6 @@
 
 #include "apps/axis_file.h"
 #include "apps/job_file.h"
-#include "apps/output_folder.h"
 #include "apps/recording_guess.h"
 #include "apps/starter_axis.h"
 #include "apps/units.h"
@@ -143,10 +141,7 @@ class Initialiser {
     list_candidates();
     choose_free();
     collect_guesses();
-    InitialJob result{{}, std::move(guesses_)};
-    if (starter_) result.files.emplace_back(kAxisName, starter_->text);
-    result.files.emplace_back(kJobName, job_text(starter_ ? kAxisName : relative(axis_)));
-    return result;
+    return {files(), std::move(guesses_)};
   }
 
  private:
@@ -388,7 +383,7 @@ class Initialiser {
   /// Takes out one after the other what the recordings leave open, the least wanted first.
   void choose_free() {
     for (;;) {
-      const Job job = read_draft().job;
+      const Job job = read_job();
       const Forecast found = forecast(job, draw_start(job, 0));
       if (!found.finite) {
         guesses_.push_back(
@@ -418,24 +413,9 @@ class Initialiser {
   }
 
   /// The job as the reader takes it, which is also the proof that it does.
-  JobFile read_draft() const {
-    const fs::path folder = fs::temp_directory_path() / fmt::format("axisfit-init-{}", ::getpid());
-    struct Remover {
-      fs::path path;
-      ~Remover() {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-      }
-    } const remover{folder};
-    fs::create_directories(folder);
-    std::string axis = kAxisName;
-    if (starter_)
-      write_file((folder / axis).string(), starter_->text);
-    else
-      axis = fs::absolute(axis_).string();
-    write_file((folder / kJobName).string(), job_text(axis));
+  Job read_job() const {
     try {
-      return read_job_file((folder / kJobName).string(), fs::absolute(folder_).string());
+      return read_job_draft(files(), fs::absolute(folder_).string()).job;
     } catch (const ConfigError& error) {
       // The places are of a file that the user never sees.
       std::set<std::string> messages;
@@ -445,9 +425,16 @@ class Initialiser {
     }
   }
 
+  Files files() const {
+    Files files;
+    if (starter_) files.emplace_back(kAxisName, starter_->text);
+    files.emplace_back(kJobName, job_text());
+    return files;
+  }
+
   // The job file
 
-  std::string job_text(const std::string& axis) const {
+  std::string job_text() const {
     std::string text = fmt::format(
         "# Written by axisfit {} --init. It runs as it is:\n#\n"
         "#   fit-params {} --check    what the recordings show, before the fit\n"
@@ -456,7 +443,7 @@ class Initialiser {
         "# keys: docs/job-file.md.\n"
         "axis: {}\n"
         "recordings:\n",
-        version(), kJobName, kJobName, scalar(axis));
+        version(), kJobName, kJobName, scalar(starter_ ? kAxisName : relative(axis_)));
     for (std::size_t i = 0; i < sources_.size(); ++i)
       text += recording_text(sources_[i], sources_.size() > 1 && i + 1 == sources_.size());
     text +=

@@ -2,13 +2,14 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
+
+#include "apps/output_folder.h"
 
 namespace axisfit {
 
 struct InitialJob {
-  std::vector<std::pair<std::string, std::string>> files;  ///< name and contents
+  Files files;                       ///< the job last
   std::vector<std::string> guesses;  ///< what the user should look at, a sentence each
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <set>
@@ -66,11 +67,11 @@ Section limit_keys() {
 
 class JobReader {
  public:
-  JobReader(const std::string& path, const std::string& data_directory)
-      : path_(path), data_directory_(data_directory) {}
+  JobReader(const std::string& path, const std::string& data_directory, const Files& drafts = {})
+      : path_(path), data_directory_(data_directory), drafts_(drafts) {}
 
   JobFile read() {
-    if (const auto root = ConfigNode::load(path_, diagnostics_)) {
+    if (const auto root = load(path_)) {
       result_.text = root->contents();
       ConfigMap map(*root, job_keys());
       const auto axis = map.required("axis");
@@ -93,16 +94,28 @@ class JobReader {
   }
 
  private:
+  /// The contents of a file that is yet to be written, or null.
+  const std::string* draft(const std::string& path) const {
+    const auto found = std::ranges::find(drafts_, path, &Files::value_type::first);
+    return found == drafts_.end() ? nullptr : &found->second;
+  }
+
+  std::optional<ConfigNode> load(const std::string& path) {
+    const std::string* contents = draft(path);
+    return contents ? ConfigNode::parse(*contents, path, diagnostics_)
+                    : ConfigNode::load(path, diagnostics_);
+  }
+
   bool read_axis_of(const ConfigNode& node) {
     const auto file = node.as_string();
     if (!file) return false;
     result_.axis_file = resolved(node, *file, {});
     std::error_code unreadable;
-    if (!fs::exists(result_.axis_file, unreadable)) {
+    if (!draft(result_.axis_file) && !fs::exists(result_.axis_file, unreadable)) {
       node.error(fmt::format("there is no axis file {}", result_.axis_file));
       return false;
     }
-    const auto root = ConfigNode::load(result_.axis_file, diagnostics_);
+    const auto root = load(result_.axis_file);
     if (root && root->is_map() && ConfigMap(*root).optional("recordings")) {
       node.error(fmt::format("{} is a job file: name a file that describes an axis", *file));
       return false;
@@ -223,6 +236,7 @@ class JobReader {
 
   std::string path_;
   std::string data_directory_;
+  Files drafts_;  ///< paths and contents
   Diagnostics diagnostics_;
   JobFile result_;
 };
@@ -245,6 +259,12 @@ const Section& job_keys() {
 
 JobFile read_job_file(const std::string& path, const std::string& data_directory) {
   return JobReader(path, data_directory).read();
+}
+
+JobFile read_job_draft(const Files& files, const std::string& folder) {
+  Files drafts = files;
+  for (auto& [name, contents] : drafts) name = (fs::path(folder) / name).lexically_normal();
+  return JobReader(drafts.back().first, {}, drafts).read();
 }
 
 }  // namespace axisfit

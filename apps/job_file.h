@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/key.h"
+#include "apps/output_folder.h"
 #include "fit/experiment.h"
 #include "sim/rig.h"
 
@@ -26,5 +27,9 @@ const Section& job_keys();
 /// for below `data_directory`, or next to the job file where that is empty. Throws ConfigError with
 /// everything that is wrong.
 JobFile read_job_file(const std::string& path, const std::string& data_directory = {});
+
+/// The same for a job that is yet to be written: as if `files`, the last of which is the job, were
+/// in `folder`, which need not exist.
+JobFile read_job_draft(const Files& files, const std::string& folder);
 
 }  // namespace axisfit

@@ -47,7 +47,7 @@ class Seeds {
 };
 
 /// As check.h takes them apart.
-std::string together(const Files& files) {
+std::string together(const InputFiles& files) {
   std::string text;
   for (const auto& [name, contents] : files)
     text += "=== " + name + "\n" + contents + (contents.ends_with('\n') ? "" : "\n");
@@ -57,7 +57,7 @@ std::string together(const Files& files) {
 void add_cases(Seeds& seeds, const BadCases& cases) {
   for (const std::string& family : cases.families())
     for (const YAML::Node& node : cases.family(family)) {
-      const Files files = cases.files_of(node);
+      const InputFiles files = cases.files_of(node);
       for (const auto& [name, contents] : files) {
         if (name.ends_with(".csv")) {
           seeds.add("csv", contents);
@@ -76,7 +76,7 @@ void add_configs(Seeds& seeds, const fs::path& project) {
     for (const auto& motion : fs::directory_iterator(configs / "motions"))
       seeds.add("axis",
                 together({{"axis.yaml", contents_of(axis)}, {"motion.yaml", contents_of(motion)}}));
-  Files recordings;
+  InputFiles recordings;
   for (const auto& entry : fs::recursive_directory_iterator(project / "testdata")) {
     if (entry.path().extension() != ".csv") continue;
     constexpr int kLines = 30;
@@ -91,7 +91,7 @@ void add_configs(Seeds& seeds, const fs::path& project) {
     // All files of a job in one folder.
     const std::string job =
         std::regex_replace(contents_of(entry), std::regex("(axis|file): [^\\s,}]*/"), "$1: ");
-    Files files{{"job.yaml", job}};
+    InputFiles files{{"job.yaml", job}};
     for (const auto& axis : fs::directory_iterator(configs / "axes"))
       if (const std::string name = axis.path().filename(); job.find(name) != job.npos)
         files[name] = contents_of(axis);

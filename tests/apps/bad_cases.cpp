@@ -237,8 +237,8 @@ std::vector<std::string> BadCases::families() const {
   return names;
 }
 
-Files BadCases::files_of(const YAML::Node& node) const {
-  Files files = good_;
+InputFiles BadCases::files_of(const YAML::Node& node) const {
+  InputFiles files = good_;
   for (const auto& entry : node) {
     const std::string name = entry.first.Scalar();
     if (name.find('.') == std::string::npos) continue;

@@ -9,22 +9,22 @@
 
 namespace axisfit {
 
-using Files = std::map<std::string, std::string>;  ///< contents by name
+using InputFiles = std::map<std::string, std::string>;  ///< contents by name
 
 class BadCases {
  public:
   explicit BadCases(const std::string& path);
 
-  const Files& good() const { return good_; }
+  const InputFiles& good() const { return good_; }
   /// The cases of a family, and the families.
   YAML::Node family(const std::string& name) const { return cases_[name]; }
   std::vector<std::string> families() const;
   /// The files of a case: the good ones, changed.
-  Files files_of(const YAML::Node& node) const;
+  InputFiles files_of(const YAML::Node& node) const;
 
  private:
   YAML::Node cases_;
-  Files good_;
+  InputFiles good_;
 };
 
 }  // namespace axisfit
