@@ -19,13 +19,14 @@ namespace fs = std::filesystem;
 
 constexpr const char* kJournal = "unfinished.journal";
 
-/// Writes a new file through to the disk.
+/// Writes a new file through to the disk. Fails where there is one, or a link that somebody has put
+/// there to have another file overwritten.
 void write_through(const fs::path& path, const std::string& contents) {
   const auto fail = [&] {
     throw fs::filesystem_error("cannot write", path,
                                std::error_code(errno, std::generic_category()));
   };
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0) fail();
   std::size_t written = 0;
   bool good = true;
@@ -182,6 +183,7 @@ void write_file(const std::string& path, const std::string& contents) {
     throw std::runtime_error(fmt::format("{} not written: it is there and not a file", path));
   const fs::path partial = fmt::format("{}.partial-{}", path, ::getpid());
   try {
+    fs::remove(partial);  // of a run that was killed
     write_through(partial, contents);
     fs::rename(partial, path);
   } catch (const std::exception& error) {

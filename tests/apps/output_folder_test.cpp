@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <functional>
@@ -253,6 +254,16 @@ TEST_F(OutputFolderTest, WritesAFile) {
   EXPECT_EQ(error_at("step.csv"), "");
   EXPECT_EQ(folder_.read("step.csv"), "new");
   EXPECT_EQ(folder_.names(), Names{"step.csv"});
+}
+
+TEST_F(OutputFolderTest, FollowsNoLinkThatAwaitsItsTemporaryFile) {
+  const std::string other = folder_.write("other", "precious");
+  std::filesystem::create_symlink(
+      other, folder_.path("step.csv.partial-" + std::to_string(::getpid())));
+  EXPECT_EQ(error_at("step.csv"), "");
+  EXPECT_EQ(folder_.read("step.csv"), "new");
+  EXPECT_EQ(folder_.read("other"), "precious");
+  EXPECT_EQ(folder_.names(), (Names{"other", "step.csv"}));
 }
 
 TEST_F(OutputFolderTest, LeavesNothingOfAFileThatCannotBeWritten) {
