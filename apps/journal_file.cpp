@@ -115,10 +115,12 @@ void JournalFile::open_and_lock(const std::string& path) {
     }  // where there are no locks it must do without
     // The run that had it may have removed it meanwhile.
     struct stat opened = {}, there = {};
-    if (fstat(file_, &opened) == 0 && stat(path.c_str(), &there) == 0 &&
-        opened.st_ino == there.st_ino && opened.st_dev == there.st_dev)
-      return;
+    const bool same = fstat(file_, &opened) == 0 && stat(path.c_str(), &there) == 0 &&
+                      opened.st_ino == there.st_ino && opened.st_dev == there.st_dev;
+    if (same && S_ISREG(opened.st_mode)) return;
     ::close(file_);
+    // To read a pipe could take for ever.
+    if (same) throw std::runtime_error(path + " is there and not a file; move it away");
   }
 }
 

@@ -1,9 +1,11 @@
 #include "apps/journal_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <bit>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "tests/apps/files.h"
@@ -99,6 +101,12 @@ TEST_F(JournalFileTest, ForeignFilesAreBegunAnew) {
     EXPECT_EQ(journal.earlier(), 0u);
     EXPECT_TRUE(journal.is_empty());
   }
+}
+
+TEST_F(JournalFileTest, DoesNotReadWhatIsNoFile) {
+  ASSERT_EQ(::mkfifo(path_.c_str(), 0600), 0);
+  EXPECT_THROW(JournalFile{path_}, std::runtime_error);
+  EXPECT_TRUE(std::filesystem::is_fifo(path_));
 }
 
 TEST_F(JournalFileTest, IsOpenOnce) {
