@@ -4,18 +4,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "apps/apart.h"
@@ -54,25 +51,6 @@ void keep_first_complaint(int /*level*/, char* message) {
 }
 
 std::string in_variable(const std::string& name) { return "variable " + in_quotes(name) + ": "; }
-
-/// That there is something to read.
-void require_contents(const std::string& path) {
-  std::error_code ignored;  // what stands in the way of looking stands in the way of opening, too
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw RecordingError(path, 0, "is a directory; give the path of a recording");
-  }
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    throw RecordingError(path, 0,
-                         "cannot be opened (" + std::generic_category().message(errno) +
-                             "); check the path and the permissions");
-  }
-  // libmatio would take an empty file for one of version 4.
-  if (in.peek() == std::ifstream::traits_type::eof()) {
-    throw RecordingError(path, 0, "the file is empty; save or copy it again");
-  }
-}
 
 MatHandle open_mat(const std::string& path) {
   check_mat_sizes(path);
@@ -325,7 +303,10 @@ MatFile read_apart(const std::string& path) {
 }  // namespace
 
 MatFile read_mat(const std::string& path) {
-  require_contents(path);
+  // libmatio would take an empty file for one of version 4.
+  if (open_recording(path).peek() == std::ifstream::traits_type::eof()) {
+    throw RecordingError(path, 0, "the file is empty; save or copy it again");
+  }
   return is_hdf5(path) ? read_apart(path) : read_here(path);
 }
 

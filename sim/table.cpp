@@ -34,31 +34,14 @@ std::string counted(std::size_t count, std::string_view noun) {
 }
 
 std::string read_whole_file(const std::string& path) {
-  std::error_code ignored;  // what stands in the way of looking stands in the way of opening, too
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw RecordingError(path, 0, "is a directory; give the path of a recording");
-  }
   const FileWatch watch(path);
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    throw RecordingError(path, 0,
-                         "cannot be opened (" + std::generic_category().message(errno) +
-                             "); check the path and the permissions");
-  }
-  // By chunks, the first of which is as large as the file, for pipes have no size.
-  constexpr std::uintmax_t kFirst = std::uintmax_t{1} << 14;
-  const std::uintmax_t stated = std::filesystem::file_size(path, ignored);
-  std::string text;
-  std::size_t size = 0;
-  while (in) {
-    text.resize(size > 0 ? 2 * size : std::max(kFirst, ignored ? 0 : stated + 1));
-    in.read(text.data() + size, static_cast<std::streamsize>(text.size() - size));
-    size += static_cast<std::size_t>(in.gcount());
-  }
+  std::ifstream in = open_recording(path);
+  std::error_code gone;
+  const std::uintmax_t size = std::filesystem::file_size(path, gone);
+  std::string text(gone ? 0 : size, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (in.bad()) throw RecordingError(path, 0, "cannot be read to its end; check the medium");
-  if (watch.has_changed()) throw RecordingError(path, 0, FileWatch::kMessage);
-  text.resize(size);
+  if (gone || watch.has_changed()) throw RecordingError(path, 0, FileWatch::kMessage);
   return text;
 }
 
@@ -408,6 +391,24 @@ void append_number(std::string& text, double value, int significant_digits) {
 RecordingError::RecordingError(const std::string& file, std::size_t line,
                                const std::string& message)
     : std::runtime_error(harmless(place(file, line) + ": " + message)) {}
+
+std::ifstream open_recording(const std::string& path) {
+  std::error_code ignored;  // what stands in the way of looking stands in the way of opening, too
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
+    const bool folder = std::filesystem::is_directory(path, ignored);
+    throw RecordingError(path, 0,
+                         std::string(folder ? "is a directory" : "is not a file") +
+                             "; give the path of a recording");
+  }
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) {
+    throw RecordingError(path, 0,
+                         "cannot be opened (" + std::generic_category().message(errno) +
+                             "); check the path and the permissions");
+  }
+  return in;
+}
 
 std::size_t Table::rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
 

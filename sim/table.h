@@ -18,6 +18,10 @@ class RecordingError : public std::runtime_error {
   RecordingError(const std::string& file, std::size_t line, const std::string& message);
 };
 
+// Opens a recording to be read. Throws RecordingError where there is none, and where what is there
+// is no file: a pipe may never be written to, and a device have no end.
+std::ifstream open_recording(const std::string& path);
+
 struct Column {
   std::string name;
   std::vector<double> values;

@@ -1,6 +1,7 @@
 #include "sim/table.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cfloat>
@@ -267,6 +268,8 @@ TEST_F(TableTest, RefusesFilesThatCannotBeOpened) {
               "permissions");
   }
   EXPECT_THROW(read_csv(directory_.string()), RecordingError);
+  ASSERT_EQ(::mkfifo(path().c_str(), 0600), 0);  // nobody writes to it
+  EXPECT_THROW(read_csv(path()), RecordingError);
 }
 
 TEST_F(TableTest, ReadsFilesLargerThanOneChunk) {
