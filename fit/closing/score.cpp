@@ -28,14 +28,17 @@ Job fixed_at(const Job& job, std::span<const double> values) {
   return fixed;
 }
 
-/// Orthonormal columns that span those of a matrix.
+/// Orthonormal columns that span those of a matrix; a zero where they span nothing, for parts of
+/// empty matrices are beyond Eigen.
 Eigen::MatrixXd basis_of(const Eigen::MatrixXd& a) {
-  if (a.cols() == 0) return Eigen::MatrixXd(a.rows(), 0);
+  const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(a.rows(), 1);
+  if (a.cols() == 0) return nothing;
   Eigen::MatrixXd scaled = a;
   for (Eigen::Index k = 0; k < a.cols(); ++k)
     if (const double length = a.col(k).norm(); length > 0.0) scaled.col(k) /= length;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
   qr.setThreshold(1e-9);
+  if (qr.rank() == 0) return nothing;
   return qr.householderQ() * Eigen::MatrixXd::Identity(a.rows(), qr.rank());
 }
 
