@@ -135,9 +135,12 @@ void JournalFile::read() {
   const std::optional<Json> header = unframed(rest);
   if (!header || *header != origin()) return;
   end_ = bytes.size() - rest.size();
-  while (const std::optional<Json> record = unframed(rest)) {
-    earlier_.emplace(record->at("key").get<ProblemKey>(), from_json(*record));
-    end_ = bytes.size() - rest.size();
+  try {
+    while (const std::optional<Json> record = unframed(rest)) {
+      earlier_.emplace(record->at("key").get<ProblemKey>(), from_json(*record));
+      end_ = bytes.size() - rest.size();
+    }
+  } catch (const Json::exception&) {  // whole, but not of our making
   }
 }
 

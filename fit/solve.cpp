@@ -25,8 +25,11 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
   Journal* const journal = job.options.journal;
   const ProblemKey key =
       journal != nullptr ? problem_key(job, u, coupling_rate, options) : ProblemKey{};
-  if (journal != nullptr)
-    if (std::optional<SolveResult> known = journal->find(key)) return *std::move(known);
+  if (journal != nullptr) {
+    // Files can be forged, and what is read beyond a vector's end is anything.
+    std::optional<SolveResult> known = journal->find(key);
+    if (known && known->u.size() == u.size()) return *std::move(known);
+  }
   SolveResult result =
       minimize(space, recording_costs(job, space, coupling_rate, options.stop), u, options);
   if (is_set(options.stop)) throw Interrupted();

@@ -93,6 +93,15 @@ TEST_F(JournalFileTest, GoesOnBehindWhatWasNotWrittenToItsEnd) {
   expect_same(journal.find(second_).value(), solution(2.0));
 }
 
+TEST_F(JournalFileTest, WhatIsNoSolutionDoesNotCount) {
+  JournalFile{path_};
+  const std::string header = folder_.read("journal");  // a record with a right checksum
+  const std::size_t one = write();
+  folder_.write("journal", folder_.read("journal").substr(0, one) + header);
+  EXPECT_EQ(found(), 1u);
+  EXPECT_EQ(folder_.read("journal").size(), one);
+}
+
 TEST_F(JournalFileTest, ForeignFilesAreBegunAnew) {
   for (const std::string& text : {std::string(), std::string("{}\n"), std::string(1000, '\0'),
                                   std::string(1000, '\xff')}) {

@@ -103,6 +103,20 @@ TEST(JournalTest, ASearchForEffectsThatIsBegunAgainEndsTheSame) {
   }
 }
 
+TEST(JournalTest, ASolutionOfAnotherSizeIsNotTaken) {
+  class Forged : public MemoryJournal {
+    std::optional<SolveResult> find(const ProblemKey&) override {
+      SolveResult forged;
+      forged.usable = forged.converged = true;
+      return forged;
+    }
+  } forged;
+  Job j = job();
+  const FitResult without = estimate(j);
+  j.options.journal = &forged;
+  EXPECT_EQ(digits(estimate(j)), digits(without));
+}
+
 TEST(JournalTest, TheKeyDependsOnAllThatTheSolutionFollowsFrom) {
   struct Problem {
     Job job;
