@@ -39,11 +39,16 @@ std::string framed(const Json& json) {
   return std::string(reinterpret_cast<const char*>(frame.data()), sizeof frame) + payload;
 }
 
+/// Of a record, in bytes. A solution takes hundreds; what is nested thousands deep, as a forged one
+/// may be, would exhaust the stack of the reader.
+constexpr std::uint32_t kLongest = 1 << 14;
+
 /// Takes the first record off; none where it is not whole.
 std::optional<Json> unframed(std::string_view& bytes) {
   std::array<std::uint32_t, 2> frame;
   if (bytes.size() < sizeof frame) return std::nullopt;
   std::memcpy(frame.data(), bytes.data(), sizeof frame);
+  if (frame[0] > kLongest) return std::nullopt;
   const std::string_view payload = bytes.substr(sizeof frame, frame[0]);
   if (payload.size() < frame[0] || checksum(payload) != frame[1]) return std::nullopt;
   Json json = Json::from_cbor(payload, true, false);
@@ -52,14 +57,14 @@ std::optional<Json> unframed(std::string_view& bytes) {
   return json;
 }
 
-/// Of the program that runs: another one might solve otherwise.
-const Json& origin() {
-  static const Json json = [] {
+/// The first record, of the program that runs: another one might solve otherwise.
+const std::string& origin() {
+  static const std::string record = [] {
     std::ifstream self("/proc/self/exe", std::ios::binary);
     const std::string program{std::istreambuf_iterator<char>(self), {}};
-    return Json{{"axisfit", version()}, {"program", checksum(program)}};
+    return framed({{"axisfit", version()}, {"program", checksum(program)}});
   }();
-  return json;
+  return record;
 }
 
 Json to_json(const ProblemKey& key, const SolveResult& s) {
@@ -93,7 +98,7 @@ JournalFile::JournalFile(const std::string& path) {
   try {
     read();
     if (ftruncate(file_, static_cast<off_t>(end_)) != 0) throw std::runtime_error(reason(errno));
-    if (end_ == 0) append(framed(origin()));
+    if (end_ == 0) append(origin());
     if (!failure_.empty()) throw std::runtime_error(failure_);
   } catch (...) {
     if (end_ == 0) ::unlink(path.c_str());
@@ -131,10 +136,9 @@ void JournalFile::read() {
     if (n < 0) throw std::runtime_error(reason(errno));
     bytes.append(chunk.data(), static_cast<std::size_t>(n));
   }
-  std::string_view rest = bytes;
-  const std::optional<Json> header = unframed(rest);
-  if (!header || *header != origin()) return;
-  end_ = bytes.size() - rest.size();
+  if (!bytes.starts_with(origin())) return;
+  end_ = origin().size();
+  std::string_view rest = std::string_view(bytes).substr(end_);
   try {
     while (const std::optional<Json> record = unframed(rest)) {
       earlier_.emplace(record->at("key").get<ProblemKey>(), from_json(*record));

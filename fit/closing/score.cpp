@@ -28,8 +28,8 @@ Job fixed_at(const Job& job, std::span<const double> values) {
   return fixed;
 }
 
-/// Orthonormal columns that span those of a matrix; a zero where they span nothing, for parts of
-/// empty matrices are beyond Eigen.
+/// Orthonormal columns that span those of a matrix; a column of zeros where they span nothing, for
+/// of a matrix without columns Eigen takes no blocks.
 Eigen::MatrixXd basis_of(const Eigen::MatrixXd& a) {
   const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(a.rows(), 1);
   if (a.cols() == 0) return nothing;

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <zlib.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <filesystem>
@@ -94,12 +96,24 @@ TEST_F(JournalFileTest, GoesOnBehindWhatWasNotWrittenToItsEnd) {
 }
 
 TEST_F(JournalFileTest, WhatIsNoSolutionDoesNotCount) {
-  JournalFile{path_};
-  const std::string header = folder_.read("journal");  // a record with a right checksum
+  // Arrays within arrays, more of them than a stack can hold, with a right checksum.
+  const std::string nested(10'000'000, '\x81');
+  const std::array<std::uint32_t, 2> frame{
+      static_cast<std::uint32_t>(nested.size()),
+      static_cast<std::uint32_t>(
+          crc32_z(0, reinterpret_cast<const Bytef*>(nested.data()), nested.size()))};
+  const std::string deep =
+      std::string(reinterpret_cast<const char*>(frame.data()), sizeof frame) + nested;
+  folder_.write("journal", deep);
+  EXPECT_EQ(found(), 0u);
+  const std::string header = folder_.read("journal");  // a record, too
   const std::size_t one = write();
-  folder_.write("journal", folder_.read("journal").substr(0, one) + header);
-  EXPECT_EQ(found(), 1u);
-  EXPECT_EQ(folder_.read("journal").size(), one);
+  const std::string good = folder_.read("journal").substr(0, one);
+  for (const std::string& wrong : {header, deep}) {
+    folder_.write("journal", good + wrong);
+    EXPECT_EQ(found(), 1u);
+    EXPECT_EQ(folder_.read("journal").size(), one);
+  }
 }
 
 TEST_F(JournalFileTest, ForeignFilesAreBegunAnew) {
