@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fit/parallel.h"
+#include "fit/uncertainty.h"
 
 namespace axisfit {
 namespace {
@@ -74,6 +75,37 @@ TEST(LeastSquares, AsksForAJacobianOncePerPoint) {
     EXPECT_GT(a.jacobians.size(), 4u);
     for (const auto& [u, times] : a.jacobians) EXPECT_EQ(times, 1) << u;
   }
+}
+
+// At the minimum exp(u) = 2.05 and 4.1 the residuals are +-0.05 and +-0.1.
+TEST(LeastSquares, ReducedCostIsTheMeanSquareOfTheResiduals) {
+  std::vector<Asked> asked(2);
+  const SolveResult result =
+      minimize(two_parameters(), costs_of(asked), Eigen::Vector2d(1.0, 1.0), {});
+  ASSERT_TRUE(result.converged);
+  EXPECT_NEAR(result.cost, 0.0125, 1e-9);
+  EXPECT_NEAR(result.reduced_cost, 0.025 / 4.0, 1e-9);
+}
+
+// On a logarithmic scale, too: a parameter that nothing else shows is as uncertain as its prior.
+TEST(LeastSquares, APriorIsAMeasurementOfTheValue) {
+  FreeParameter p;
+  p.lower = 0.01;
+  p.upper = 10.0;
+  p.prior = Prior{0.5, 0.02};
+  const std::vector<FreeParameter> list{p};
+  const ParameterSpace space(list, {"a"});
+  const Eigen::VectorXd start = Eigen::VectorXd::Constant(1, std::log(0.6));
+  const Linearization away = linearize(space, {}, start);
+  EXPECT_NEAR(away.residuals[0], 5.0, 1e-12);
+  EXPECT_NEAR(away.jacobian(0, 0), 0.6 / 0.02, 1e-12);
+
+  const SolveResult solved = minimize(space, {}, start, {});
+  ASSERT_TRUE(solved.converged);
+  EXPECT_NEAR(std::exp(solved.u[0]), 0.5, 1e-6);
+  Linearization at = linearize(space, {}, solved.u);
+  at.series.clear();
+  EXPECT_NEAR(uncertainty(space, solved.u, at).parameters[0].standard_error, 0.02, 1e-6);
 }
 
 TEST(LeastSquares, IsTheSameSideBySide) {

@@ -136,17 +136,55 @@ TEST(RecordingCost, IsNotFinishedOnceItIsToStop) {
   EXPECT_FALSE(evaluate(cost, truth).finite);
 }
 
-TEST(RecordingCost, HuberCountsOutliersLinearly) {
-  Job job = example_job();
-  const ParameterSpace space(job);
-  const Eigen::VectorXd u = space.internal({{2.7, 200.0, 1500.0, 5e6, 0.04}});
-  job.recordings[0].measurements[0].values[300] += 100.0 * 2e-3;  // 100 sigma
-  const double plain = evaluate(RecordingCost(job, space, 0, {}), u).residuals[300];
-  job.options.loss = Loss::huber;
+/// The slide with an outlier of a hundred and one of minus fifty sigma.
+Job job_with_outliers() {
+  Job job = two_recordings(slide(), slide(), {"M", "B_a"}, 6.0, {Signal::velocity});
+  job.recordings.pop_back();
+  Measurement& m = job.recordings[0].measurements[0];
+  m.values[300] += 100.0 * m.sigma;
+  m.values[700] -= 50.0 * m.sigma;
   job.options.huber_width = 3.0;
-  const double robust = evaluate(RecordingCost(job, space, 0, {}), u).residuals[300];
-  EXPECT_GT(plain, 90.0);
-  EXPECT_NEAR(robust * robust, 2.0 * 3.0 * plain - 9.0, 1e-9);
+  return job;
+}
+
+TEST(RecordingCost, HuberCountsOutliersLinearly) {
+  Job job = job_with_outliers();
+  const ParameterSpace space(job);
+  const Eigen::VectorXd u = space.internal({{20.0, 30.0}});
+  const std::vector<double> plain = evaluate(RecordingCost(job, space, 0, {}), u).residuals;
+  job.options.loss = Loss::huber;
+  const std::vector<double> robust = evaluate(RecordingCost(job, space, 0, {}), u).residuals;
+  EXPECT_NEAR(plain[300], 100.0, 5.0);
+  EXPECT_NEAR(plain[700], -50.0, 5.0);
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    if (std::abs(plain[i]) <= 3.0) {
+      EXPECT_EQ(robust[i], plain[i]) << i;
+    } else {
+      EXPECT_EQ(std::signbit(robust[i]), std::signbit(plain[i])) << i;
+      EXPECT_NEAR(robust[i] * robust[i], 2.0 * 3.0 * std::abs(plain[i]) - 9.0, 1e-9) << i;
+    }
+  }
+}
+
+TEST(RecordingCost, HuberJacobianIsThatOfDifferences) {
+  Job job = job_with_outliers();
+  job.options.loss = Loss::huber;
+  const ParameterSpace space(job);
+  const RecordingCost cost(job, space, 0, {});
+  const Eigen::VectorXd u = space.internal({{20.0, 30.0}});
+  const Evaluated e = evaluate(cost, u);
+  ASSERT_TRUE(e.finite);
+  constexpr double kStep = 1e-5;
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    const Eigen::VectorXd step = kStep * Eigen::Vector2d::Unit(k);
+    const Evaluated above = evaluate(cost, u + step), below = evaluate(cost, u - step);
+    for (const std::size_t i : {100, 300, 700}) {
+      const double difference = (above.residuals[i] - below.residuals[i]) / (2.0 * kStep);
+      const double derivative = e.jacobian[2 * i + static_cast<std::size_t>(k)];
+      EXPECT_GT(std::abs(difference), 0.1) << i;
+      EXPECT_NEAR(derivative, difference, 1e-6 * std::abs(difference)) << i << " " << k;
+    }
+  }
 }
 
 /// Relative errors of M and B_a that a fit finds in exact samples of an axis, `interval` s apart,
