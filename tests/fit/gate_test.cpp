@@ -211,6 +211,19 @@ TEST(RefusalTest, OfWhatHardlyHelps) {
   EXPECT_EQ(refusal(candidate(), gain, determined(), 100), "");
 }
 
+TEST(RefusalTest, OfWhatHelpsByChanceMoreOftenThanOnceInAThousand) {
+  Improvement gain;
+  gain.comparable = true;
+  gain.fit_gain = 100.0;
+  gain.samples = 2000.0;
+  gain.validate_percent = 5.0;
+  gain.p_value = 1.1e-3;
+  EXPECT_NE(refusal(candidate(), gain, determined(), 100).find("p = 0.0011"), std::string::npos);
+  EXPECT_EQ(refusal(candidate(), gain, determined(), 100, 1.2e-3), "");
+  gain.p_value = 0.9e-3;
+  EXPECT_EQ(refusal(candidate(), gain, determined(), 100), "");
+}
+
 TEST(RefusalTest, PricesParametersAndTheChoice) {
   Improvement gain = improvement(pair(with_wave(noise(1), 1.0), with_wave(noise(2), 1.0)),
                                  pair(noise(1), noise(2)));
@@ -281,6 +294,22 @@ TEST_F(DeterminationTest, IsTheSquareOfValueOverStandardError) {
   EXPECT_LE(d.distinct, 1.0);
   EXPECT_EQ(d.at_bound, "");
   EXPECT_EQ(d.open, "");
+}
+
+TEST_F(DeterminationTest, CorrelatedResidualsCountLess) {
+  fit(5.0, {"M", "B_a"});
+  auto residuals = residual_series(job_, result_);
+  const auto wald_with = [&](const std::vector<double>& values) {
+    for (ResidualSeries& s : residuals) s.values = values;
+    return determination(job_, result_, candidate_, residuals).wald;
+  };
+  const auto white = noise(1), held = held_for_five(white);
+  const auto worth = [](const std::vector<double>& values) {
+    return mean_square(values) * autocorrelation_time(values);
+  };
+  const double ratio = worth(white) / worth(held);
+  EXPECT_NEAR(ratio, 0.2, 0.05);
+  EXPECT_NEAR(wald_with(held), ratio * wald_with(white), 1e-9 * wald_with(white));
 }
 
 TEST_F(DeterminationTest, OfAWeakEffectIsBelowWhatIsRequired) {

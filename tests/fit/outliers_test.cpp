@@ -68,6 +68,23 @@ TEST(Outliers, AreRareInNoiseOfAnyColourAndLength) {
   }
 }
 
+// In a thousand values of +-1 the median of the neighbours is 0 and four in five of the magnitudes
+// are at most 1: the scale is 1 / 1.28155, and half a step of the grid, 1, more. Of so many values
+// it is as certain as with 632.3 degrees of freedom, and one false alarm in two hundred series is a
+// probability of 2.5e-6 per value and side: Student's quantile of that is 4.6045.
+TEST(Outliers, BeginAtOneFalseAlarmInTwoHundredSeries) {
+  constexpr double kThreshold = 4.6045 * (1.0 / 1.28155 + 1.0);
+  Series values(1000);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = i % 2 == 0 ? 1.0 : -1.0;
+  for (const std::size_t at : {std::size_t{300}, std::size_t{301}, std::size_t{700}}) {
+    Series one = values;
+    one[at] *= 0.995 * kThreshold;
+    EXPECT_EQ(outliers(one), Indices{}) << at;
+    one[at] = values[at] * 1.005 * kThreshold;
+    EXPECT_EQ(outliers(one), Indices{at});
+  }
+}
+
 // Measured: 70, 98 and 100 % in white noise.
 TEST(Outliers, AreFoundFromSixSigma) {
   constexpr int kTrials = 100;

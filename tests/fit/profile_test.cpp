@@ -111,7 +111,8 @@ TEST(Profile, IsTheSameForAnyNumberOfThreads) {
 // A profile that starts beside the minimum finds the way down, and says so.
 TEST(Profile, TellsOfABetterFit) {
   Job job = slide_job();
-  FitResult fit = estimate(job);
+  const FitResult minimum = estimate(job);
+  FitResult fit = minimum;
   const ParameterSpace space(job);
   std::vector<double> beside = values_of(fit);
   beside[0] *= 1.02;
@@ -120,7 +121,18 @@ TEST(Profile, TellsOfABetterFit) {
       std::make_shared<const Linearization>(linearize(job, space, space.internal(beside), 0.0));
   const std::vector<Profile> found = all_profiles(job, fit);
   ASSERT_TRUE(found[1].better);
-  EXPECT_LT(found[1].better->reduced_cost, 1.1);
+  const StartResult& better = *found[1].better;
+  EXPECT_TRUE(better.usable);
+  EXPECT_EQ(better.from, beside);
+  const auto reduced_cost_at = [&](const std::vector<double>& values) {
+    const Eigen::VectorXd r = linearize(job, space, space.internal(values), 0.0).residuals;
+    return r.squaredNorm() / static_cast<double>(r.size());
+  };
+  EXPECT_NEAR(better.reduced_cost, reduced_cost_at(better.to), 1e-9);
+  EXPECT_LT(better.reduced_cost, reduced_cost_at(beside) - 0.1);
+  // Of the points about one standard error from the minimum, where the sum of squares is one more.
+  const double samples = static_cast<double>(fit.at_solution->residuals.size());
+  EXPECT_NEAR(better.reduced_cost, reduced_cost_at(values_of(minimum)), 1.2 / samples);
 }
 
 }  // namespace

@@ -161,6 +161,16 @@ TEST(IsExplained, AllowsForTheScatterOfAFewSamples) {
   EXPECT_TRUE(is_explained(series_of(scaled(Normal(1).values(20000), 1.02))));
 }
 
+TEST(IsExplained, OfManySamplesIsFivePercent) {
+  const auto values = Normal(1).values(20000);
+  const auto of_mean_square = [&](double size) {
+    return is_explained(series_of(scaled(values, std::sqrt(size / mean_square(values)))));
+  };
+  EXPECT_TRUE(of_mean_square(1.049));
+  EXPECT_FALSE(of_mean_square(1.051));
+  EXPECT_FALSE(of_mean_square(1.08));
+}
+
 TEST(IsExplained, CountsCorrelatedSamplesAsFewer) {
   // Unit variance is scaled to a mean square of 1.21, with an autocorrelation time of 39 samples.
   const double deviation = 1.0 / std::sqrt(1.0 - 0.95 * 0.95);

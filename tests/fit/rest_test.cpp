@@ -176,5 +176,18 @@ TEST(NoiseAtRest, IsWhatTheInstrumentsShowThere) {
   EXPECT_EQ(noise_at_rest(moving, moving.measurements[2]), 0.0);
 }
 
+TEST(NoiseAtRest, IsTheSampleStandardDeviation) {
+  constexpr std::size_t kFew = 60;
+  Recording recording;
+  Measurement acceleration = measurement(Signal::acceleration, 1.0);
+  for (std::size_t k = 0; k < kFew; ++k) {
+    recording.times.push_back(kStep * static_cast<double>(k));
+    acceleration.values.push_back(k % 2 == 0 ? 1.0 : 3.0);
+  }
+  recording.measurements = {
+      measurement(Signal::velocity, kVelocityNoise, std::vector<double>(kFew, 0.0)), acceleration};
+  EXPECT_NEAR(noise_at_rest(recording, acceleration), std::sqrt(60.0 / 59.0), 1e-12);
+}
+
 }  // namespace
 }  // namespace axisfit

@@ -154,6 +154,36 @@ TEST_F(UncertaintyTest, AFactorOfSomeSizeIsWeak) {
   EXPECT_TRUE(p.weak);
 }
 
+// On a linear scale the interval is compared with the range that is allowed.
+TEST_F(UncertaintyTest, AnIntervalAsWideAsItsBoundsIsNoKnowledge) {
+  const double half = 1.9605 * kWhite;  // of the interval
+  for (const double part : {0.8, 1.2}) {
+    job_.free[0].lower = 1.0 - half / part;
+    job_.free[0].upper = 1.0 + half / part;
+    const ParameterUncertainty p = found().parameters[0];
+    EXPECT_FALSE(p.at_bound);
+    EXPECT_EQ(p.determined, part < 1.0);
+    EXPECT_EQ(p.weak, part < 1.0);
+    EXPECT_EQ(p.has_interval(), part < 1.0);
+  }
+}
+
+// The standard error along a direction is `scale` over its singular value.
+TEST_F(UncertaintyTest, ADirectionIsWeakFromAnErrorOfOne) {
+  const Eigen::MatrixXd jacobian = linear_.jacobian;
+  const ParameterSpace space(job_);
+  for (const double scale : {1.0, 2.0})
+    for (const double error : {0.9, 1.1}) {
+      linear_.jacobian = jacobian;
+      linear_.jacobian.col(2) *= kWhite * scale / error;
+      const Identifiability seen = identifiability(space, Eigen::Vector3d::Zero(), linear_, scale);
+      ASSERT_EQ(seen.weak.size(), error > 1.0 ? 1u : 0u) << scale << " " << error;
+      if (error < 1.0) continue;
+      EXPECT_NEAR(seen.weak[0].singular_value, scale / error, 1e-9);
+      EXPECT_EQ(seen.weak[0].words, "k_g is hardly seen in these recordings.");
+    }
+}
+
 TEST_F(UncertaintyTest, NamesWhatIsSeenOfTwoParameters) {
   for (const std::size_t i : {0, 1}) job_.free[i].logarithmic = true;
   for (const std::size_t i : {0, 1}) job_.free[i].lower = 1e-6;
