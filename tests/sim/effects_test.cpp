@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <map>
+#include <numbers>
 #include <string>
 
 #include "tests/sim/experiment.h"
@@ -88,6 +90,15 @@ constexpr Variant kVariants[] = {
     {"rigid force source", Drive::force_source, Transmission::rigid},
 };
 
+/// Gives an effect to a model, at its typical shape and strength, or at strength zero.
+void add_typical(Model<double>& model, std::size_t effect, double strength = 1.0) {
+  model.structure.effects.set(effect);
+  for (const QuantityEntry& entry : quantity_list())
+    if (entry.group == name_of(effect))
+      *members(model)[entry.index] =
+          entry.quantity.shape ? typical(entry.name) : strength * typical(entry.name);
+}
+
 /// There, back and to rest, with some dry friction: an arm that slides both ways and sticks.
 Experiment to_and_fro(const Variant& variant, bool with_friction) {
   Experiment experiment;
@@ -130,13 +141,8 @@ class EveryEffect : public testing::TestWithParam<std::size_t> {
       });
     return entries;
   }
-  /// Gives the effect to a model, at its typical shape and strength, or at strength zero.
   void add_to(Model<double>& model, double strength) const {
-    model.structure.effects.set(effect());
-    for (const QuantityEntry& entry : quantity_list())
-      if (entry.group == name_of(effect()))
-        *members(model)[entry.index] =
-            entry.quantity.shape ? typical(entry.name) : strength * typical(entry.name);
+    add_typical(model, effect(), strength);
   }
 };
 
@@ -243,6 +249,75 @@ TEST_P(EveryEffect, DoesNotDependOnTheStep) {
 
 INSTANTIATE_TEST_SUITE_P(Effects, EveryEffect, testing::Range(std::size_t{0}, kEffects),
                          [](const auto& test) { return name_of(test.param); });
+
+// The Runge-Kutta method adds it to what is affine: nothing may be missing, or be there twice.
+TEST(EffectsInPairs, HaveASmoothPartThatIsAllThatIsNotAffine) {
+  const std::vector<State<double>> states{
+      {0.08, 0.3, 14.0, 52.0, 1.2, 40.0, 2.5, 0.8, 2e-4, -0.03},
+      {-0.05, -0.2, -8.7, -35.0, -0.7, 10.0, -1.5, -0.4, -1e-4, 0.02}};
+  for (const Variant& variant : kVariants)
+    for (std::size_t first = 0; first < kEffects; ++first)
+      for (std::size_t second = 0; second < first; ++second) {
+        Model<double> model = to_and_fro(variant, false).model;
+        add_typical(model, first);
+        add_typical(model, second);
+        const Equations<double> equations(model);
+        for (const State<double>& y : states)
+          for (const int sliding : {-1, 0, 1}) {
+            Mode mode;
+            mode.sliding = static_cast<std::int8_t>(sliding);
+            mode.contact = equations.parts().backlash ? 1 : 0;
+            const Input<double> input{3.0, {}, 0.4, {0.01, 2.0}};
+            const State<double> all = equations.rate(mode, y, input);
+            const State<double> affine = equations.rate(mode, y, input, Terms::affine);
+            const State<double> smooth = equations.smooth_rate(mode, y, input);
+            for (std::size_t i = 0; i < kStates; ++i)
+              ASSERT_NEAR(all[i] - affine[i], smooth[i], 1e-12 * (1.0 + std::abs(all[i])))
+                  << name_of(first) << " and " << name_of(second) << ", " << variant.name << ", y"
+                  << i;
+          }
+      }
+}
+
+// The arm without its elastic part is driven by the force, the drag and the spring.
+TEST(EffectsInPairs, AnElasticModeIsShakenByTheDragOfItsArm) {
+  Model<double> model = driven_mass(20.0);
+  ElasticMode<double>& elastic = add_effect<ElasticMode>(model);
+  elastic.m_e = 12.0;
+  elastic.f_e = 25.0;
+  elastic.zeta_e = 0.03;
+  add_effect<QuadraticDrag>(model).c = 60.0;
+  const double w = 2.0 * std::numbers::pi * elastic.f_e;
+  constexpr double kForce = 80.0;
+  using Vector = std::array<double, 4>;  // y0, y1, q, q'
+  const auto rate = [&](const Vector& y) -> Vector {
+    const double spring = w * w * y[2] + 2.0 * elastic.zeta_e * w * y[3];
+    const double a = (kForce - 60.0 * y[1] * std::abs(y[1]) + 12.0 * spring) / (20.0 - 12.0);
+    return {y[1], a, y[3], -spring - a};
+  };
+  const auto along = [](Vector y, double h, const Vector& k) {
+    for (std::size_t i = 0; i < 4; ++i) y[i] += h * k[i];
+    return y;
+  };
+  constexpr double kInterval = 5e-3;
+  constexpr int kParts = 50;
+  const auto times = instants(60, kInterval);
+  const auto found = run(model, {{0.0}, {kForce}}, times);
+  ASSERT_TRUE(found.finished);
+  Vector y{};
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    constexpr double h = kInterval / kParts;
+    for (int part = 0; part < kParts; ++part) {
+      const Vector k1 = rate(y), k2 = rate(along(y, 0.5 * h, k1)), k3 = rate(along(y, 0.5 * h, k2)),
+                   k4 = rate(along(y, h, k3));
+      for (std::size_t i = 0; i < 4; ++i) y[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+    }
+    ASSERT_NEAR(found.states[k][0], y[0], 1e-7) << k;
+    ASSERT_NEAR(found.states[k][1], y[1], 1e-6) << k;
+    ASSERT_NEAR(found.acceleration[k], rate(y)[1], 1e-4) << k;
+    ASSERT_NEAR(found.states[k][8], y[2], 1e-8) << k;
+  }
+}
 
 }  // namespace
 }  // namespace axisfit

@@ -1,6 +1,7 @@
 // Events with closed forms: friction, reversal, contact, delay, coincidence.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <numbers>
@@ -62,6 +63,37 @@ TEST(DryFriction, BringsAMassToRestAtTheAnalyticInstantAndPlace) {
     EXPECT_EQ(r.acceleration.back(), 0.0);
     EXPECT_EQ(r.events.back(), 1);
   }
+}
+
+// A mass that a blow has set in motion comes to rest over two thousand cycles of an elastic mode,
+// which the blow has set off, too. What is left of that still makes the velocity touch zero two
+// cycles before its mean does: there the mass stops first, however far apart the readings are.
+TEST(DryFriction, StopsAtTheFirstTouchOfATrembleThatHasAllButDiedAway) {
+  constexpr double kWhole = 20.0, kElastic = 8.0, kSpeed = 4e-3, kBlow = 1e-3, kStop = 7.0;
+  Model<double> model = rubbing_mass(20.0);
+  model.axis.M = kWhole;
+  ElasticMode<double>& elastic = add_effect<ElasticMode>(model);
+  elastic.m_e = kElastic;
+  elastic.f_e = 200.0;
+  const double share = kElastic / kWhole, w = 2.0 * std::numbers::pi * elastic.f_e;
+  elastic.zeta_e = 6.0 * (1.0 - share) / (w * kStop);  // e^-6 of it is left at the stop
+  const Schedule command{{0.0, kBlow},
+                         {20.0 + kWhole * kSpeed / kBlow, 20.0 - kWhole * kSpeed / kStop}};
+  const auto first_stop = [&](double interval) {
+    std::vector<ModeChange> modes;
+    IntegratorOptions options;
+    options.modes = &modes;
+    const auto n = static_cast<std::size_t>(std::ceil(1.1 * kStop / interval));
+    EXPECT_TRUE(run(model, command, instants(n, interval), options).finished);
+    const auto stop = std::ranges::find_if(
+        modes, [&](const ModeChange& m) { return m.time > kBlow && m.mode.sliding == 0; });
+    return stop == modes.end() ? INFINITY : stop->time;
+  };
+  const double often = first_stop(5e-4);
+  EXPECT_LT(often, kStop - 0.005);
+  EXPECT_GT(often, kStop - 0.05);
+  for (double interval = 0.05; interval < 0.6; interval += 0.013)
+    EXPECT_NEAR(first_stop(interval), often, 1e-9) << interval;
 }
 
 TEST(ModeLog, HoldsEveryModeFromTheInstantItBegins) {
