@@ -19,6 +19,32 @@ Job example_job() {
   return job;
 }
 
+/// Mass and friction of the slide from sixteen samples of its velocity.
+Job slide_in_few_samples() {
+  Job job = two_recordings(slide(), slide(), {"M", "B_a"}, 6.0, {Signal::velocity});
+  job.recordings.pop_back();
+  Recording& r = job.recordings[0];
+  const std::vector<double> times = r.times, values = r.measurements[0].values;
+  r.times.clear();
+  r.measurements[0].values.clear();
+  for (std::size_t i = 0; i < times.size(); i += 80) {
+    r.times.push_back(times[i]);
+    r.measurements[0].values.push_back(values[i]);
+  }
+  return job;
+}
+
+/// Of the residuals of a recording's first measurement, in units of its noise.
+double sum_of_squares(const Job& job, const FitResult& result, std::size_t recording,
+                      std::size_t first = 0) {
+  const Measurement& m = job.recordings[recording].measurements[0];
+  const std::vector<double>& simulated = result.recordings[recording].prediction.simulated[0];
+  double sum = 0.0;
+  for (std::size_t i = first; i < m.values.size(); ++i)
+    sum += std::pow((m.values[i] - simulated[i]) / m.sigma, 2);
+  return sum;
+}
+
 TEST(Estimate, FindsTheTruthFromAPoorStart) {
   const FitResult result = estimate(example_job());
   ASSERT_TRUE(result.usable) << result.verdict;
@@ -79,6 +105,7 @@ TEST(Estimate, TakesAPriorForKnowledge) {
   const FitResult result = estimate(job);
   ASSERT_TRUE(result.usable);
   EXPECT_NEAR(result.parameters[2].value, 0.56, 0.004);
+  EXPECT_GE(result.parameters[2].uncertainty.standard_error, 0.98 * 0.001);
   // Errors grow with the residual, never above the prior by more than that.
   EXPECT_LE(result.parameters[2].uncertainty.standard_error,
             0.001 * std::sqrt(std::max(1.0, result.reduced_chi_square)) * (1.0 + 1e-6));
@@ -133,6 +160,48 @@ TEST(Estimate, RefusesAFitThatIsNoBetterThanAConstant) {
   for (double& v : job.recordings[0].measurements[0].values) v = -v;  // a wrong sign
   const FitResult result = estimate(job);
   EXPECT_FALSE(result.usable) << result.verdict;
+}
+
+// A residual that is small beside the noise says nothing where the noise is taken from it.
+TEST(Estimate, RefusesAHopelessFitUnlessTheNoiseIsKnownToBeLarge) {
+  Job job = slide_in_few_samples();
+  Measurement& m = job.recordings[0].measurements[0];
+  for (double& v : m.values) v = -v;
+  m.sigma = 10.0;
+  EXPECT_TRUE(estimate(job).usable);
+  m.noise = NoiseSource::fit;
+  EXPECT_FALSE(estimate(job).usable);
+}
+
+TEST(Estimate, ReducedChiSquareCountsDegreesOfFreedom) {
+  const Job job = slide_in_few_samples();
+  const FitResult result = estimate(job);
+  ASSERT_TRUE(result.usable) << result.verdict;
+  const double sum = sum_of_squares(job, result, 0);
+  EXPECT_NEAR(result.reduced_chi_square, sum / (16.0 - 2.0), 1e-9 * sum);
+  EXPECT_NEAR(result.recordings[0].signals[0].reduced_chi_square, sum / 16.0, 1e-9 * sum);
+}
+
+TEST(Estimate, LeavesOutInitialSamplesThatAreNotScored) {
+  Job job = slide_in_few_samples();
+  job.recordings.push_back(job.recordings[0]);
+  Recording& judged = job.recordings[1];
+  judged.name = "judged";
+  judged.role = Role::validate;
+  judged.initial_samples = 3;
+  Measurement& m = judged.measurements[0];
+  for (std::size_t i = 0; i < judged.initial_samples; ++i) m.values[i] += 1.0;  // m/s
+  const auto rmse = [&](bool scored) {
+    judged.score_initial_samples = scored;
+    const FitResult result = estimate(job);
+    const std::size_t first = scored ? 0 : judged.initial_samples;
+    const double samples = static_cast<double>(m.values.size() - first);
+    const double expected = m.sigma * std::sqrt(sum_of_squares(job, result, 1, first) / samples);
+    EXPECT_NEAR(result.recordings[1].signals[0].rmse, expected, 1e-12);
+    return expected;
+  };
+  EXPECT_NEAR(rmse(true), std::sqrt(3.0 / 16.0), 0.01);
+  EXPECT_LT(rmse(false), 2.0 * m.sigma);
 }
 
 TEST(DistinctMinima, TakeEqualCostsTogether) {
@@ -201,6 +270,14 @@ TEST(EstimateWithNoise, FindsTheNoiseOfEverySignal) {
     EXPECT_NEAR(result.parameters[i].uncertainty.standard_error, error, 0.05 * error);
     EXPECT_NEAR(result.parameters[i].value, known.parameters[i].value, 0.1 * error);
   }
+}
+
+TEST(EstimateWithNoise, CountsDegreesOfFreedom) {
+  Job job = slide_in_few_samples();
+  job.recordings[0].measurements[0].noise = NoiseSource::fit;
+  const FitResult result = estimate_with_noise(job);
+  ASSERT_TRUE(result.usable) << result.verdict;
+  EXPECT_NEAR(sum_of_squares(job, result, 0), 16.0 - 2.0, 0.01);
 }
 
 TEST(EstimateWithNoise, LeavesNoiseThatIsKnownAlone) {

@@ -96,5 +96,34 @@ TEST(SuggestExperiment, HasNoneWhereNothingIsAllowed) {
   EXPECT_FALSE(suggest_experiment(job, estimate(job), ControllerSettings(), {0.0, 0.0, 1e-9, 1.0}));
 }
 
+// Residuals are expected to be of the size that the fit has left: who states a third of the true
+// noise is not promised more than who states it as it is.
+TEST(SuggestExperiment, PromisesNoMoreWhereTheNoiseIsUnderstated) {
+  Job job = slow_job(5);
+  const auto expected = suggest_experiment(job, estimate(job), ControllerSettings(), kLimits);
+  for (Measurement& m : job.recordings[0].measurements) m.sigma /= 3.0;
+  const FitResult hopeful = estimate(job);
+  EXPECT_NEAR(hopeful.reduced_chi_square, 9.0, 0.5);
+  const auto found = suggest_experiment(job, hopeful, ControllerSettings(), kLimits);
+  ASSERT_TRUE(expected && found);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double now = expected->now.parameters[i].standard_error;
+    EXPECT_NEAR(found->now.parameters[i].standard_error, now, 0.05 * now);
+    EXPECT_GT(found->predicted.parameters[i].standard_error,
+              0.95 * expected->predicted.parameters[i].standard_error);
+  }
+}
+
+TEST(MachineLimits, HoldEitherWay) {
+  const MachineLimits limits{-0.2, 0.6, 0.8, 10.0};
+  EXPECT_TRUE(is_within(limits, 0.0, 0.0));
+  EXPECT_TRUE(is_within(limits, 0.6, 0.8));
+  EXPECT_TRUE(is_within(limits, -0.2, -0.8));
+  EXPECT_FALSE(is_within(limits, 0.0, 0.81));
+  EXPECT_FALSE(is_within(limits, 0.0, -0.81));
+  EXPECT_FALSE(is_within(limits, 0.61, 0.0));
+  EXPECT_FALSE(is_within(limits, -0.21, 0.0));
+}
+
 }  // namespace
 }  // namespace axisfit
