@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <iostream>
+#include <span>
 
 #include "tests/fit/example.h"
 
@@ -44,6 +44,53 @@ TEST(CouplingRate, EndsAtZeroUnlessItIsFixed) {
   EXPECT_EQ(last_coupling_rate(job), 0.0);
   job.options.coupling = CouplingMode::fixed;
   EXPECT_NEAR(last_coupling_rate(job), 500.0, 1e-9);
+}
+
+ContinuationResult one_continuation(Job job) {
+  job.options.attempts = 1;
+  const ParameterSpace space(job);
+  return continue_to_free(job, space, space.internal(draw_start(job, 0)));
+}
+
+// An axis that lacks much loses the data when it is let go: by leaps, if it were in great steps.
+TEST(Continuation, TakesShorterStepsWhereTheSimulationWouldLoseTheData) {
+  Model<double> truth = slide();
+  add_effect<CoulombFriction>(truth).F_c = 60.0;
+  const ContinuationResult result = one_continuation(two_recordings(truth, slide(), {"M"}));
+  double rate = result.stages.front().coupling_rate, cost = result.stages.front().reduced_cost;
+  int refused = 0;
+  for (const Stage& stage : std::span(result.stages).subspan(1)) {
+    EXPECT_LT(stage.coupling_rate, rate);
+    const bool leap = stage.reduced_cost > 3.0 * cost + 1.0;
+    if (stage.accepted) {
+      EXPECT_TRUE(!leap || rate < 1.3 * stage.coupling_rate) << stage.coupling_rate;
+      rate = stage.coupling_rate;
+      cost = stage.reduced_cost;
+    } else {
+      EXPECT_TRUE(leap) << stage.coupling_rate;
+      ++refused;
+    }
+  }
+  EXPECT_EQ(rate, 0.0);
+  EXPECT_GE(refused, 2);
+}
+
+// The limit of a drive hardly shows under a firm hold and so much noise, which here would drive it
+// to where it is never reached: from there no free run finds back.
+TEST(Continuation, LeavesWhatAFirmHoldDoesNotShowWhereItIs) {
+  for (const std::uint64_t seed : {1, 3}) {
+    Job job;
+    job.model = motor_axis();
+    job.recordings = {
+        recorded(job.model, StepMotion{10.0, 0.0}, 0.4, 1, {Signal::velocity}, false)};
+    Measurement& m = job.recordings[0].measurements[0];
+    m.sigma = 1.0;  // m/s
+    Normal normal(seed);
+    for (double& v : m.values) v += m.sigma * normal();
+    job.free = {free_parameter("V_L", 10.0)};
+    const ContinuationResult result = one_continuation(job);
+    EXPECT_NEAR(std::exp(result.last.u[0]), 8.0, 1.5) << seed;
+  }
 }
 
 }  // namespace
