@@ -1,5 +1,6 @@
 #include "apps/job_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <matio.h>
 
@@ -259,6 +260,40 @@ TEST_F(JobFileTest, TrimLeavesOutWhatComesAfter) {
   EXPECT_EQ(errors(with_lines("    trim: {from: 1, until: 2 s}\n")),
             "job.yaml:4:18: from needs a unit, for example '1 s'\n"
             "job.yaml:4:21: unknown key 'until'; known keys: from, to");
+}
+
+TEST_F(JobFileTest, ATrimmedRecordingOnTheEpochIsTheOneFromZero) {
+  // Multiples of 1/64 s are exact at 1.7e9 s, too.
+  const auto read_from = [&](double start) {
+    Table table;
+    table.columns = Data().columns();
+    for (std::size_t i = 0; i < kRows; ++i)
+      table.columns[0].values[i] = start + static_cast<double>(i) / 64.0;
+    folder_.write("data.csv", table);
+    const std::string from = fmt::format("    trim: {{from: {} s}}\n", start + 0.0625);
+    return read(replaced(with_lines(from), "unit: ms", "unit: s")).job.recordings.front();
+  };
+  const Recording zero = read_from(0.0), epoch = read_from(1.7e9);
+  EXPECT_EQ(zero.times.front(), 0.0625);
+  EXPECT_EQ(zero.command.times.front(), 0.0);
+  EXPECT_EQ(epoch.times, zero.times);
+  EXPECT_EQ(epoch.command.times, zero.command.times);
+  EXPECT_EQ(epoch.command.values, zero.command.values);
+  EXPECT_EQ(epoch.measurements.front().values, zero.measurements.front().values);
+}
+
+TEST_F(JobFileTest, AFitNeedsMoreValuesThanParameters) {
+  const auto errors_of_ten_values = [&](const std::string& free) {
+    const std::string to = fmt::format("    trim: {{to: {} ms}}\n", Data().t_ms[9]);
+    return errors(replaced(with_lines(to), "M: {}", free));
+  };
+  const std::string nine =
+      "M: {}\n  B_a: {}\n  coulomb_friction.F_c: {}\n  velocity.bias: {}\n  velocity.gain: {}\n"
+      "  velocity.delay: {}\n  velocity.lag: {}\n  initial.y0: {}\n  initial.y1: {}";
+  EXPECT_EQ(errors_of_ten_values(nine), "");
+  EXPECT_EQ(errors_of_ten_values(nine + "\n  K_f: {}"),
+            "job.yaml:10:3: 10 values, priors included, do not determine 10 parameters: fit fewer, "
+            "or to more samples");
 }
 
 TEST_F(JobFileTest, LimitsOfTheMachineAreRead) {
