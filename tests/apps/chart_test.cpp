@@ -135,21 +135,60 @@ Chart sine(ChartColumns& columns, std::size_t samples) {
           .recording = "a & b"};
 }
 
+/// One step of a path, relative to where the last one ended.
+struct Move {
+  char how = 'm';  ///< 'm' without a line, 'l' with one
+  double x = 0.0, y = 0.0;
+};
+
+/// The path of the measured series in a drawing.
+std::vector<Move> moves_of(const std::string& svg) {
+  const std::size_t path = svg.find("<path class=\"series measured\"");
+  if (path == std::string::npos) return {};
+  const std::size_t begin = svg.find(" d=\"", path) + 4, end = svg.find('"', begin);
+  const std::regex move("([ml])(-?[0-9.]+),?(-?[0-9.]+)");
+  const std::string d = svg.substr(begin, end - begin);
+  std::vector<Move> moves;
+  for (std::sregex_iterator at(d.begin(), d.end(), move), last; at != last; ++at)
+    moves.push_back({(*at)[1].str().front(), std::stod((*at)[2]), std::stod((*at)[3])});
+  return moves;
+}
+
 TEST(Chart, ThinsLongSeriesAndLosesNoSpike) {
   ChartColumns columns;
   const Chart chart = sine(columns, 200000);
   const std::string svg = figure(chart, columns).text();
   EXPECT_LT(svg.size(), 30000u);
   // The axis reaches beyond 7, and the line reaches the spike: 6 % below the top of the frame.
-  const std::size_t path = svg.find("<path class=\"series measured\"");
-  ASSERT_NE(path, std::string::npos);
-  const std::size_t begin = svg.find(" d=\"", path) + 4, end = svg.find('"', begin);
-  const std::regex move("[ml](-?[0-9.]+),?(-?[0-9.]+)");
   double y = 0.0, highest = INFINITY;
-  const std::string d = svg.substr(begin, end - begin);
-  for (std::sregex_iterator at(d.begin(), d.end(), move), last; at != last; ++at)
-    highest = std::min(highest, y += std::stod((*at)[2]));
+  for (const Move& move : moves_of(svg)) highest = std::min(highest, y += move.y);
   EXPECT_NEAR(highest, 20.0, 1.5);
+}
+
+TEST(Chart, StepsHoldTheirValueUntilTheNextSample) {
+  ChartColumns columns;
+  const auto x = columns.add({0.0, 1.0, 2.0, 4.0}, 1e-3);
+  const auto y = columns.add({0.0, 2.0, 2.0, -1.0}, 1e-3);
+  const Chart chart{.id = "steps",
+                    .title = "command",
+                    .x = {"x"},
+                    .y = {"y"},
+                    .series = {{"command", "measured", x, y, Drawn::steps}}};
+  const std::vector<Move> moves = moves_of(figure(chart, columns).text());
+  // Level to the next sample, then upright; the frame is 298 wide and y points down.
+  ASSERT_EQ(moves.size(), 7u);
+  EXPECT_EQ(moves[0].how, 'm');
+  const std::vector<double> level{74.5, 0.0, 74.5, 0.0, 149.0, 0.0};
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    EXPECT_EQ(moves[i + 1].how, 'l');
+    EXPECT_EQ(moves[i + 1].x, level[i]) << i;
+    if (level[i] > 0.0) {
+      EXPECT_EQ(moves[i + 1].y, 0.0) << i;
+    }
+  }
+  EXPECT_LT(moves[2].y, 0.0);
+  EXPECT_EQ(moves[4].y, 0.0);
+  EXPECT_NEAR(moves[6].y, -1.5 * moves[2].y, 0.15);
 }
 
 TEST(Chart, ShowsNamesAsText) {

@@ -453,6 +453,128 @@ TEST(ResultTest, FaultsOfInstrumentsAreTold) {
   EXPECT_NEAR(grid_test[0].at("grid"), 0.01, 1e-9);
 }
 
+/// The job of the rubbing mass, before anything is fitted.
+JobFile rubbing_file() {
+  const TempFolder folder;
+  write_rubbing_mass(folder);
+  return read_job_file(folder.write("job.yaml", rubbing_job()));
+}
+
+/// Text in which runs of blanks and line ends are one blank.
+std::string on_one_line(const std::string& text) {
+  std::istringstream words(text);
+  std::string line;
+  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
+TEST(ResultTest, InstrumentsAreJudgedInTheirUnits) {
+  const Job job = rubbing_file().job;
+  ASSERT_EQ(job.recordings[0].measurements[0].sigma, 0.002);
+  const auto told = [&](const SeriesTest& test) {
+    Diagnosis diagnosis;
+    diagnosis.tests.push_back(test);
+    return on_one_line(instruments_text(job, diagnosis));
+  };
+  SeriesTest drifting;
+  drifting.drift = {.per_second = 3.0, .standard_error = 0.1, .p_value = 1e-6, .span = -4.5};
+  EXPECT_EQ(told(drifting),
+            "The velocity of fitted drifts: its residual changes by 0.006 m/s per second, "
+            "-0.009 m/s in all.");
+  // An outlier's place is one of the series, which lacks what was left out.
+  SeriesTest spoilt;
+  spoilt.series.samples = {10, 20, 50};
+  spoilt.series.values = {4.5, 0.5, -7.5};
+  spoilt.outliers = {0, 2};
+  ASSERT_EQ(job.recordings[0].times[50], 0.2);
+  EXPECT_EQ(told(spoilt),
+            "The velocity of fitted has 2 outliers, the farthest 7.5 times the noise off at 0.2 s: "
+            "bad readings, or an event that comes a sample early or late.");
+}
+
+TEST(ResultTest, OutliersHaveTheTimesOfTheirSamples) {
+  Found fit(rubbing_job());
+  SeriesTest& test = fit.outcome.diagnosis->tests[1];
+  test.series.samples = {10, 20, 50};
+  test.series.values = {4.5, 0.5, -7.5};
+  test.outliers = {0, 2};
+  EXPECT_EQ(result_json(fit.outcome).at("residual").at("tests")[1].at("outliers"),
+            Json::parse(R"([{"time_s": 0.04, "residual_over_sigma": 4.5},
+                            {"time_s": 0.2, "residual_over_sigma": -7.5}])"));
+}
+
+TEST(ResultTest, StrongCorrelationsOfEitherSignAreNamed) {
+  FitResult fit;
+  for (const char* name : {"M", "B_a", "K_f"}) fit.parameters.push_back({name, 1.0, {}});
+  fit.reduced_chi_square = 1.0;
+  fit.correlation = Eigen::Matrix3d{{1.0, 0.96, -0.98}, {0.96, 1.0, 0.94}, {-0.98, 0.94, 1.0}};
+  EXPECT_NE(on_one_line(knowledge_text(fit))
+                .find("Strongly correlated: M and K_f by -0.98, M and B_a by 0.96."),
+            std::string::npos)
+      << knowledge_text(fit);
+}
+
+TEST(ResultTest, TheNextExperimentPredictsWhatIsKnownAfterIt) {
+  Outcome outcome = Found(rubbing_job()).outcome;
+  outcome.wishes.experiment = true;
+  Suggestion& s = outcome.suggestion.emplace();
+  s.experiment = {.motion = StepMotion{}, .duration = 2.0, .words = "a step of 3 V"};
+  s.limits = {.lowest = -1.0, .highest = 1.0, .speed = 0.5, .voltage = 10.0};
+  const auto known = [](double value, double error) {
+    return ParameterUncertainty{.determined = true,
+                                .standard_error = error,
+                                .lower = value - 2.0 * error,
+                                .upper = value + 2.0 * error};
+  };
+  for (const double value : {4.0, 8.0}) {
+    s.now.parameters.push_back(known(value, 0.5));
+    s.predicted.parameters.push_back(known(value, 0.125));
+  }
+  EXPECT_EQ(result_json(outcome).at("next_experiment").at("predicted"), Json::parse(R"([
+    {"name": "M", "standard_error": 0.125, "confidence_interval": [3.75, 4.25]},
+    {"name": "B_a", "standard_error": 0.125, "confidence_interval": [7.75, 8.25]}])"));
+  EXPECT_NE(on_one_line(suggestion_text(outcome))
+                .find("95 % interval now predicted unit M 3.00 .. 5.00 3.75 .. 4.25 kg"),
+            std::string::npos)
+      << suggestion_text(outcome);
+}
+
+TEST(ResultTest, TheTimeOfAFitIsSaidToItsFirstDigit) {
+  Job job;
+  job.options.threads = 1;
+  const auto told = [&](double seconds) {
+    return on_one_line(effort_text(job, {.evaluation = 0.01, .expected = seconds}));
+  };
+  EXPECT_EQ(told(0.9),
+            "The fit will take about a second on this machine with 1 thread; if the model does not "
+            "explain the recordings, up to ten times that.");
+  EXPECT_EQ(told(36.0).find("The fit will take about 40 s on this machine"), 0u);
+  EXPECT_EQ(told(1300.0).find("The fit will take about 20 min on this machine"), 0u);
+  job.options.threads = 3;
+  EXPECT_NE(told(0.9).find("with 3 threads; "), std::string::npos);
+}
+
+TEST(ResultTest, ErrorsOfAHeldSimulationStandBesideTheFreeRunningOnes) {
+  Outcome outcome;
+  outcome.file = rubbing_file();
+  ClosedLoop& loop = outcome.loop.emplace();
+  loop.result.job = outcome.file.job;
+  loop.models.resize(1);
+  SignalScore score{{.fitted = true}, SignalErrors{.rmse = 0.5}, SignalErrors{0.25, 3.0, 1.5}};
+  outcome.scores = {{.signals = {score}, .forces = {{}, {}}}};
+  const auto told = [&] { return on_one_line(loop_text(outcome)); };
+  EXPECT_NE(told().find("Errors of the held simulation, before and after rmse of range red. chi2 "
+                        "free-running rmse fitted, fit: velocity declared 0.25 m/s 3 % 1.5 "
+                        "0.5 m/s "),
+            std::string::npos)
+      << told();
+  outcome.scores[0].signals[0].held.reset();
+  EXPECT_NE(told().find("Errors of the free-running simulation, before and after rmse of range "
+                        "red. chi2 fitted, fit: velocity declared 0.5 m/s 0 % 0 Missing force"),
+            std::string::npos)
+      << told();
+}
+
 TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
   const Found found(rubbing_job(), true);
   const Json& json = found.json;
