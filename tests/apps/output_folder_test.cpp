@@ -1,7 +1,9 @@
 #include "apps/output_folder.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -13,6 +15,38 @@
 #include <vector>
 
 #include "tests/apps/files.h"
+
+namespace axisfit {
+namespace {
+
+/// What the library asks of the system, before it is done.
+std::function<void(const std::string& call)> on_call;
+
+void report(const std::string& call) {
+  if (on_call) on_call(call);
+}
+
+}  // namespace
+}  // namespace axisfit
+
+// In place of the C library's.
+extern "C" {
+int fsync(int file) {
+  axisfit::report(
+      "fsync " +
+      std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(file)).filename().string());
+  return static_cast<int>(::syscall(SYS_fsync, file));
+}
+int rename(const char* from, const char* to) noexcept {
+  axisfit::report("rename " + std::filesystem::path(from).filename().string());
+  return static_cast<int>(::syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
+}
+int renameat2(int from_folder, const char* from, int to_folder, const char* to,
+              unsigned flags) noexcept {
+  axisfit::report("rename " + std::filesystem::path(from).filename().string());
+  return static_cast<int>(::syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
+}
+}
 
 namespace axisfit {
 namespace {
@@ -51,6 +85,17 @@ class OutputFolderTest : public ::testing::Test {
     struct stat found = {};
     EXPECT_EQ(stat(folder_.path(name).c_str(), &found), 0);
     return found.st_ino;
+  }
+  /// The calls to the system that write() makes, and what the file `name` holds at each.
+  std::vector<std::string> calls_of(const std::string& name, const std::function<void()>& write) {
+    std::vector<std::string> calls;
+    on_call = [&](const std::string& call) {
+      const bool there = std::filesystem::exists(folder_.path(name));
+      calls.push_back(call + ": " + (there ? folder_.read(name) : "nothing"));
+    };
+    write();
+    on_call = nullptr;
+    return calls;
   }
   TempFolder folder_;
 };
@@ -254,6 +299,33 @@ TEST_F(OutputFolderTest, WritesAFile) {
   EXPECT_EQ(error_at("step.csv"), "");
   EXPECT_EQ(folder_.read("step.csv"), "new");
   EXPECT_EQ(folder_.names(), Names{"step.csv"});
+}
+
+// Else a crash of the machine could leave the new name with nothing in it.
+TEST_F(OutputFolderTest, FilesAreOnTheDiskBeforeTheyGetTheirNames) {
+  const auto calls = [&] {
+    return calls_of("results/result.json", [&] { write_folder(folder_.path("results"), kFiles); });
+  };
+  const std::vector<std::string> exchanged{"fsync result.json: old", "fsync residuals.csv: old",
+                                           "rename .results.partial: old"};
+  const std::vector<std::string> one_by_one{"fsync result.json: old", "fsync residuals.csv: old",
+                                            "rename result.json: old",
+                                            "rename residuals.csv: {}\n"};
+  write_folder(folder_.path("results"), {{"result.json", "old"}});
+  EXPECT_EQ(calls(), exchanged);
+  EXPECT_EQ(folder_.read("results/result.json"), "{}\n");
+  folder_.write("results/result.json", "old");
+  folder_.write("results/notes.txt", "mine");
+  EXPECT_EQ(calls(), one_by_one);
+}
+
+TEST_F(OutputFolderTest, AFileIsTheOldOneUntilTheNewOneIsOnTheDisk) {
+  const std::string partial = "step.csv.partial-" + std::to_string(::getpid());
+  folder_.write("step.csv", "old");
+  EXPECT_EQ(
+      calls_of("step.csv", [&] { EXPECT_EQ(error_at("step.csv"), ""); }),
+      (std::vector<std::string>{"fsync " + partial + ": old", "rename " + partial + ": old"}));
+  EXPECT_EQ(folder_.read("step.csv"), "new");
 }
 
 TEST_F(OutputFolderTest, FollowsNoLinkThatAwaitsItsTemporaryFile) {
