@@ -181,6 +181,7 @@ TEST_F(FaultsTest, KilledAtAnyStepOfWritingAFolderHasOneResultOrTheOther) {
   shell(folder_, "cp -r results old");
   job("{starts: 2}");
   int old = 0, whole = 0;
+  std::map<std::string, int> calls;
   for (const std::string call : {"flock", "pwrite64", "fsync", "renameat2", "unlinkat"})
     for (int when = 1; when < 100; ++when) {
       SCOPED_TRACE(call + " " + std::to_string(when));
@@ -195,7 +196,14 @@ TEST_F(FaultsTest, KilledAtAnyStepOfWritingAFolderHasOneResultOrTheOther) {
       const Contents found = contents_of_results(folder_);
       EXPECT_TRUE(found == before || found == after);
       ++(found == before ? old : whole);
+      ++calls[call];
     }
+  // A call that never comes kills nobody. Each file of the result goes through to the disk.
+  EXPECT_EQ(calls["flock"], 1);
+  EXPECT_GE(calls["pwrite64"], 1);
+  EXPECT_EQ(calls["fsync"], static_cast<int>(after.size()));
+  EXPECT_EQ(calls["renameat2"], 1);
+  EXPECT_GE(calls["unlinkat"], 1);
   EXPECT_GT(old, 10);
   EXPECT_GT(whole, 2);
 }
