@@ -43,9 +43,9 @@ class BadInputTest : public ::testing::Test {
       expect_same(read_job_file(folder.path("job.yaml")).job,
                   read_job_file(good.path("job.yaml")).job, same ? 0.0 : 1e-6);
     }
-    // Ten seconds are for those who wait for ever.
+    // For those who wait for ever.
     const Answer answer =
-        shell(folder, "timeout -k 1 10 fit-params " +
+        shell(folder, "timeout -k 1 100 fit-params " +
                           (node["run"] ? node["run"].Scalar() : std::string("job.yaml --check")));
     if (node["refused"]) {
       EXPECT_EQ(answer.exit_code, 2);
