@@ -9,20 +9,22 @@
 namespace axisfit {
 namespace {
 
+/// What is hashed by its bytes.
+template <class T>
+concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
 class Hash {
  public:
   Hash() { XXH3_128bits_reset(state_.get()); }
 
-  template <class T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  template <Plain T>
   Hash& operator<<(T value) {
     return add(&value, 1);
   }
   Hash& operator<<(const Eigen::VectorXd& values) {
     return *this << values.size(), add(values.data(), static_cast<std::size_t>(values.size()));
   }
-  template <class T>
-    requires std::is_arithmetic_v<T>
+  template <Plain T>
   Hash& operator<<(const std::vector<T>& values) {
     *this << values.size();
     if constexpr (std::is_same_v<T, bool>)
