@@ -315,11 +315,9 @@ std::optional<ConfigNode> ConfigNode::parse(std::string contents, const std::str
   return ConfigNode(root, "the file", source);
 }
 
-ConfigNode::ConfigNode(YAML::Node node, std::string name, std::shared_ptr<const Source> source)
-    : node_(std::move(node)),
-      mark_(node_.Mark()),
-      name_(std::move(name)),
-      source_(std::move(source)) {}
+ConfigNode::ConfigNode(const YAML::Node& node, std::string name,
+                       std::shared_ptr<const Source> source)
+    : node_(node), mark_(node_.Mark()), name_(std::move(name)), source_(std::move(source)) {}
 
 ConfigNode ConfigNode::child(const YAML::Node& node, std::string name) const {
   return ConfigNode(node, std::move(name), source_);

@@ -99,7 +99,7 @@ class ConfigNode {
   friend class ConfigCheck;
   struct Source;
 
-  ConfigNode(YAML::Node node, std::string name, std::shared_ptr<const Source> source);
+  ConfigNode(const YAML::Node& node, std::string name, std::shared_ptr<const Source> source);
   ConfigNode child(const YAML::Node& node, std::string name) const;
 
   // "KEY must be WANTED, not WHAT IT IS"

@@ -254,7 +254,8 @@ class Guesser {
   static double rounded(double size) { return std::stod(fmt::format("{:.4g}", size)); }
 
   /// The unit of the derivative of `of`, which is `found.ratio` times that.
-  void size_rate(Unsized& rate, const Unsized& of, const RateRatio& found, const char* words) {
+  void size_rate(Unsized& rate, const Unsized& of, const RateRatio& found,
+                 const char* words) const {
     const double size = of.size / (std::abs(found.ratio) * time_.size);
     const std::string measured =
         fmt::format("{:.5g} times the derivative of {}", found.ratio, words);

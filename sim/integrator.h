@@ -355,8 +355,7 @@ typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
   Matrix<T> driven{};
   for (std::size_t c = 0; c < kInputs; ++c)
     for (std::size_t i = 0; i < kStates; ++i) driven[i][c] = exact[c][i];
-  return flows_.emplace(key, Flow{system, SparseMatrix<T>(driven), std::move(guards), {}})
-      .first->second;
+  return flows_.emplace(key, Flow{system, SparseMatrix<T>(driven), guards, {}}).first->second;
 }
 
 template <class T>

@@ -61,10 +61,10 @@ TEST(Outliers, AreRareInNoiseOfAnyColourAndLength) {
                                   {std::size_t{1000}, 100},
                                   {std::size_t{5000}, 20}}) {
     const double limit = at_most(trials, 0.01);
-    EXPECT_LE(flagged(trials, [&] { return white(g, n); }), limit) << n;
-    EXPECT_LE(flagged(trials, [&] { return autoregressive(g, n, 0.9); }), limit) << n;
-    EXPECT_LE(flagged(trials, [&] { return moving_average(g, n, 4); }), limit) << n;
-    EXPECT_LE(flagged(trials, [&] { return moving_average(g, n, 20); }), limit) << n;
+    EXPECT_LE(flagged(trials, [&, n = n] { return white(g, n); }), limit) << n;
+    EXPECT_LE(flagged(trials, [&, n = n] { return autoregressive(g, n, 0.9); }), limit) << n;
+    EXPECT_LE(flagged(trials, [&, n = n] { return moving_average(g, n, 4); }), limit) << n;
+    EXPECT_LE(flagged(trials, [&, n = n] { return moving_average(g, n, 20); }), limit) << n;
   }
 }
 

@@ -216,9 +216,10 @@ TEST(ForceLaw, MovesAMassAsAPlainIntegrationDoes) {
     const auto r = run(model, three_pushes(), times);
     ASSERT_TRUE(r.finished);
     const Schedule command = three_pushes();
-    const auto path =
-        integrated([&](double t, double y, double v) { return pushing(command, t) + law(t, y, v); },
-                   kMass, times);
+    const auto force = [&, &law = law](double t, double y, double v) {
+      return pushing(command, t) + law(t, y, v);
+    };
+    const auto path = integrated(force, kMass, times);
     bool turned = false;
     double worst = 0.0;
     for (std::size_t k = 0; k < times.size(); ++k) {

@@ -224,7 +224,7 @@ TEST(Propagator, CarriesDerivatives) {
       Propagator<T> propagator = with_ramp(a, ladder_for(a, 0.5e-3, 0), 5);
       return propagator.advance(start, propagator.a_times(start), {5.0, 0.0}, 0);
     };
-    const auto at = [&](double change) {
+    const auto at = [&, row = row, column = column](double change) {
       Matrix<double> a = stiff_matrix(1e5);
       a[row][column] += change;
       return step(a);
