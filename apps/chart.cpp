@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <new>
+#include <set>
 
 #include "sim/sampling.h"
 
@@ -18,7 +19,8 @@ namespace {
 // Of the drawing, in its own units: about pixels of a page.
 constexpr double kWide = 760.0, kNarrow = 380.0, kHeight = 230.0;
 constexpr double kLeft = 70.0, kRight = 12.0, kTop = 10.0, kBottom = 42.0;
-constexpr std::size_t kDots = 300;  // of a series, at most
+constexpr std::size_t kDots = 300;     // of a series, at most
+constexpr std::size_t kFewDots = 200;  // which are larger
 
 using Values = std::vector<double>;
 
@@ -46,8 +48,7 @@ class Scale {
       const int every = std::max(1, (last - first) / 5);
       for (int e = first; e <= last; e += every) result.push_back(std::pow(10.0, e));
       if (result.size() > 1) return result;
-      result = {low_, high_};
-      return result;
+      result.clear();
     }
     const double rough = (high_ - low_) / 5.0;
     const double unit = power_of_ten_below(rough);
@@ -150,7 +151,7 @@ class Drawing {
     return html(R"(<svg viewBox="0 0 {} {}" role="img" aria-label="{}">)", width_, kHeight,
                 chart_.title) +
            ranges() + axes() + each(chart_.series, [&](const ChartSeries& s) { return path(s); }) +
-           events() + legend() + Html::raw("</svg>");
+           events() + names_of_bands() + Html::raw("</svg>");
   }
 
  private:
@@ -253,38 +254,43 @@ class Drawing {
 
   Html path(const ChartSeries& s) const {
     const bool as_dots = s.drawn == Drawn::dots;
-    return html(R"(<path class="series {}{}" d="{}"/>)", s.role, as_dots ? " dots" : "",
-                as_dots ? dots(s) : line(s));
+    const char* kind = !as_dots ? "" : length_of(s, columns_) <= kFewDots ? " dots few" : " dots";
+    return html(R"(<path class="series {}{}" d="{}"/>)", s.role, kind, as_dots ? dots(s) : line(s));
   }
 
-  /// One tick below the frame for each pixel in which something happens.
+  /// Ticks below the upper edge, one for each pixel in which something happens; where they are
+  /// few, also lines.
   Html events() const {
-    Html all;
+    std::vector<std::vector<double>> places;
+    std::size_t count = 0;
     for (const ChartEvents& e : chart_.events) {
-      std::string d;
-      double last = -INFINITY;
-      for (const double t : columns_[e.at].values) {
-        if (t < x_.low() || t > x_.high() || x_(t) < last + 1.0) continue;
-        last = x_(t);
-        d += fmt::format("M{:.1f},{}v6", last, kTop);
+      std::vector<double>& at = places.emplace_back();
+      for (const double t : columns_[e.at].values)
+        if (t >= x_.low() && t <= x_.high() && (at.empty() || x_(t) >= at.back() + 1.0))
+          at.push_back(x_(t));
+      count += at.size();
+    }
+    const bool few = static_cast<double>(count) <= (width_ - kLeft - kRight) / 12.0;
+    Html all;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const ChartEvents& e = chart_.events[i];
+      std::string ticks, lines;
+      for (const double x : places[i]) {
+        ticks += fmt::format("M{:.1f},{}v8", x, kTop);
+        lines += fmt::format("M{:.1f},{}V{}", x, kTop, kHeight - kBottom);
       }
-      all += html(R"(<path class="event {}" d="{}"><title>{}</title></path>)", e.kind, d, e.text);
+      if (few) all += html(R"(<path class="event line {}" d="{}"/>)", e.kind, lines);
+      all +=
+          html(R"(<path class="event {}" d="{}"><title>{}</title></path>)", e.kind, ticks, e.text);
     }
     return all;
   }
 
-  /// The names of the series, where there is more than one.
-  Html legend() const {
-    if (chart_.series.size() < 2) return {};
-    Html all;
-    double x = kLeft + 10.0;
-    for (const ChartSeries& s : chart_.series) {
-      all += html(R"(<path class="series {}" d="M{},{}h14"/>)"
-                  R"(<text class="tick" x="{}" y="{}">{}</text>)",
-                  s.role, x, kTop + 12.0, x + 18.0, kTop + 15.5, s.label);
-      x += 40.0 + 6.0 * static_cast<double>(s.label.size());
-    }
-    return all;
+  Html names_of_bands() const {
+    return each(chart_.bands, [&](const ChartRange& b) {
+      return html(R"(<text class="tick" x="{}" y="{:.1f}" text-anchor="end">{}</text>)",
+                  width_ - kRight - 6.0, y_(b.to) - 5.0, b.text);
+    });
   }
 
   const Chart& chart_;
@@ -292,6 +298,27 @@ class Drawing {
   const double width_;
   const Scale x_, y_;
 };
+
+Html swatch(const std::string& looks, const std::string& words, const char* kind) {
+  return html(R"(<span class="{}"><span class="swatch {}"></span>{}</span>)", kind, looks, words);
+}
+
+/// Names of the series, kinds of events and phases, in their colours.
+Html legend(const Chart& chart, const ChartColumns& columns) {
+  Html all = each(chart.series, [](const ChartSeries& s) {
+    return swatch(fmt::format("{}{}", s.role, s.drawn == Drawn::dots ? " dots" : ""), s.label,
+                  "key");
+  });
+  for (const ChartEvents& e : chart.events)
+    all += swatch(fmt::format("tick {}", e.kind),
+                  fmt::format("{} ({})", e.kind, columns[e.at].values.size()), "kind");
+  std::set<std::string_view> kinds;
+  for (const ChartRange& p : chart.phases)
+    if (kinds.insert(p.kind).second)
+      all += swatch(fmt::format("area {}", p.kind),
+                    p.kind == "limit" ? "at a limit" : std::string(p.kind), "kind");
+  return all;
+}
 
 std::string base64(const std::string& bytes) {
   using namespace boost::archive::iterators;
@@ -428,8 +455,11 @@ ChartColumns::Index ChartColumns::add_for_log(std::vector<double> values) {
 }
 
 Html figure(const Chart& chart, const ChartColumns& columns) {
-  return html(R"(<figure class="chart{}" id="{}"><figcaption>{}</figcaption>{}</figure>)",
-              is_wide(chart) ? " wide" : "", chart.id, chart.title, Drawing(chart, columns).svg());
+  return html(R"(<figure class="chart{}" id="{}"><figcaption>{}</figcaption>)"
+              R"(<div class="tools"></div><div class="legend">{}</div><div class="reading"></div>)"
+              "{}</figure>",
+              is_wide(chart) ? " wide" : "", chart.id, chart.title, legend(chart, columns),
+              Drawing(chart, columns).svg());
 }
 
 nlohmann::ordered_json chart_data(std::span<const Chart> charts, const ChartColumns& columns) {

@@ -91,8 +91,9 @@ struct Chart {
   std::vector<ChartEvents> events = {};
 };
 
-/// The figure of the chart, its SVG in it. Lines are thinned to what the width shows, by minimum
-/// and maximum, dots to every so many.
+/// The figure of the chart: title, legend, and a still SVG. Lines are thinned to what the width
+/// shows, by minimum and maximum, dots to every so many. Its rows for tools and for what is read
+/// are empty; the script fills them, and nothing moves.
 Html figure(const Chart& chart, const ChartColumns& columns);
 
 /// What the script draws the charts from: {"columns": [...], "charts": [...]}. Columns are

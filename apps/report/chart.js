@@ -1,5 +1,5 @@
-// One live chart in its figure: uPlot has the axes, the selection and the cursor's line; the
-// content is drawn by drawing.js, so that what is saved is what is shown.
+// One live chart in its figure: an SVG in the place of the still one, drawn by drawing.js whenever
+// the ranges or the size change, with a selection, a cursor and readings over it.
 
 function element(name, properties = {}, ...children) {
   const made = document.createElement(name);
@@ -15,6 +15,10 @@ const button = (text, name, action) =>
     element("button", {type: "button", textContent: text, title: name, ariaLabel: name,
                        onclick: action});
 
+function place(shape, attributes) {
+  for (const [key, value] of Object.entries(attributes)) shape.setAttribute(key, value);
+}
+
 /** Range of the finite (and, for logarithms, positive) values between two indices. */
 function extentOf(values, log, first = 0, last = values.length - 1, where = () => true) {
   let min = Infinity;
@@ -28,14 +32,16 @@ function extentOf(values, log, first = 0, last = values.length - 1, where = () =
   return [min, max];
 }
 
-/** The range with a margin on either side; something to look at where it is empty. */
+/** The range with a margin on either side; something to look at where it is empty or one value. */
 function widened([min, max], margin, log) {
   if (min > max) return log ? [1, 10] : [0, 1];
+  const size = Math.max(Math.abs(min), Math.abs(max));
+  const one = max - min <= 1e-12 * size;  // but for rounding
   if (log) {
-    const factor = max > min ? (max / min) ** margin : 2;
+    const factor = one ? 2 : (max / min) ** margin;
     return [min / factor, max * factor];
   }
-  const extra = max > min ? (max - min) * margin : Math.abs(max) * 0.05 || 1;
+  const extra = one ? 0.05 * size || 1 : (max - min) * margin;
   return [min - extra, max + extra];
 }
 
@@ -63,7 +69,6 @@ class Chart {
     this.bands = spec.bands ?? [];
     events.sort((a, b) => a.at - b.at);
     this.events = {list: events, times: events.map((e) => e.at)};
-    this.ticks = {x: {places: [], labels: []}, y: {places: [], labels: []}};
     // Points anywhere in the plane are read by their distance, others by their x.
     this.scattered =
         !spec.time && (spec.kind === "points" || !series.every((s) => s.sorted));
@@ -72,8 +77,9 @@ class Chart {
     this.x = this.extent;
     this.y = this.fittingY();
     this.makeElements();
-    this.makePlot();
-    figure.classList.add("live");
+    this.size = figure.querySelector("svg").getBoundingClientRect();
+    this.redraw();
+    this.attach();
   }
 
   // --- ranges
@@ -110,17 +116,8 @@ class Chart {
   show(x, y = null) {
     this.x = x ?? this.extent;
     this.y = y ?? this.fittingY();
-    this.point(null);
     this.redraw();
-  }
-
-  redraw() {
-    this.uplot.batch(() => {
-      for (const axis of ["x", "y"]) {
-        const [min, max] = this[axis];
-        this.uplot.setScale(axis, {min, max});
-      }
-    });
+    this.point(null);
   }
 
   /** Asks for a zoom to x from a to b as far as there are samples to tell apart. */
@@ -134,13 +131,13 @@ class Chart {
   }
 
   zoomBy(factor, centre = this.cursor ?? this.fromX(0.5)) {
-    const at = Math.min(Math.max(this.toX(centre), 0), 1);
+    const at = clamped(this.toX(centre), 0, 1);
     this.zoomTo(this.fromX(at - at * factor), this.fromX(at + (1 - at) * factor));
   }
 
   pan(share) {
     const [min, max] = this.extent.map((v) => this.toX(v));
-    const by = Math.min(Math.max(share, min), max - 1);
+    const by = clamped(share, min, max - 1);
     this.zoomTo(this.fromX(by), this.fromX(1 + by));
   }
 
@@ -150,12 +147,11 @@ class Chart {
 
   /** Place of x in the view, 0 at its left edge and 1 at its right, and back. */
   toX(x) {
-    return scaleTo(this.rangeOf("x"), 0, 1)(x);
+    return scaleOf(this.rangeOf("x"), 0, 1).to(x);
   }
 
   fromX(share) {
-    const [a, b] = this.x;
-    return this.spec.x.log ? a * (b / a) ** share : a + (b - a) * share;
+    return scaleOf(this.rangeOf("x"), 0, 1).back(share);
   }
 
   // --- what is on the page
@@ -165,11 +161,15 @@ class Chart {
     this.at = element("span", {className: "at"});
     this.note = element("span", {className: "note"});
     this.spoken = element("p", {className: "unseen", ariaLive: "polite"});
-    this.keys = this.series.map((s, i) => this.makeKey(s, i));
-    this.legend = element("div", {className: "legend"}, ...this.keys.map((k) => k.button),
-                          ...this.eventKeys());
-    this.reading = element("div", {className: "reading"}, this.at,
-                           ...this.keys.map((k) => k.reading), this.note);
+    this.keys = this.series.map((s) => this.makeKey(s));
+    this.drawing = shape("g", {});
+    this.selection = shape("rect", {class: "selection"});
+    this.line = shape("path", {class: "cursor"});
+    this.over = shape("rect", {class: "over"});
+    this.svg = shape("svg", {"aria-hidden": "true"},
+                     shape("g", {transform: `translate(${MARGIN.left} ${MARGIN.top})`},
+                           this.drawing, this.selection, this.line,
+                           ...this.keys.map((k) => k.dot), this.over));
     this.plot = element("div", {
       className: "plot",
       tabIndex: 0,
@@ -177,173 +177,102 @@ class Chart {
       ariaLabel: `${title}, against ${x.label}`,
       "aria-roledescription": "chart",
       "aria-describedby": "chart-keys",
+    }, this.svg);
+    const save = ([name, write]) => button(name, `Save ${name}: ${title}`, async () => {
+      try {
+        await write(this);
+      } catch (error) {
+        this.note.textContent = `${name} could not be made: ${error.message}`;
+      }
     });
-    const zoom = [
+    this.tools = [
       button("\u2212", `Zoom out: ${title}`, () => this.zoomBy(2)),
       button("+", `Zoom in: ${title}`, () => this.zoomBy(0.5)),
       button("Reset", `Reset the zoom: ${title}`, () => this.reset()),
+      element("span", {className: "gap"}),
+      ...Object.entries(FORMATS).map(save),
     ];
-    const saves = Object.entries(FORMATS).map(
-        ([name, write]) => button(name, `Save ${name}: ${title}`, async () => {
-          try {
-            await write(this);
-          } catch (error) {
-            this.note.textContent = `${name} could not be made: ${error.message}`;
-          }
-        }));
-    this.tools = element("div", {className: "tools", role: "group", ariaLabel: `Tools: ${title}`},
-                         ...zoom, element("span", {className: "gap"}), ...saves);
-    this.live = element("div", {className: "chart-live"}, this.tools, this.legend,
-                        this.reading, this.plot, this.spoken);
-    this.figure.append(this.live);
   }
 
+  /** A button for the legend; a series is read beside its name, and by a dot. */
   makeKey(series) {
     const value = element("span", {className: "value"});
-    const swatch = element("span", {className: `swatch ${series.style}`});
-    swatch.style.color = `var(--${series.role})`;
+    const reading = element("span", {hidden: true}, `${series.label} `, value);
     const key = element("button", {type: "button", className: "key", ariaPressed: "true",
-                                   title: "Show or hide"},
-                        swatch, series.label);
+                                   title: "Show or hide"});
     key.onclick = () => {
       series.shown = !series.shown;
       key.ariaPressed = String(series.shown);
       this.show(this.x);
     };
-    const dot = element("span", {className: "dot", hidden: true});
-    dot.style.color = `var(--${series.role})`;
-    const reading = element("span", {hidden: true}, `${series.label} `, value);
-    return {button: key, reading, value, dot};
+    return {button: key, reading, value,
+            dot: shape("circle", {class: `dot ${series.role}`, r: 4, visibility: "hidden"})};
   }
 
-  /** The kinds of events and phases that there are, with their colours. */
-  eventKeys() {
-    const kinds = new Map();
-    for (const {kind} of this.events.list) kinds.set(kind, (kinds.get(kind) ?? 0) + 1);
-    const keys = [...kinds].map(([kind, count]) => [kind, `${kind} (${count})`, "tick"]);
-    for (const kind of new Set(this.phases.map((p) => p.kind)))
-      keys.push([kind, kind === "limit" ? "at a limit" : kind, "area"]);
-    return keys.map(([kind, text, shape]) => {
-      const swatch = element("span", {className: `swatch ${shape}`});
-      swatch.style.color = `var(--${kind})`;
-      return element("span", {className: "kind"}, swatch, text);
+  /** Fills the empty rows of the figure, and takes the place of its picture. */
+  attach() {
+    const part = (name) => this.figure.querySelector(name);
+    const {width, height} = part("svg").viewBox.baseVal;
+    this.plot.style.aspectRatio = `${width} / ${height}`;
+    this.figure.querySelectorAll(".legend .key").forEach((words, i) => {
+      this.keys[i].button.append(...words.childNodes);
+      words.replaceWith(this.keys[i].button);
     });
-  }
-
-  makePlot() {
-    const font = `11.5px ${FONT}`;
-    const axis = (scale, more) => ({
-      scale,
-      font,
-      stroke: () => colour("muted"),
-      grid: {stroke: () => colour("line"), width: 1},
-      ticks: {show: false},
-      label: withUnit(this.spec[scale]),
-      labelFont: `12px ${FONT}`,
-      values: (u, places, index, space, distance) => {
-        const labels = tickLabels(places, distance, this.spec[scale].log);
-        this.ticks[scale] = {places, labels};
-        return labels;
-      },
-      ...more,
-    });
-    const scale = (name) => ({
-      time: false,
-      auto: false,
-      distr: this.spec[name].log ? 3 : 1,
-      range: () => this[name],
-    });
-    // uPlot holds no data, but draws axes only around some.
-    const nothing = [this.x, [null, null]];
-    this.uplot = new uPlot(
-        {
-          ...this.size(),
-          legend: {show: false},
-          padding: [8, 16, 0, 0],
-          scales: {x: scale("x"), y: scale("y")},
-          series: [{}, {scale: "y", paths: () => null, points: {show: false}}],
-          axes: [
-            axis("x", {size: 24, gap: 6, labelSize: 20, space: 70}),
-            axis("y", {size: 58, gap: 8, labelSize: 18, space: 32}),
-          ],
-          cursor: {
-            y: this.scattered,
-            points: {show: false},
-            drag: {x: true, y: this.scattered, setScale: false, dist: 4, uni: 24},
-            bind: {dblclick: () => () => this.reset()},
-          },
-          hooks: {
-            drawClear: [() => this.draw(drawBackground)],
-            draw: [() => this.draw(drawContent)],
-            setSelect: [() => this.zoomToSelection()],
-          },
-        },
-        nothing, this.plot);
-    this.uplot.over.append(...this.keys.map((k) => k.dot));
+    part(".reading").append(this.at, ...this.keys.map((k) => k.reading), this.note);
+    part(".tools").append(...this.tools);
+    part(".tools").setAttribute("role", "group");
+    part(".tools").setAttribute("aria-label", `Tools: ${this.spec.title}`);
+    this.figure.append(this.plot, this.spoken);
+    this.figure.classList.add("live");
     this.listen();
   }
 
-  /** Size of the plot with its axes: as wide as the page has it, shaped like the picture. */
-  size() {
-    const picture = this.figure.querySelector("svg")?.viewBox.baseVal;
-    const width = Math.max(this.plot.clientWidth || this.figure.clientWidth, 120);
-    const ratio = picture?.width ? picture.height / picture.width : 0.36;
-    const height = Math.round(Math.min(Math.max(width * ratio, 190), 420));
-    this.plot.style.height = `${height}px`;
-    return {width, height};
-  }
-
-  plotSize() {
-    const {width, height} = this.uplot.bbox;
-    return {width: width / uPlot.pxRatio, height: height / uPlot.pxRatio};
-  }
-
-  frame() {
-    const {left, top} = this.uplot.bbox;
-    const plot = {left: left / uPlot.pxRatio, top: top / uPlot.pxRatio, ...this.plotSize()};
-    return frameOf(plot, this.rangeOf("x"), this.rangeOf("y"), uPlot.pxRatio);
-  }
-
-  draw(what) {
-    const context = this.uplot.ctx;
-    context.save();
-    context.scale(uPlot.pxRatio, uPlot.pxRatio);
-    what(new CanvasSurface(context), this, this.frame());
-    context.restore();
-  }
-
-  zoomToSelection() {
-    const {left, top, width, height} = this.uplot.select;
-    if (width === 0 && height === 0) return;
-    this.uplot.setSelect({left: 0, top: 0, width: 0, height: 0}, false);
-    const valueAt = (position, axis) => this.uplot.posToVal(position, axis);
-    const plot = this.plotSize();
-    if (!this.scattered) {
-      if (width > 0) this.zoomTo(valueAt(left, "x"), valueAt(left + width, "x"));
-      return;
-    }
-    const all = (share, whole) => share <= 0 || share >= whole;
-    this.show(all(width, plot.width) ? this.x : [valueAt(left, "x"), valueAt(left + width, "x")],
-              all(height, plot.height) ? null
-                                       : [valueAt(top + height, "y"), valueAt(top, "y")]);
+  redraw() {
+    const {width, height} = this.size;
+    if (width === 0) return;  // in a part that is folded up
+    const {frame, parts} = drawn(this, this.size);
+    this.frame = frame;
+    this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    this.drawing.replaceChildren(...parts);
+    place(this.over, {width: frame.width, height: frame.height});
   }
 
   // --- cursor and keys
 
+  /** Where a pointer is in the frame. */
+  placeOf(event) {
+    const box = this.over.getBoundingClientRect();
+    return {x: event.clientX - box.left, y: event.clientY - box.top};
+  }
+
   listen() {
-    const {over} = this.uplot;
-    over.addEventListener("pointermove", (event) => {
-      const box = over.getBoundingClientRect();
-      const x = this.uplot.posToVal(event.clientX - box.left, "x");
-      this.point(x, this.uplot.posToVal(event.clientY - box.top, "y"), true);
+    const {over} = this;
+    let from = null;  // where a drag began
+    let selected = null;
+    over.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0 || event.pointerType === "touch") return;
+      from = this.placeOf(event);
+      over.setPointerCapture(event.pointerId);
     });
+    over.addEventListener("pointermove", (event) => {
+      const at = this.placeOf(event);
+      selected = from && this.selectionOf(from, at);
+      place(this.selection, selected ?? {width: 0, height: 0});
+      this.point(this.frame.fromX(at.x), this.frame.fromY(at.y), true);
+    });
+    const end = (zoom) => {
+      if (zoom && selected) this.zoomToSelection(selected);
+      from = selected = null;
+      place(this.selection, {width: 0, height: 0});
+    };
+    over.addEventListener("pointerup", () => end(true));
+    over.addEventListener("pointercancel", () => end(false));
     over.addEventListener("pointerleave", () => this.point(null, null, true));
+    over.addEventListener("dblclick", () => this.reset());
     over.addEventListener("wheel", (event) => {
       if (!event.ctrlKey) return;
       event.preventDefault();
-      const box = over.getBoundingClientRect();
-      const centre = this.uplot.posToVal(event.clientX - box.left, "x");
-      this.zoomBy(event.deltaY > 0 ? 1.25 : 0.8, centre);
+      this.zoomBy(event.deltaY > 0 ? 1.25 : 0.8, this.frame.fromX(this.placeOf(event).x));
     }, {passive: false});
     this.plot.addEventListener("keydown", (event) => {
       const act = this.actionOf(event);
@@ -352,10 +281,34 @@ class Chart {
       act();
     });
     this.plot.addEventListener("blur", () => this.point(null, null, true));
-    new ResizeObserver(() => {
-      const size = this.size();
-      if (size.width !== this.uplot.width) this.uplot.setSize(size);
+    new ResizeObserver(([{contentRect}]) => {
+      const {width, height} = this.size;
+      if (contentRect.width === width && contentRect.height === height) return;
+      this.size = contentRect;
+      this.show(this.x, this.y);
     }).observe(this.plot);
+  }
+
+  /** The part of the frame between two places; of full height or width unless both are meant. */
+  selectionOf(a, b) {
+    const {width, height} = this.frame;
+    const [left, right] = [a.x, b.x].sort((m, n) => m - n).map((v) => clamped(v, 0, width));
+    const [top, bottom] = [a.y, b.y].sort((m, n) => m - n).map((v) => clamped(v, 0, height));
+    if (Math.hypot(a.x - b.x, a.y - b.y) < 4) return null;
+    const meant = 24;
+    const byY = this.scattered && bottom - top >= meant;
+    const byX = !byY || right - left >= meant;
+    return {x: byX ? left : 0, width: byX ? right - left : width,
+            y: byY ? top : 0, height: byY ? bottom - top : height};
+  }
+
+  zoomToSelection({x, y, width, height}) {
+    const {fromX, fromY} = this.frame;
+    const rangeX = [fromX(x), fromX(x + width)];
+    if (!this.scattered) this.zoomTo(...rangeX);
+    else if (width > 0)
+      this.show(width < this.frame.width ? rangeX : this.x,
+                height < this.frame.height ? [fromY(y + height), fromY(y)] : null);
   }
 
   actionOf({key, shiftKey, ctrlKey, metaKey, altKey}) {
@@ -417,6 +370,8 @@ class Chart {
    * Own: it is this chart that the hand is on, and the linked ones follow.
    */
   point(x, y = null, own = false) {
+    if (!this.frame) return;
+    const {toX, toY, width, height} = this.frame;
     const inView = x !== null && x >= this.x[0] && x <= this.x[1];
     const samples = inView ? this.samplesAt(x, y) : [];
     const found = samples.find((s) => s);
@@ -425,18 +380,13 @@ class Chart {
       const sample = samples[i];
       reading.hidden = !sample;
       value.textContent = sample ? `${sample.y}` : "";
-      dot.hidden = !sample;
-      if (sample) {
-        const left = this.uplot.valToPos(sample.x, "x");
-        dot.style.transform = `translate(${left}px, ${this.uplot.valToPos(sample.y, "y")}px)`;
-      }
+      place(dot, sample ? {visibility: "visible", cx: toX(sample.x), cy: toY(sample.y)}
+                        : {visibility: "hidden"});
     });
     this.at.textContent = found ? `${this.spec.x.label} ${found.x} ${this.spec.x.unit}` : "";
     this.note.textContent = found ? this.noteAt(found.x) : "";
-    this.uplot.setCursor(
-        found ? {left: this.uplot.valToPos(found.x, "x"), top: this.uplot.valToPos(found.y, "y")}
-              : {left: -10, top: -10},
-        false);
+    const across = found && this.scattered ? `M0 ${toY(found.y)}H${width}` : "";
+    place(this.line, {d: found ? `M${toX(found.x)} 0V${height}${across}` : ""});
     if (own) this.linked.point(this, found ? found.x : null);
   }
 
@@ -453,7 +403,7 @@ class Chart {
   }
 
   nearestPoint(x, y) {
-    const {toX, toY} = this.frame();
+    const {toX, toY} = this.frame;
     const [atX, atY] = [toX(x), y === null ? null : toY(y)];
     let least = Infinity;
     let found = [];
@@ -473,7 +423,7 @@ class Chart {
   /** Events within four pixels, phases and bands at x. */
   noteAt(x) {
     const {list, times} = this.events;
-    const {toX, width} = this.frame();
+    const {toX, width} = this.frame;
     const reach = this.fromX(4 / width) - this.fromX(0);
     const near = list.slice(lowerBound(times, x - reach), lowerBound(times, x + reach));
     near.sort((a, b) => Math.abs(toX(a.at) - toX(x)) - Math.abs(toX(b.at) - toX(x)));

@@ -1,254 +1,58 @@
-// Draws the content of a chart through a surface: a canvas on the screen, or SVG to save. Both get
-// the same paths in CSS pixels, thinned to what a pixel can show.
+// Draws a chart as the SVG of apps/chart.cpp is drawn, by the same classes of report.css, at the
+// size and over the ranges that it has on the screen. Its unit is a CSS pixel, from the upper left
+// corner of the frame.
 
-const FONT = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
+const MARGIN = {left: 70, right: 12, top: 10, bottom: 42};
+const PIECE = 100;
+const FEW_DOTS = 200;  // of a series, which are larger
 
-/** The colour that report.css gives a role, kind or part, in the theme of the moment. */
-function colour(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+function shape(name, attributes, ...children) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  made.append(...children);
+  return made;
 }
 
-/** Width of line and dashes of the roles that are not drawn as the others are. */
-const STROKES = {
-  measured: {width: 1.75},
-  mean: {width: 1.75},
-  accepted: {width: 1.75},
-  band: {width: 1, dash: [2, 3]},
-  reference: {width: 1, dash: [5, 4]},
-};
-const strokeOf = (role) => ({width: 1.25, dash: [], ...STROKES[role], colour: colour(role)});
-
-/**
- * A path in pieces, since the time to stroke one that crosses itself grows faster than its length:
- * two noisy traces of 100,000 samples took 130 ms in one piece.
- */
-class CanvasPath {
-  pieces = [];
-  points = 0;
-
-  moveTo(x, y) {
-    if (this.points % 100 === 0) this.pieces.push(new Path2D());
-    this.pieces.at(-1).moveTo(x, y);
-    this.points++;
-    this.x = x;
-    this.y = y;
-  }
-
-  lineTo(x, y) {
-    if (this.points % 100 === 0) this.moveTo(this.x, this.y);
-    this.pieces.at(-1).lineTo(x, y);
-    this.points++;
-    this.x = x;
-    this.y = y;
-  }
-}
-
-class CanvasSurface {
-  constructor(context) {
-    this.context = context;
-  }
-
-  path() {
-    return new CanvasPath();
-  }
-
-  stroke(path, {colour, width, dash = [], opacity = 1}) {
-    const c = this.context;
-    c.globalAlpha = opacity;
-    c.strokeStyle = colour;
-    c.lineWidth = width;
-    c.setLineDash(dash);
-    c.lineJoin = "bevel";
-    for (const piece of path.pieces) c.stroke(piece);
-  }
-
-  rectangle(x, y, width, height, {colour, opacity = 1}) {
-    this.context.globalAlpha = opacity;
-    this.context.fillStyle = colour;
-    this.context.fillRect(x, y, width, height);
-  }
-
-  dots(points, radius, {colour, opacity}) {
-    const c = this.context;
-    c.globalAlpha = opacity;
-    c.fillStyle = colour;
-    const round = points.length < 10000;  // x and y of 5000
-    for (let i = 0; i < points.length; i += 2) {
-      if (round) {
-        c.beginPath();
-        c.arc(points[i], points[i + 1], radius, 0, 2 * Math.PI);
-        c.fill();
-      } else {
-        c.fillRect(points[i] - radius, points[i + 1] - radius, 2 * radius, 2 * radius);
-      }
-    }
-  }
-
-  text(string, x, y, {colour, size = 11, anchor = "start"}) {
-    const c = this.context;
-    c.globalAlpha = 1;
-    c.fillStyle = colour;
-    c.font = `${size}px ${FONT}`;
-    c.textAlign = anchor === "middle" ? "center" : anchor;
-    c.textBaseline = "alphabetic";
-    c.fillText(string, x, y);
-  }
-
-  /** Calls draw with everything outside the rectangle cut off. */
-  within({left, top, width, height}, draw) {
-    this.context.save();
-    this.context.beginPath();
-    this.context.rect(left, top, width, height);
-    this.context.clip();
-    draw();
-    this.context.restore();
-  }
-}
-
-const tenths = (v) => Math.round(v * 10) / 10;
-
-/** Has the part of Path2D that is needed here, and is the text of an SVG path. */
-class SvgPath {
-  parts = [];
-
-  moveTo(x, y) {
-    this.parts.push(`M${tenths(x)} ${tenths(y)}`);
-  }
-
-  lineTo(x, y) {
-    this.parts.push(`L${tenths(x)} ${tenths(y)}`);
-  }
-
-  toString() {
-    return this.parts.join("");
-  }
-}
-
-class SvgSurface {
-  constructor(width, height) {
-    this.root = this.group = this.make("svg", {
-      width,
-      height,
-      viewBox: `0 0 ${width} ${height}`,
-      "font-family": FONT,
-    });
-  }
-
-  make(name, attributes) {
-    const element = document.createElementNS("http://www.w3.org/2000/svg", name);
-    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-    return element;
-  }
-
-  add(name, attributes) {
-    return this.group.appendChild(this.make(name, attributes));
-  }
-
-  path() {
-    return new SvgPath();
-  }
-
-  stroke(path, {colour, width, dash = [], opacity = 1, name}) {
-    const line = this.add("path", {
-      d: path,
-      fill: "none",
-      stroke: colour,
-      "stroke-width": width,
-      "stroke-linejoin": "round",
-      "stroke-opacity": opacity,
-    });
-    if (dash.length) line.setAttribute("stroke-dasharray", dash.join(" "));
-    this.name(line, name);
-  }
-
-  rectangle(x, y, width, height, {colour, opacity = 1}) {
-    this.add("rect", {
-      x: tenths(x),
-      y: tenths(y),
-      width: tenths(width),
-      height: tenths(height),
-      fill: colour,
-      "fill-opacity": opacity,
-    });
-  }
-
-  dots(points, radius, {colour, opacity, name}) {
-    let d = "";
-    for (let i = 0; i < points.length; i += 2)
-      d += `M${tenths(points[i])} ${tenths(points[i + 1])}h0`;
-    this.name(
-        this.add("path", {
-          d,
-          fill: "none",
-          stroke: colour,
-          "stroke-width": 2 * radius,
-          "stroke-linecap": "round",
-          "stroke-opacity": opacity,
-        }),
-        name);
-  }
-
-  text(string, x, y, {colour, size = 11, anchor = "start", weight = 400, rotate}) {
-    const text = this.add("text", {
-      x: tenths(x),
-      y: tenths(y),
-      fill: colour,
-      "font-size": size,
-      "font-weight": weight,
-      "text-anchor": anchor,
-    });
-    if (rotate) text.setAttribute("transform", `rotate(${rotate} ${tenths(x)} ${tenths(y)})`);
-    text.textContent = forXml(string);
-  }
-
-  within({left, top, width, height}, draw) {
-    const clip = this.add("clipPath", {id: "plot"});
-    clip.append(this.make("rect", {x: left, y: top, width, height}));
-    const outer = this.group;
-    this.group = outer.appendChild(this.make("g", {"clip-path": "url(#plot)"}));
-    draw();
-    this.group = outer;
-  }
-
-  /** Says in the file, and to a hand that edits it, which series this is. */
-  name(element, name) {
-    if (name === undefined) return;
-    const title = element.appendChild(this.make("title", {}));
-    title.textContent = forXml(name);
-  }
-
-  toString() {
-    return new XMLSerializer().serializeToString(this.root);
-  }
-}
-
-/** XML has no way to hold control characters and halves of surrogate pairs. */
-function forXml(string) {
-  return string.replace(/[\0-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]|\p{Surrogate}/gu, "\ufffd");
-}
-
-/** Maps min..max, in logarithms where asked, to from..to. */
-function scaleTo({min, max, log}, from, to) {
+/** Maps min..max, in logarithms where asked, to from..to, and back. */
+function scaleOf({min, max, log}, from, to) {
   const a = log ? Math.log10(min) : min;
   const slope = (to - from) / ((log ? Math.log10(max) : max) - a);
-  return log ? (v) => from + (Math.log10(v) - a) * slope : (v) => from + (v - a) * slope;
+  return log ? {to: (v) => from + (Math.log10(v) - a) * slope,
+                back: (place) => 10 ** (a + (place - from) / slope)}
+             : {to: (v) => from + (v - a) * slope, back: (place) => a + (place - from) / slope};
 }
 
-/**
- * Where a chart is drawn: its rectangle in CSS pixels, the ranges it shows, device pixels per pixel.
- */
-function frameOf({left, top, width, height}, x, y, resolution) {
-  return {
-    left,
-    top,
-    width,
-    height,
-    x,
-    y,
-    resolution,
-    toX: scaleTo(x, left, left + width),
-    toY: scaleTo(y, top + height, top),
-  };
+const clamped = (v, min, max) => Math.min(Math.max(v, min), max);
+const tenths = (v) => Math.round(v * 10) / 10;
+const minus = (text) => text.replace("-", "\u2212");
+const power = (n) => `10${[...String(n)].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("")}`;
+const withUnit = ({label, unit}) => (unit ? `${label} (${unit})` : label);
+
+/** Round values in the range, about as many as wanted, and their labels. */
+function ticksOf({min, max, log}, wanted) {
+  const ticks = [];
+  if (log) {
+    const [first, last] = [Math.ceil(Math.log10(min) - 1e-9), Math.floor(Math.log10(max) + 1e-9)];
+    const every = Math.max(1, Math.ceil((last - first) / wanted));
+    for (let n = first; n <= last; n += every)
+      ticks.push({at: 10 ** n, label: n >= -2 && n <= 3 ? String(10 ** n) : power(n)});
+    if (ticks.length > 1) return ticks;
+    ticks.length = 0;
+  }
+  const rough = (max - min) / wanted;
+  const unit = 10 ** Math.floor(Math.log10(rough));
+  const step = unit * [1, 2, 5, 10].find((m) => rough < m * unit * 1.5);
+  const largest = Math.max(Math.abs(min), Math.abs(max));
+  const shift = largest >= 1e5 || largest < 1e-3 ? Math.floor(Math.log10(largest)) : 0;
+  const decimals = Math.max(0, shift - Math.floor(Math.log10(step) + 1e-9));
+  const first = Math.ceil(min / step - 1e-9);
+  const count = Math.floor(max / step + 1e-9) - first + 1;
+  for (let k = 0; k < count; k++) {
+    const i = first + k;
+    const digits = minus(((i * step) / 10 ** shift).toFixed(decimals));
+    ticks.push({at: i * step, label: i === 0 ? "0" : shift ? `${digits}·${power(shift)}` : digits});
+  }
+  return ticks;
 }
 
 /** First and last index of a series to draw for x from min to max: one more on either side. */
@@ -259,175 +63,137 @@ function visibleRange({xs, ys, sorted}, {min, max}) {
 }
 
 /**
- * The line of a series. Of consecutive samples in the same column of pixels only the first, the
- * lowest, the highest and the last are drawn, so that no spike is lost and the length of the path
- * does not depend on the number of samples.
+ * A line through the lowest and the highest sample of every column of pixels, in their order; in
+ * pieces, since the time to stroke a path that crosses itself grows faster than its length.
  */
-function linePath(path, series, frame) {
-  const {xs, ys, style} = series;
-  const {toX, toY, resolution} = frame;
-  const [first, last] = visibleRange(series, frame.x);
-  const steps = style === "steps";
-  let column = NaN;
-  let joined = false;  // whether the path goes on from the column before
-  let startX, startY, lowX, lowY, highX, highY, x, y;
-
-  const drawColumn = () => {
-    if (joined) path.lineTo(startX, startY);
-    else path.moveTo(startX, startY);
-    if (lowY < highY) {
-      path.lineTo(lowX, lowY);
-      path.lineTo(highX, highY);
-    } else if (highY < lowY) {
-      path.lineTo(highX, highY);
-      path.lineTo(lowX, lowY);
-    }
-    if (x !== startX || y !== startY) path.lineTo(x, y);
-    joined = true;
+function linePaths(series, {x, y, toX, toY}) {
+  const {xs, ys} = series;
+  const steps = series.style === "steps";
+  const [first, last] = visibleRange(series, x);
+  const paths = [];
+  let points = 0;
+  let before;  // the last place of the line, where there is one to go on from
+  const add = (atX, atY) => {
+    const at = [tenths(atX), tenths(atY)];
+    if (points++ % PIECE === 0) paths.push(before ? `M${before}` : "");
+    paths[paths.length - 1] += !before ? `M${at}` : steps ? `H${at[0]}V${at[1]}` : `L${at}`;
+    before = at;
   };
-
-  let open = false;  // whether the column has a sample
+  let column = NaN;
+  let lowX, lowY, highX, highY;
+  const addColumn = () => {
+    if (Number.isNaN(column)) return;
+    if (lowX > highX) add(highX, highY);
+    add(lowX, lowY);
+    if (lowX <= highX && lowY !== highY) add(highX, highY);
+  };
   for (let i = first; i <= last; i++) {
-    const nextX = toX(xs[i]);
-    const nextY = toY(ys[i]);
-    if (!Number.isFinite(nextX + nextY)) {
-      if (open) drawColumn();
-      open = joined = false;
-      continue;
-    }
-    const nextColumn = Math.floor(nextX * resolution);
-    if (open && nextColumn === column) {
-      if (nextY < lowY) [lowX, lowY] = [nextX, nextY];
-      if (nextY > highY) [highX, highY] = [nextX, nextY];
+    const px = toX(xs[i]);
+    const py = toY(ys[i]);
+    if (!(px + py - (px + py) === 0)) {  // no value
+      addColumn();
+      column = NaN;
+      before = undefined;
+    } else if (Math.floor(px) !== column) {
+      addColumn();
+      column = Math.floor(px);
+      lowX = highX = px;
+      lowY = highY = py;
     } else {
-      if (open) drawColumn();
-      if (steps && joined) path.lineTo(nextX, y);
-      column = nextColumn;
-      open = true;
-      startX = lowX = highX = nextX;
-      startY = lowY = highY = nextY;
+      if (py < lowY) [lowX, lowY] = [px, py];
+      if (py > highY) [highX, highY] = [px, py];
     }
-    x = nextX;
-    y = nextY;
   }
-  if (open) drawColumn();
+  addColumn();
+  return paths;
+}
+
+/** Every sample in view as a line without length, which its round ends make a dot. */
+function dotsPath(series, {x, width, height, toX, toY}) {
+  const {xs, ys} = series;
+  let path = "";
+  const [first, last] = visibleRange(series, x);
+  for (let i = first; i <= last; i++) {
+    const px = toX(xs[i]);
+    const py = toY(ys[i]);
+    if (px >= 0 && px <= width && py >= 0 && py <= height)
+      path += `M${tenths(px)} ${tenths(py)}h0`;
+  }
   return path;
 }
 
-/** Pixel coordinates x, y, x, y, ... of the dots in view. */
-function dotsInView(series, frame) {
-  const {xs, ys} = series;
-  const {toX, toY, left, top, width, height} = frame;
-  const points = [];
-  const [first, last] = visibleRange(series, frame.x);
-  for (let i = first; i <= last; i++) {
-    const x = toX(xs[i]);
-    const y = toY(ys[i]);
-    if (x >= left && x <= left + width && y >= top && y <= top + height) points.push(x, y);
-  }
-  return points;
+function drawnSeries(series, frame) {
+  const {role, label} = series;
+  const dots = series.style === "dots";
+  const kind = !dots ? "" : series.xs.length <= FEW_DOTS ? " dots few" : " dots";
+  const paths = dots ? [dotsPath(series, frame)] : linePaths(series, frame);
+  return shape("g", {class: `series ${role}${kind}`, "data-label": label},
+               ...paths.map((d) => shape("path", {d})));
 }
 
-function drawSeries(surface, series, frame) {
-  const {role, style, label} = series;
-  if (style === "dots") {
-    const points = dotsInView(series, frame);
-    const count = points.length / 2;
-    surface.dots(points, count > 3000 ? 1.25 : count > 200 ? 1.75 : 2.75, {
-      colour: colour(role),
-      opacity: Math.min(0.85, Math.max(0.25, 30 / Math.sqrt(count))),
-      name: label,
-    });
-  } else {
-    surface.stroke(linePath(surface.path(), series, frame), {...strokeOf(role), name: label});
-  }
-}
-
-/** Shaded phases and bands, below grid and traces. */
-function drawBackground(surface, {phases, bands}, frame) {
-  const {left, top, width, height, toX, toY} = frame;
-  surface.within(frame, () => {
-    for (const {from, to, kind} of phases) {
-      const x = Math.max(toX(from), left);
-      const end = Math.min(toX(to), left + width);
-      if (end > x)
-        surface.rectangle(x, top, end - x, height, {colour: colour(kind), opacity: 0.1});
-    }
-    for (const {from, to} of bands) {
-      const y = toY(Math.max(from, to));
-      surface.rectangle(
-          left, y, width, toY(Math.min(from, to)) - y, {colour: colour("band"), opacity: 0.1});
-    }
-  });
+/** Phases and bands. */
+function drawnRanges({phases, bands}, {width, height, toX, toY}) {
+  const places = phases.map(({from, to, kind}) => ({
+    kind, left: clamped(toX(from), -10, width + 10), right: clamped(toX(to), -10, width + 10)}));
+  return [
+    ...places.map(({kind, left, right}) => shape("rect", {
+      class: `phase ${kind}`, x: tenths(left), y: 0, width: tenths(Math.max(0.5, right - left)),
+      height})),
+    ...bands.map(({from, to}) => shape("rect", {
+      class: "band", x: 0, y: tenths(toY(to)), width,
+      height: Math.max(1, tenths(toY(from) - toY(to)))})),
+  ];
 }
 
 /** Events as ticks at the upper edge, one per pixel and kind; where they are few, also as lines. */
-function drawEvents(surface, events, frame) {
-  const {left, top, width, height, toX, resolution} = frame;
-  const first = lowerBound(events.times, frame.x.min);
-  const last = lowerBound(events.times, frame.x.max);
-  const few = last - first <= width / 12;
-  const ticks = new Map();   // path and last column of each kind
-  for (let i = first; i < last; i++) {
-    const {at, kind} = events.list[i];
-    const x = toX(at);
-    const column = Math.floor(x * resolution);
-    if (!ticks.has(kind)) ticks.set(kind, {path: surface.path(), lines: surface.path()});
-    const tick = ticks.get(kind);
-    if (tick.column === column) continue;
-    tick.column = column;
-    tick.path.moveTo(x, top);
-    tick.path.lineTo(x, top + 8);
-    tick.lines.moveTo(x, top + 8);
-    tick.lines.lineTo(x, top + height);
+function drawnEvents({list, times}, {x, width, height, toX}) {
+  const shown = list.slice(lowerBound(times, x.min), lowerBound(times, x.max));
+  const few = shown.length <= width / 12;
+  const ticks = new Map();
+  for (const {at, kind} of shown) {
+    if (!ticks.has(kind)) ticks.set(kind, new Set());
+    ticks.get(kind).add(Math.round(toX(at)));
   }
-  for (const [kind, {path, lines}] of ticks) {
-    if (few) surface.stroke(lines, {colour: colour(kind), width: 1, opacity: 0.28});
-    surface.stroke(path, {colour: colour(kind), width: 1.25, name: kind});
-  }
-}
-
-function drawContent(surface, {series, bands, events}, frame) {
-  surface.within(frame, () => {
-    for (const s of series) if (s.shown) drawSeries(surface, s, frame);
-    drawEvents(surface, events, frame);
-    for (const {from, to, text} of bands)
-      if (text)
-        surface.text(text, frame.left + frame.width - 6, frame.toY(Math.max(from, to)) - 5, {
-          colour: colour("muted"),
-          anchor: "end",
-        });
+  return [...ticks].flatMap(([kind, places]) => {
+    const path = (length) => [...places].map((px) => `M${px} 0v${length}`).join("");
+    const tick = shape("path", {class: `event ${kind}`, d: path(8)});
+    return few ? [shape("path", {class: `event line ${kind}`, d: path(height)}), tick] : [tick];
   });
 }
 
-/** Labels of the ticks at the given places, with the decimals that their distance needs. */
-function tickLabels(places, distance, log) {
-  if (log)
-    return places.map((v) => {
-      if (v === null) return "";
-      const power = Math.round(Math.log10(v));
-      if (Math.abs(v - 10 ** power) > 1e-9 * v) return shortNumber(v);
-      return power >= -2 && power <= 3 ? String(10 ** power) : `10${superscript(power)}`;
-    });
-  const largest = Math.max(...places.map(Math.abs));
-  if (largest >= 1e5 || (largest < 1e-3 && largest > 0)) {
-    const power = Math.floor(Math.log10(largest) + 1e-9);
-    const decimals = Math.max(0, power - Math.floor(Math.log10(distance) + 1e-9));
-    return places.map(
-        (v) => Math.abs(v) < distance * 1e-6
-                   ? "0"
-                   : `${(v / 10 ** power).toFixed(decimals)}·10${superscript(power)}`.replace(
-                         "-", "\u2212"));
+/** The parts of the picture at the size, and the frame that tells where values are in it. */
+function drawn(chart, size) {
+  const width = size.width - MARGIN.left - MARGIN.right;
+  const height = size.height - MARGIN.top - MARGIN.bottom;
+  const [x, y] = [chart.rangeOf("x"), chart.rangeOf("y")];
+  const [scaleX, scaleY] = [scaleOf(x, 0, width), scaleOf(y, height, 0)];
+  const frame = {x, y, width, height, toX: scaleX.to, toY: scaleY.to, fromX: scaleX.back,
+                 fromY: scaleY.back};
+  const text = (kind, px, py, anchor, words, more = {}) =>
+      shape("text", {class: kind, x: px, y: py, "text-anchor": anchor, ...more}, words);
+  const grid = [];
+  const labels = [];
+  for (const {at, label} of ticksOf(x, width / 80)) {
+    const px = tenths(frame.toX(at));
+    grid.push(shape("path", {class: "grid", d: `M${px} 0V${height}`}));
+    labels.push(text("tick", px, height + 16, "middle", label));
   }
-  const decimals = Math.max(0, -Math.floor(Math.log10(distance) + 1e-9));
-  const needed = Math.abs(distance * 10 ** decimals - Math.round(distance * 10 ** decimals)) > 1e-6;
-  return places.map((v) => {
-    const text = v.toFixed(decimals + (needed ? 1 : 0));
-    return (Number(text) === 0 ? text.replace("-", "") : text).replace("-", "\u2212");
-  });
+  for (const {at, label} of ticksOf(y, height / 36)) {
+    const py = tenths(frame.toY(at));
+    grid.push(shape("path", {class: "grid", d: `M0 ${py}H${width}`}));
+    labels.push(text("tick", -6, py + 4, "end", label));
+  }
+  const content = shape(
+      "svg", {width, height}, ...drawnRanges(chart, frame), ...grid,
+      ...chart.series.filter((s) => s.shown).map((s) => drawnSeries(s, frame)),
+      ...drawnEvents(chart.events, frame),
+      ...chart.bands.filter((b) => b.text).map(
+          (b) => text("tick", width - 6, frame.toY(b.to) - 5, "end", b.text)));
+  return {frame, parts: [
+    content, ...labels,
+    shape("path", {class: "axis", d: `M0 0V${height}H${width}`}),
+    text("label", width / 2, height + 34, "middle", withUnit(chart.spec.x)),
+    text("label", -57, height / 2, "middle", withUnit(chart.spec.y),
+         {transform: `rotate(-90 -57 ${height / 2})`}),
+  ]};
 }
-
-const shortNumber = (v) => String(Number(v.toPrecision(3))).replace("-", "\u2212");
-const superscript = (n) => [...String(n)].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("");
-
-const withUnit = ({label, unit}) => (unit ? `${label} (${unit})` : label);

@@ -1,12 +1,12 @@
 // Makes the charts of report.html live.
 //
-// C++ writes the page: all text, tables and a static SVG of every chart, and the data as JSON in
-// <script> named charts. CMake puts uPlot and the files of this folder, wrapped in one strict
-// function, at its end:
+// C++ writes the page: all text, tables, and a figure for every chart with its legend and a still
+// SVG, and the data as JSON in <script> named charts. CMake puts the files of this folder, wrapped
+// in one strict function, at its end:
 //   columns.js  decodes the columns of numbers, exactly
-//   drawing.js  draws traces, dots, events, phases and bands, on a canvas or as SVG
+//   drawing.js  draws a chart as SVG, which report.css styles as it does the still one
 //   save.js     CSV, SVG and PNG of a chart
-//   chart.js    one live chart: uPlot's axes and selection, legend, readout, keys
+//   chart.js    one live chart: zoom, legend, readout, keys
 //   report.js   starts the charts, links their zooms and cursors, light and dark
 // Where anything is missing or fails, the static SVG stays. Names in the data come from users'
 // files and only ever become text.
@@ -44,10 +44,6 @@ class Report {
     for (const chart of this.charts) chart.show(null);
   }
 
-  redraw() {
-    for (const chart of this.charts) chart.redraw();
-  }
-
   /** Gives way to the browser, so that it can paint and listen between two charts. */
   async start({columns, charts}) {
     const decoded = new Columns(columns);
@@ -59,7 +55,6 @@ class Report {
       try {
         this.charts.push(await Chart.of(figure, spec, decoded, this));
       } catch (error) {
-        figure.querySelector(".chart-live")?.remove();
         problems.push(`${spec.title}: ${error.message}`);
       }
     }
@@ -77,7 +72,7 @@ function darkRule() {
 }
 
 /** A button that changes between light and dark, from what the system prefers. */
-function themeButton(redraw) {
+function themeButton() {
   const rule = darkRule();
   const system = matchMedia("(prefers-color-scheme: dark)");
   let dark = system.matches;
@@ -89,7 +84,6 @@ function themeButton(redraw) {
   const apply = () => {
     toggle.textContent = dark ? "Light" : "Dark";
     toggle.ariaLabel = toggle.title = dark ? "Light colours" : "Dark colours";
-    redraw();
   };
   system.addEventListener("change", () => {
     dark = system.matches;
@@ -107,7 +101,7 @@ function controlsOf(report, recordings) {
     controls.append(element("label", {}, apart, "Zoom recordings apart"));
   }
   controls.append(button("Reset all", "Reset all charts", () => report.reset()),
-                  themeButton(() => report.redraw()));
+                  themeButton());
   return controls;
 }
 
@@ -134,9 +128,11 @@ async function startReport() {
     });
     // What is wider than its frame is scrolled by keys too.
     for (const frame of document.querySelectorAll(".scroll")) frame.tabIndex = 0;
+    // Before the page is painted: what comes later must not move it.
+    const hint = element("p", {className: "hint", textContent: HINT});
+    document.querySelector("main").prepend(hint);
     const problems = await report.start(data);
-    if (report.charts.length)
-      document.querySelector("main").prepend(element("p", {className: "hint", textContent: HINT}));
+    if (!report.charts.length) hint.remove();
     if (problems.length)
       say(`Shown as still pictures: ${problems.join("; ")}.`);
   } catch (error) {

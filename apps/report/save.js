@@ -22,54 +22,54 @@ function csvOf({spec, series}) {
   return lines.join("\n") + "\n";
 }
 
-/** The chart as it is shown, with title, legend and axes, and nothing left to look up elsewhere. */
-function svgOf(chart) {
-  const {spec, series, ticks} = chart;
-  const {width, height} = chart.plotSize();
-  const margin = {left: 68, right: 16, top: 56, bottom: 44};
-  const plot = {left: margin.left, top: margin.top, width, height};
-  const surface =
-      new SvgSurface(width + margin.left + margin.right, height + margin.top + margin.bottom);
-  const frame = frameOf(plot, chart.rangeOf("x"), chart.rangeOf("y"), 1);
-  const [right, bottom] = [plot.left + width, plot.top + height];
+/** What a part looks like by the style sheet, as attributes; they are inherited within SVG. */
+const LOOKS = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-opacity",
+               "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "font-family", "font-size",
+               "text-anchor"];
 
-  surface.rectangle(
-      0, 0, width + margin.left + margin.right, height + margin.top + margin.bottom,
-      {colour: colour("paper")});
-  surface.text(spec.title, 16, 22, {colour: colour("text"), size: 14, weight: 600});
-  let x = plot.left;
+function withLooks(part, inherited = {}) {
+  const copy = part.cloneNode(false);
+  if (part.nodeType !== Node.ELEMENT_NODE) return copy;
+  copy.removeAttribute("class");
+  const style = getComputedStyle(part);
+  for (const name of LOOKS)
+    if (style.getPropertyValue(name) !== inherited.getPropertyValue?.(name))
+      copy.setAttribute(name, style.getPropertyValue(name));
+  copy.append(...[...part.childNodes].map((child) => withLooks(child, style)));
+  return copy;
+}
+
+/** XML has no way to hold control characters and halves of surrogate pairs. */
+function forXml(string) {
+  return string.replace(/[\0-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]|\p{Surrogate}/gu, "\ufffd");
+}
+
+/** The chart as it is shown, with title and legend, and nothing left to look up elsewhere. */
+function svgOf({spec, series, size, plot, drawing}) {
+  const colour = (name) => getComputedStyle(plot).getPropertyValue(`--${name}`).trim();
+  const {width, height} = size;
+  const above = 48;
+  const picture = withLooks(drawing);
+  picture.setAttribute("transform", `translate(${MARGIN.left} ${MARGIN.top + above})`);
+  for (const line of picture.querySelectorAll("[data-label]")) {
+    line.prepend(shape("title", {}, line.dataset.label));
+    delete line.dataset.label;
+  }
+  const root = shape(
+      "svg", {width, height: height + above, viewBox: `0 0 ${width} ${height + above}`,
+              "font-family": getComputedStyle(plot).fontFamily, "font-size": 12},
+      shape("rect", {width: "100%", height: "100%", fill: colour("paper")}),
+      shape("text", {x: 16, y: 22, fill: colour("text"), "font-size": 14, "font-weight": 600},
+            spec.title));
+  let x = MARGIN.left;
   for (const {label, role, shown} of series) {
     if (!shown) continue;
-    surface.rectangle(x, 38, 14, 3, {colour: colour(role)});
-    surface.text(label, x + 20, 43, {colour: colour("muted"), size: 12});
+    root.append(shape("rect", {x, y: 38, width: 14, height: 3, fill: colour(role)}),
+                shape("text", {x: x + 20, y: 43, fill: colour("muted")}, label));
     x += 44 + 6.5 * label.length;
   }
-
-  drawBackground(surface, chart, frame);
-  const grid = surface.path();
-  const muted = {colour: colour("muted"), size: 11};
-  ticks.x.places.forEach((at, i) => {
-    const tick = tenths(frame.toX(at));
-    if (at === null || tick < plot.left || tick > right || !ticks.x.labels[i]) return;
-    grid.moveTo(tick, plot.top);
-    grid.lineTo(tick, bottom);
-    surface.text(ticks.x.labels[i], tick, bottom + 16, {...muted, anchor: "middle"});
-  });
-  ticks.y.places.forEach((at, i) => {
-    const tick = tenths(frame.toY(at));
-    if (at === null || tick < plot.top || tick > bottom || !ticks.y.labels[i]) return;
-    grid.moveTo(plot.left, tick);
-    grid.lineTo(right, tick);
-    surface.text(ticks.y.labels[i], plot.left - 8, tick + 4, {...muted, anchor: "end"});
-  });
-  surface.stroke(grid, {colour: colour("line"), width: 1});
-  surface.text(
-      withUnit(spec.x), plot.left + width / 2, bottom + 35, {...muted, anchor: "middle", size: 12});
-  surface.text(
-      withUnit(spec.y), 16, plot.top + height / 2,
-      {...muted, anchor: "middle", size: 12, rotate: -90});
-  drawContent(surface, chart, frame);
-  return surface.toString();
+  root.append(picture);
+  return forXml(new XMLSerializer().serializeToString(root));
 }
 
 /** The same picture at twice the size of the screen. */

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -197,6 +198,40 @@ TEST(Chart, ShowsNamesAsText) {
   const std::string svg = figure(chart, columns).text();
   EXPECT_EQ(svg.find("<script"), std::string::npos);
   EXPECT_NE(svg.find("velocity of &lt;script&gt;alert(1)&lt;/script&gt;"), std::string::npos);
+}
+
+TEST(Chart, NamesWhatItDrawsAndLeavesRoomForTheScript) {
+  ChartColumns columns;
+  Chart chart = sine(columns, 100);
+  chart.series[0].label = "<b>";
+  chart.phases = {{0.01, 0.02, "limit", "at its limit"}, {0.05, 0.06, "limit", "at its limit"}};
+  chart.events = {{"contact", "teeth touch", columns.add({0.03, 0.04}, 1e-3)}};
+  const std::string text = figure(chart, columns).text();
+  EXPECT_NE(
+      text.find("<div class=\"tools\"></div><div class=\"legend\">"
+                "<span class=\"key\"><span class=\"swatch measured\"></span>&lt;b&gt;</span>"
+                "<span class=\"kind\"><span class=\"swatch tick contact\"></span>contact (2)</span>"
+                "<span class=\"kind\"><span class=\"swatch area limit\"></span>at a limit</span>"
+                "</div><div class=\"reading\"></div><svg"),
+      std::string::npos)
+      << text;
+  EXPECT_NE(text.find("<path class=\"event line contact\""), std::string::npos);
+}
+
+TEST(Chart, DrawsDotsAsLinesWithoutLength) {
+  ChartColumns columns;
+  for (const std::size_t samples : {100u, 1000u}) {
+    Chart chart = sine(columns, samples);
+    chart.series[0].drawn = Drawn::dots;
+    const std::string text = figure(chart, columns).text();
+    const std::string begin = samples == 100 ? "<path class=\"series measured dots few\" d=\"m"
+                                             : "<path class=\"series measured dots\" d=\"m";
+    const std::size_t path = text.find(begin);
+    ASSERT_NE(path, std::string::npos);
+    const std::size_t d = path + begin.size();
+    const std::string dots = text.substr(d, text.find('"', d) - d);
+    EXPECT_EQ(std::ranges::count(dots, 'h'), samples == 100 ? 100 : 250);
+  }
 }
 
 TEST(Chart, IsDescribedToTheScript) {

@@ -165,10 +165,11 @@ export function decimals({length, start, interval, step}, multiples) {
 
 /** A picture of the right shape; that of the program has axes and phases too. */
 function picture(chart) {
-  const curve = (role, phase) => {
+  const curve = ({role, style = chart.kind === "points" ? "dots" : "line"}, phase) => {
     const points = Array.from({length: 120}, (_, i) =>
         `${60 + i * 5.3},${130 - 80 * Math.exp(-i / 40) * Math.cos(i / 4 + phase)}`);
-    return `<polyline class="series ${role}" points="${points.join(" ")}"/>`;
+    const d = style === "dots" ? points.map((p) => `M${p}h0`).join("") : `M${points.join("L")}`;
+    return `<path class="series ${escaped(role)}${style === "dots" ? " dots" : ""}" d="${d}"/>`;
   };
   const grid = [50, 90, 130, 170, 210].map(
       (y, i) => `<path class="grid" d="M60 ${y}H700"/>` +
@@ -180,11 +181,13 @@ function picture(chart) {
 <path class="event contact" d="M120 20V220"/>
 ${grid.join("")}${below.join("")}<path class="axis" d="M60 220H700"/>
 <text class="label" x="380" y="262" text-anchor="middle">${escaped(chart.x.label)}</text>
-${chart.series.map((s, i) => curve(escaped(s.role), i / 5)).join("")}</svg>`;
+${chart.series.map((s, i) => curve(s, i / 5)).join("")}</svg>`;
 }
 
-const figure = (chart) => `<figure class="chart" id="${escaped(chart.id)}">
-<figcaption>${escaped(chart.title)}</figcaption>
+export const figure = (chart) => `<figure class="chart" id="${escaped(chart.id)}">
+<figcaption>${escaped(chart.title)}</figcaption><div class="tools"></div>
+<div class="legend">${chart.series.map((s) => `<span class="key"><span class="swatch ${escaped(s.role)}"></span>${
+    escaped(s.label)}</span>`).join("")}</div><div class="reading"></div>
 ${picture(chart)}
 </figure>`;
 

@@ -9,7 +9,7 @@ import {join} from "node:path";
 import {after, before, beforeEach, afterEach, describe, test} from "node:test";
 import {pathToFileURL} from "node:url";
 
-import {HOSTILE, SAMPLES, decimals, encodedColumn, pageData, pageHtml} from "./page.mjs";
+import {HOSTILE, SAMPLES, decimals, encodedColumn, figure, pageData, pageHtml} from "./page.mjs";
 
 const {AXISFIT_REPORT_PAGE, AXISFIT_REPORT_ASSETS, AXISFIT_NODE_MODULES, AXISFIT_CHROMIUM} =
     process.env;
@@ -62,7 +62,7 @@ const selectorOf = (id) => `[id=${JSON.stringify(id)}]`;
 
 /** Drags the mouse over a part of a chart's plot. */
 async function drag(id, from, to) {
-  const over = page.locator(`${selectorOf(id)} .u-over`);
+  const over = page.locator(`${selectorOf(id)} .over`);
   await over.scrollIntoViewIfNeeded();
   const box = await over.boundingBox();
   await page.mouse.move(box.x + from * box.width, box.y + 20);
@@ -114,7 +114,7 @@ describe("any report", () => {
 
   test("reading values moves nothing", async () => {
     for (const {id} of (await charts()).filter((c) => c.time).slice(0, 6)) {
-      const over = page.locator(`${selectorOf(id)} .u-over`);
+      const over = page.locator(`${selectorOf(id)} .over`);
       await over.scrollIntoViewIfNeeded();
       const box = await over.boundingBox();
       await page.mouse.move(box.x + 0.4 * box.width, box.y + 0.5 * box.height);
@@ -128,7 +128,7 @@ describe("any report", () => {
     const first = before.find((c) => c.time);
     await drag(first.id, 0.3, 0.5);
     assert.notDeepEqual(await charts(), before);
-    await page.locator(`${selectorOf(first.id)} .u-over`).dblclick();
+    await page.locator(`${selectorOf(first.id)} .over`).dblclick();
     assert.deepEqual(await charts(), before);
   });
 
@@ -190,10 +190,43 @@ describe("any report", () => {
 
   test("charts do not lie on one another", async () => {
     const overlaps = await page.evaluate(() => [...document.querySelectorAll(".chart")].filter(
-        (figure) => [...figure.querySelectorAll("canvas")].some(
+        (figure) => [...figure.querySelectorAll("svg")].some(
             (c) => c.getBoundingClientRect().bottom > figure.getBoundingClientRect().bottom + 1))
         .map((figure) => figure.id));
     assert.deepEqual(overlaps, []);
+  });
+
+  test("nothing moves when the charts come to life", async () => {
+    const places = () => [...document.querySelectorAll("section, .chart")].map(
+        (e) => [e.id, e.getBoundingClientRect().top + scrollY, e.getBoundingClientRect().height]);
+    for (const viewport of [{width: 1200, height: 900}, {width: 360, height: 740}]) {
+      const context = await browser.newContext({viewport});
+      const still = await context.newPage();
+      await still.addInitScript(`document.addEventListener("DOMContentLoaded",
+          () => (window.before = (${places})()));`);
+      await still.goto(pathToFileURL(path).href);
+      await still.evaluate(() => window.axisfit.ready);
+      const before = await still.evaluate(() => window.before);
+      const after = await still.evaluate(places);
+      assert.ok(before.length > 5);
+      const moved = after.filter(([, ...place], i) =>
+          place.some((v, k) => Math.abs(v - before[i][k + 1]) > 1));
+      assert.deepEqual(moved, []);
+      await context.close();
+    }
+  });
+
+  test("dots are seen in the still pictures", async () => {
+    await page.emulateMedia({media: "print"});
+    const pictures = page.locator(".chart > svg:has(.dots)").filter({visible: true});
+    assert.ok(await pictures.count() > 0);
+    for (let i = 0; i < await pictures.count(); i++) {
+      const dots = pictures.nth(i).locator(".dots");
+      const shown = await pictures.nth(i).screenshot();
+      await dots.evaluate((e) => (e.style.visibility = "hidden"));
+      assert.ok(!shown.equals(await pictures.nth(i).screenshot()), `picture ${i}`);
+      await dots.evaluate((e) => (e.style.visibility = ""));
+    }
   });
 
   // What the first paint shows must wait for nothing; how long it took is told, not judged: a
@@ -228,7 +261,7 @@ describe("any report", () => {
     const [error, names, labels] = await page.evaluate(([text, id]) => {
       const file = new DOMParser().parseFromString(text, "image/svg+xml");
       return [file.querySelector("parsererror")?.textContent,
-              [...file.querySelectorAll("path > title")].map((t) => t.textContent),
+              [...file.querySelectorAll("g > title")].map((t) => t.textContent),
               window.axisfit.charts[id].series.map((s) => s.label)];
     }, [svg, id]);
     assert.equal(error, undefined);
@@ -250,7 +283,7 @@ describe("the synthetic report", {skip: !own && "another page is tested"}, () =>
     assert.ok(statSync(path).size < 1.5e6, `${statSync(path).size} bytes`));
 
   test("the readout is exactly the data", async () => {
-    const over = page.locator("#velocity-0 .u-over");
+    const over = page.locator("#velocity-0 .over");
     await over.scrollIntoViewIfNeeded();
     const box = await over.boundingBox();
     await page.mouse.move(box.x + 0.37 * box.width, box.y + 50);
@@ -294,7 +327,7 @@ describe("the synthetic report", {skip: !own && "another page is tested"}, () =>
   });
 
   test("a spike of one sample in a million is drawn", async () => {
-    const drawn = await page.evaluate(() => {
+    await page.evaluate(() => {
       const chart = window.axisfit.charts["velocity-0"];
       const n = 1e6;
       const xs = Float64Array.from({length: n}, (_, i) => i / n * 4);
@@ -304,12 +337,21 @@ describe("the synthetic report", {skip: !own && "another page is tested"}, () =>
       chart.series[0].ys = ys;
       chart.series[1].shown = false;
       chart.show([0, 4], [-0.5, 0.5]);
-      const {ctx, bbox} = chart.uplot;
-      const x = Math.round(bbox.left + bbox.width * 543210 / n);
-      const y = Math.round(bbox.top + bbox.height * 0.3);
-      const pixels = ctx.getImageData(x - 2, y, 5, 1).data;
-      return Math.min(...pixels.filter((_, i) => i % 4 === 0));
     });
+    const over = page.locator("#velocity-0 .over");
+    await over.scrollIntoViewIfNeeded();
+    const box = await over.boundingBox();
+    const x = Math.round(box.x + box.width * 0.54321) - 2;
+    const y = Math.round(box.y + box.height * 0.3);
+    const picture = await page.screenshot({clip: {x, y, width: 5, height: 1}});
+    const drawn = await page.evaluate(async (base64) => {
+      const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+      const bitmap = await createImageBitmap(new Blob([bytes]));
+      const canvas = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+      canvas.drawImage(bitmap, 0, 0);
+      const pixels = canvas.getImageData(0, 0, bitmap.width, bitmap.height).data;
+      return Math.min(...pixels.filter((_, i) => i % 4 === 0));
+    }, picture.toString("base64"));
     assert.ok(drawn < 200, `brightness ${drawn}`);
   });
 
@@ -335,7 +377,7 @@ describe("the synthetic report", {skip: !own && "another page is tested"}, () =>
       ...data.charts.find((c) => c.id === "cost"), id: i ? `c${i}` : "cost", y: {label: "y", unit: ""},
       series: [{label: "y", role: "residual", x: 5, y: i}]}));
     const html = pageHtml({...page0, charts: page0.charts}, asset("css"), asset("script"))
-        .replace("</main>", steps.map((_, i) => `<figure class="chart" id="c${i}"></figure>`).join("") + "</main>");
+        .replace("</main>", page0.charts.slice(1).map(figure).join("") + "</main>");
     writeFileSync(file, html);
     await page.close();
     await open({}, pathToFileURL(file).href);
