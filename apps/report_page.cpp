@@ -74,10 +74,8 @@ class Page {
     for (std::size_t at = 0; (at = data.find('<', at)) != std::string::npos;)
       data.replace(at, 1, "\\u003c");
     const Html script =
-        assets.script.empty()
-            ? Html()
-            : html(R"(<script type="application/json" id="charts">{}</script><script>{}</script>)",
-                   Html::raw(data), Html::raw(assets.script));
+        html(R"(<script type="application/json" id="charts">{}</script><script>{}</script>)",
+             Html::raw(data), Html::raw(assets.script));
     const auto link = [&](const char* id, const char* name) {
       return main.text().find(fmt::format("<section id=\"{}\"", id)) == std::string::npos
                  ? Html()

@@ -5,11 +5,9 @@
 namespace axisfit {
 
 /// What report.html inlines: the contents of its style and its script element. Neither contains
-/// "</". Built from this folder and, with AXISFIT_INTERACTIVE_REPORT, from uPlot, whose licence is
-/// kept in the script.
+/// "</". Built from this folder.
 struct ReportAssets {
-  std::string_view css;
-  std::string_view script;  ///< empty where the build has no npm: the charts are still pictures
+  std::string_view css, script;
 };
 
 const ReportAssets& report_assets();

@@ -1,20 +1,12 @@
-# cmake -D SCRIPTS= -D CSS= -D UPLOT= -D ASSETS= -P embed.cmake
+# cmake -D SCRIPTS= -D CSS= -D ASSETS= -P embed.cmake
 # Writes ASSETS, the C++ source of report_assets(), and beside it ASSETS.css and ASSETS.script.
-# Without UPLOT, the folder of its package, there is no script.
 file(READ ${CSS} css)
-set(script "")
-if(UPLOT)
-  file(READ ${UPLOT}/dist/uPlot.min.css uplot_css)
-  file(READ ${UPLOT}/LICENSE licence)
-  file(READ ${UPLOT}/dist/uPlot.iife.min.js uplot)
-  string(PREPEND css "/*! uPlot, MIT licence: see the script */\n${uplot_css}\n")
-  string(APPEND script "/*!\nuPlot\n\n${licence}\n*/\n${uplot}\n(() => {\n\"use strict\";\n")
-  foreach(file ${SCRIPTS})
-    file(READ ${file} part)
-    string(APPEND script "\n${part}")
-  endforeach()
-  string(APPEND script "})();\n")
-endif()
+set(script "(() => {\n\"use strict\";\n")
+foreach(file ${SCRIPTS})
+  file(READ ${file} part)
+  string(APPEND script "\n${part}")
+endforeach()
+string(APPEND script "})();\n")
 
 string(REPEAT "." 40 row)
 set(source "#include \"apps/report/assets.h\"\n\nnamespace axisfit {\nnamespace {\n")
