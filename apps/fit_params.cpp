@@ -191,14 +191,13 @@ Files files_of(const Arguments& arguments, const Outcome& outcome, const std::st
   fitted.model = fitted_model(outcome.job(), outcome.fit());
   const std::string origin = fmt::format("axisfit {} from {}, starting from {}", version(),
                                          arguments.files.front(), outcome.file.axis_file);
-  Files files{
-      {kResultFile, json},
-      {kAxisFile,
-       format_axis_file(fitted, fmt::format("Fitted by {}.\n{}", origin, verdict_of(outcome)))},
-      {kResidualsFile, residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis)},
-      {kReportFile,
-       report_page(outcome, {arguments.command, arguments.files.front(), outcome.file.text,
-                             outcome.file.axis_file, outcome.file.axis_text})}};
+  Files files{{kResultFile, json},
+              {kAxisFile, format_axis_file(fitted, fmt::format("Fitted by {}.\n{}", origin,
+                                                               verdict_of(outcome)))},
+              {kResidualsFile, residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis)},
+              {kReportFile,
+               report_page(outcome, {arguments.command, arguments.files.front(), outcome.file.text,
+                                     outcome.file.axis_file, outcome.file.axis_text})}};
   if (const Experiment* next = next_experiment(outcome)) {
     files.emplace_back(
         kMotionFile, format_motion_file({next->motion, next->duration},

@@ -12,8 +12,8 @@
 namespace axisfit {
 
 /// A file to which every solution is added when it is found, and which is locked as long as this
-/// object lives. A record that was not written to its end or is no solution, and all after it, count
-/// as not written. Solutions of another build of the program do not count.
+/// object lives. A record that was not written to its end or is no solution, and all after it,
+/// count as not written. Solutions of another build of the program do not count.
 class JournalFile : public Journal {
  public:
   /// Opens the file, or makes it. Throws std::runtime_error with a reason, without the path, when

@@ -50,7 +50,7 @@ struct Wishes {
 struct Outcome {
   JobFile file;  ///< as declared
   Wishes wishes;
-  FitResult first;  ///< fit of the declared job
+  FitResult first;                     ///< fit of the declared job
   std::vector<RecordingCheck> checks;  ///< of each recording
   /// None unless it was asked for and the first fit is usable.
   std::optional<ClosedLoop> loop;

@@ -193,11 +193,10 @@ class Page {
     Html all;
     for (std::size_t r = 0; r < job_.recordings.size(); ++r) {
       const Recording& recording = job_.recordings[r];
-      all +=
-          html("<h3>{} <small>{}, {}, {} samples, {} s to {} s, {} events</small></h3>",
-               recording.name, role_name(recording, true), recording.file, recording.times.size(),
-               number(recording.times.front()), number(recording.times.back()),
-               fit_.recordings[r].prediction.events);
+      all += html("<h3>{} <small>{}, {}, {} samples, {} s to {} s, {} events</small></h3>",
+                  recording.name, role_name(recording, true), recording.file,
+                  recording.times.size(), number(recording.times.front()),
+                  number(recording.times.back()), fit_.recordings[r].prediction.events);
       for (const std::string& concern : concerns_of(outcome_.file, recording, outcome_.checks[r]))
         all += html("<p>! {}</p>", concern);
       all += charts_.traces(r);

@@ -49,7 +49,8 @@ Coupling coupling_for(const Recording& recording, double rate);
 /// of squares is the robust cost.
 class RecordingCost : public ceres::CostFunction {
  public:
-  /// Job and space must outlive the cost, and stay as they are. When `stop` is set no point finishes any more.
+  /// Job and space must outlive the cost, and stay as they are. When `stop` is set no point
+  /// finishes any more.
   RecordingCost(const Job& job, const ParameterSpace& space, std::size_t recording,
                 const Coupling& coupling, const StopFlag* stop = nullptr);
 

@@ -1,5 +1,5 @@
-// What the machine does to a run: fit-params is killed, and finds the disk full, the memory used up,
-// its folder in use or gone, its input in the making.
+// What the machine does to a run: fit-params is killed, and finds the disk full, the memory used
+// up, its folder in use or gone, its input in the making.
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 
@@ -120,8 +120,10 @@ TEST_F(FaultsTest, AFileThatGrowsTooLargeIsAnErrorLikeAnother) {
   const std::string before = usable_result();
   const Answer answer = shell(folder_, "ulimit -f 40; fit-params job.yaml --output results");
   EXPECT_EQ(answer.exit_code, 2);
-  EXPECT_EQ(answer.err, "results not written to results: File too large\nWhat was found is kept there: once that "
-            "is mended, the same command with --resume ends soon.\n");
+  EXPECT_EQ(
+      answer.err,
+      "results not written to results: File too large\nWhat was found is kept there: once that "
+      "is mended, the same command with --resume ends soon.\n");
   EXPECT_EQ(folder_.read("results/result.json"), before);
 }
 
@@ -193,10 +195,10 @@ TEST_F(FaultsTest, KilledAtAnyStepOfWritingAFolderHasOneResultOrTheOther) {
       SCOPED_TRACE(call + " " + std::to_string(when));
       shell(folder_, "rm -r results; cp -r old results");
       // Where strace looks the leak sanitizer cannot, and would say so.
-      const Answer answer = shell(
-          folder_, "export ASAN_OPTIONS=detect_leaks=0; strace -f -o trace -e trace=" + call +
-                       " -e inject=" + call + ":signal=KILL:when=" + std::to_string(when) +
-                       " fit-params job.yaml --quiet --output results");
+      const Answer answer =
+          shell(folder_, "export ASAN_OPTIONS=detect_leaks=0; strace -f -o trace -e trace=" + call +
+                             " -e inject=" + call + ":signal=KILL:when=" + std::to_string(when) +
+                             " fit-params job.yaml --quiet --output results");
       if (answer.exit_code == 0) break;
       ASSERT_EQ(answer.exit_code, 137) << answer.err;
       const Contents found = contents_of_results(folder_);

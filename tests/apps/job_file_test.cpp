@@ -255,8 +255,9 @@ TEST_F(JobFileTest, TrimLeavesOutWhatComesAfter) {
   EXPECT_EQ(recording.times.size(), 10u);
   EXPECT_EQ(recording.times.back(), times_s()[9]);  // the limit belongs to it
   EXPECT_EQ(recording.measurements.front().values.size(), 10u);
-  EXPECT_EQ(errors(with_lines("    trim: {from: 1 s}\n")),
-            "job.yaml:4:11: 0 samples of 14, from -0.008 s to 0.064 s, are left: at least 10 must be");
+  EXPECT_EQ(
+      errors(with_lines("    trim: {from: 1 s}\n")),
+      "job.yaml:4:11: 0 samples of 14, from -0.008 s to 0.064 s, are left: at least 10 must be");
   EXPECT_EQ(errors(with_lines("    trim: {from: 1, until: 2 s}\n")),
             "job.yaml:4:18: from needs a unit, for example '1 s'\n"
             "job.yaml:4:21: unknown key 'until'; known keys: from, to");

@@ -117,8 +117,8 @@ TEST_F(JournalFileTest, WhatIsNoSolutionDoesNotCount) {
 }
 
 TEST_F(JournalFileTest, ForeignFilesAreBegunAnew) {
-  for (const std::string& text : {std::string(), std::string("{}\n"), std::string(1000, '\0'),
-                                  std::string(1000, '\xff')}) {
+  for (const std::string& text :
+       {std::string(), std::string("{}\n"), std::string(1000, '\0'), std::string(1000, '\xff')}) {
     folder_.write("journal", text);
     JournalFile journal(path_);
     EXPECT_EQ(journal.earlier(), 0u);

@@ -1,6 +1,5 @@
-#include "tests/apps/killing.h"
-
 #include "tests/apps/fit_job.h"
+#include "tests/apps/killing.h"
 
 namespace axisfit {
 namespace {

@@ -329,8 +329,7 @@ TEST_F(MatFileTest, AFileThatCrashesHdf5IsRefused) {
     read_mat(AXISFIT_TESTDATA "/bad/damaged-7.3.mat");
     ADD_FAILURE() << "nothing was wrong with it";
   } catch (const RecordingError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              AXISFIT_TESTDATA
+    EXPECT_EQ(std::string(error.what()), AXISFIT_TESTDATA
               "/bad/damaged-7.3.mat: the file is damaged: HDF5 cannot read it; save or copy it "
               "again");
   }

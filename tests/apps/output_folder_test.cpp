@@ -274,9 +274,8 @@ TEST_F(OutputFolderTest, ChangesNothingWhenTheLastFileCannotBeWritten) {
 TEST_F(OutputFolderTest, WhatCannotBeReplacedIsSaidBeforeTheWork) {
   std::filesystem::create_directories(folder_.path("results/residuals.csv"));
   folder_.write("results/result.json", "old");
-  EXPECT_EQ(folder_.without_path(error_of([&] {
-    const OutputFolder folder(folder_.path("results"), kNames);
-  })),
+  EXPECT_EQ(folder_.without_path(
+                error_of([&] { const OutputFolder folder(folder_.path("results"), kNames); })),
             "results not written to results: Is a directory");
   EXPECT_EQ(folder_.names(), Names{"results"});
   EXPECT_EQ(folder_.names("results"), (Names{"result.json", "residuals.csv"}));
@@ -286,9 +285,12 @@ TEST_F(OutputFolderTest, WhatCannotBeReplacedIsSaidBeforeTheWork) {
 TEST_F(OutputFolderTest, AfterAFailureTheJournalIsThereToGoOnFrom) {
   OutputFolder folder(folder_.path("results"), kNames);
   folder.journal().keep({1, 2}, {});
-  EXPECT_EQ(folder_.without_path(error_of([&] { folder.write({{kTooLong, ""}}, true); })),
-            "results not written to results: File name too long\nWhat was found is kept there: once "
-            "that is mended, the same command with --resume ends soon.");
+  EXPECT_EQ(
+      folder_.without_path(error_of([&] {
+        folder.write({{kTooLong, ""}}, true);
+      })),
+      "results not written to results: File name too long\nWhat was found is kept there: once "
+      "that is mended, the same command with --resume ends soon.");
   EXPECT_EQ(folder_.names("results"), Names{kJournal});
 }
 
@@ -330,8 +332,8 @@ TEST_F(OutputFolderTest, AFileIsTheOldOneUntilTheNewOneIsOnTheDisk) {
 
 TEST_F(OutputFolderTest, FollowsNoLinkThatAwaitsItsTemporaryFile) {
   const std::string other = folder_.write("other", "precious");
-  std::filesystem::create_symlink(
-      other, folder_.path("step.csv.partial-" + std::to_string(::getpid())));
+  std::filesystem::create_symlink(other,
+                                  folder_.path("step.csv.partial-" + std::to_string(::getpid())));
   EXPECT_EQ(error_at("step.csv"), "");
   EXPECT_EQ(folder_.read("step.csv"), "new");
   EXPECT_EQ(folder_.read("other"), "precious");

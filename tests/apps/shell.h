@@ -18,9 +18,9 @@ struct Answer {
 /// Runs a command in a folder. fit-params and simulate-axis are on its path.
 inline Answer shell(const TempFolder& folder, const std::string& command) {
   const TempFolder outputs;
-  const std::string script = outputs.write("script", "PATH='" AXISFIT_BIN "':\"$PATH\"\ncd '" +
-                                                         folder.path() + "' || exit\n" + command +
-                                                         "\n");
+  const std::string script =
+      outputs.write("script", "PATH='" AXISFIT_BIN "':\"$PATH\"\ncd '" + folder.path() +
+                                  "' || exit\n" + command + "\n");
   const int status = std::system(("sh '" + script + "' >'" + outputs.path("out") + "' 2>'" +
                                   outputs.path("err") + "' </dev/null")
                                      .c_str());

@@ -152,8 +152,12 @@ TEST(JournalTest, TheKeyDependsOnAllThatTheSolutionFollowsFrom) {
       [](Problem& p) { p.job.free[0].lower *= 2.0; },
       [](Problem& p) { p.job.free[0].upper *= 2.0; },
       [](Problem& p) { p.job.free[0].logarithmic = false; },
-      [](Problem& p) { p.job.free[0].prior = Prior{1.0, 2.0}; },
-      [](Problem& p) { p.job.free[0].prior = Prior{1.0, 3.0}; },
+      [](Problem& p) {
+        p.job.free[0].prior = Prior{1.0, 2.0};
+      },
+      [](Problem& p) {
+        p.job.free[0].prior = Prior{1.0, 3.0};
+      },
       [](Problem& p) { p.job.options.loss = Loss::huber; },
       [](Problem& p) { p.job.options.huber_width = 4.0; },
       [](Problem& p) { p.job.options.step = 1e-3; },
