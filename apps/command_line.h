@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/text_table.h"
-#include "apps/version.h"
-#include "sim/suggest.h"
+#include "base/suggest.h"
+#include "base/text_table.h"
+#include "base/version.h"
 
 namespace axisfit {
 

@@ -15,20 +15,21 @@
 #include <optional>
 #include <sstream>
 
-#include "apps/axis_file.h"
 #include "apps/command_line.h"
-#include "apps/config.h"
-#include "apps/init_job.h"
-#include "apps/job_file.h"
-#include "apps/motion_file.h"
-#include "apps/output_folder.h"
 #include "apps/progress.h"
-#include "apps/report_page.h"
-#include "apps/report_text.h"
-#include "apps/result_json.h"
-#include "apps/terminal.h"
-#include "apps/text_table.h"
-#include "fit/effort.h"
+#include "base/terminal.h"
+#include "base/text_table.h"
+#include "fit/design/run_time_estimate.h"
+#include "fit/run.h"
+#include "init/init_job.h"
+#include "io/config/axis_file.h"
+#include "io/config/config.h"
+#include "io/config/job_file.h"
+#include "io/config/motion_file.h"
+#include "io/results/output_folder.h"
+#include "report/html/report_page.h"
+#include "report/result_json.h"
+#include "report/text/report_text.h"
 
 namespace {
 
@@ -127,17 +128,16 @@ std::string for_stdout(const std::string& report) {
 }
 
 /// What the recordings show and can tell, before the fit.
-int check(const Arguments& arguments, const JobFile& file, std::optional<ProgressLine>& line) {
-  const Job& job = file.job;
+int check(const Arguments& arguments, const Job& job, std::optional<ProgressLine>& line) {
   line->tell({"looking at what the recordings can tell"});
   const Forecast found = forecast(job, draw_start(job, 0));
   const Effort effort = expected_effort(job);
   const std::vector<RecordingCheck> recordings = check_recordings(job);
   line.reset();
   if (arguments.json)
-    print(check_json(file, recordings, found, effort).dump(2) + "\n");
+    print(check_json(job, recordings, found, effort).dump(2) + "\n");
   else if (!arguments.quiet)
-    print(for_stdout(recordings_text(file, recordings) + "\n" + forecast_text(job, found) + "\n" +
+    print(for_stdout(recordings_text(job, recordings) + "\n" + forecast_text(job, found) + "\n" +
                      effort_text(job, effort)));
   return kUsable;
 }
@@ -186,18 +186,18 @@ std::string typed(int argc, char** argv) {
   return line;
 }
 
-Files files_of(const Arguments& arguments, const Outcome& outcome, const std::string& json) {
-  Rig fitted = outcome.file.rig;
+Files files_of(const Arguments& arguments, const JobFile& file, const Outcome& outcome,
+               const std::string& json) {
+  Rig fitted = file.rig;
   fitted.model = fitted_model(outcome.job(), outcome.fit());
   const std::string origin = fmt::format("axisfit {} from {}, starting from {}", version(),
-                                         arguments.files.front(), outcome.file.axis_file);
+                                         arguments.files.front(), file.axis_file);
   Files files{{kResultFile, json},
               {kAxisFile, format_axis_file(fitted, fmt::format("Fitted by {}.\n{}", origin,
                                                                verdict_of(outcome)))},
               {kResidualsFile, residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis)},
-              {kReportFile,
-               report_page(outcome, {arguments.command, arguments.files.front(), outcome.file.text,
-                                     outcome.file.axis_file, outcome.file.axis_text})}};
+              {kReportFile, report_page(outcome, {arguments.command, arguments.files.front(),
+                                                  file.text, file.axis_file, file.axis_text})}};
   if (const Experiment* next = next_experiment(outcome)) {
     files.emplace_back(
         kMotionFile, format_motion_file({next->motion, next->duration},
@@ -262,8 +262,8 @@ bool holds_whole_result(const std::string& folder) {
 }
 
 /// Writes the result, unless that would replace a better one.
-void write(const Arguments& arguments, const Outcome& outcome, const std::string& json,
-           OutputFolder& folder) {
+void write(const Arguments& arguments, const JobFile& file, const Outcome& outcome,
+           const std::string& json, OutputFolder& folder) {
   const bool whole = !outcome.interrupted;
   if ((!whole || !outcome.fit().usable) && holds_whole_result(arguments.output)) {
     std::cerr << paragraph(fmt::format(
@@ -273,7 +273,7 @@ void write(const Arguments& arguments, const Outcome& outcome, const std::string
     if (whole) folder.forget();
     return;
   }
-  folder.write(files_of(arguments, outcome, json), whole);
+  folder.write(files_of(arguments, file, outcome, json), whole);
 }
 
 int run(const Arguments& arguments) {
@@ -296,10 +296,10 @@ int run(const Arguments& arguments) {
   if (arguments.threads) options.threads = *arguments.threads;
   if (arguments.starts) options.starts = *arguments.starts;
   if (arguments.seed) options.seed = *arguments.seed;
-  if (arguments.check) return check(arguments, file, line);
+  if (arguments.check) return check(arguments, file.job, line);
   const std::unique_ptr<OutputFolder> folder = open_folder(arguments, file.job, line);
 
-  Outcome outcome = find_outcome(std::move(file), arguments.wishes,
+  Outcome outcome = find_outcome(file.job, arguments.wishes,
                                  [&](const Progress& progress) { line->tell(progress); });
   outcome.out_of_time = outcome.interrupted && out_of_time;
   const std::string json = result_json(outcome).dump(2) + "\n";
@@ -310,7 +310,7 @@ int run(const Arguments& arguments) {
     print(json);
   else if (!arguments.quiet)
     print(for_stdout(report_text(outcome)));
-  if (folder) write(arguments, outcome, json, *folder);
+  if (folder) write(arguments, file, outcome, json, *folder);
   if (outcome.interrupted) {
     if (!arguments.quiet) std::cerr << advice(arguments);
     return exit_code_of_stop();

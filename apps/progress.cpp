@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "apps/terminal.h"
-#include "apps/text_table.h"
+#include "base/terminal.h"
+#include "base/text_table.h"
 
 namespace axisfit {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "fit/progress.h"
+#include "base/progress.h"
 
 namespace axisfit {
 

@@ -9,12 +9,13 @@
 #include <iostream>
 #include <sstream>
 
-#include "apps/axis_file.h"
 #include "apps/command_line.h"
-#include "apps/motion_file.h"
-#include "apps/output_folder.h"
 #include "apps/progress.h"
-#include "apps/terminal.h"
+#include "base/terminal.h"
+#include "io/config/axis_file.h"
+#include "io/config/motion_file.h"
+#include "io/recording/csv.h"
+#include "io/results/output_folder.h"
 #include "sim/rig.h"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "apps/reference.h"
+#include "io/config/reference.h"
 
 int main(int argc, char** argv) {
   namespace fs = std::filesystem;

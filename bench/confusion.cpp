@@ -19,12 +19,12 @@
 #include <numbers>
 #include <set>
 
-#include "apps/axis_file.h"
+#include "base/parallel.h"
+#include "base/random.h"
 #include "bench/simulated.h"
-#include "fit/closing/close_loop.h"
-#include "fit/parallel.h"
-#include "fit/rest.h"
-#include "sim/random.h"
+#include "fit/data/standstill.h"
+#include "fit/selection/select_effects.h"
+#include "io/config/axis_file.h"
 
 namespace {
 

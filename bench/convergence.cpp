@@ -10,8 +10,8 @@
 #include <ctime>
 #include <vector>
 
-#include "apps/job_file.h"
-#include "fit/estimate.h"
+#include "fit/estimation/estimate.h"
+#include "io/config/job_file.h"
 
 int main(int argc, char** argv) {
   using namespace axisfit;

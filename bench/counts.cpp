@@ -8,7 +8,7 @@
 
 #include "bench/allocations.h"
 #include "bench/speed/evaluation.h"
-#include "fit/estimate.h"
+#include "fit/estimation/estimate.h"
 
 namespace {
 

@@ -11,12 +11,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/axis_file.h"
+#include "base/parallel.h"
+#include "base/random.h"
 #include "bench/simulated.h"
-#include "fit/estimate.h"
-#include "fit/parallel.h"
+#include "fit/estimation/estimate.h"
+#include "io/config/axis_file.h"
 #include "sim/effects/effects.h"
-#include "sim/random.h"
 
 namespace {
 

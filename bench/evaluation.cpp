@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/table.h"
+#include "io/recording/csv.h"
 
 namespace {
 

@@ -3,22 +3,22 @@
 
 #include <string>
 
-#include "fit/job.h"
+#include "fit/data/job.h"
 #include "sim/rig.h"
 
 namespace axisfit {
 
 /// A recording to be fitted, of all signals that the options ask for, with the rig's noise.
 inline Recording simulated(const Rig& rig, const Motion& motion, const RecordingOptions& options) {
-  const Table table = record(rig, motion, options);
+  const std::vector<Column> columns = record(rig, motion, options);
   Recording recording;
   recording.name = "simulated";
-  recording.times = table.columns[0].values;
-  recording.command = schedule_from_samples(recording.times, table.columns[1].values);
+  recording.times = columns[0].values;
+  recording.command = schedule_from_samples(recording.times, columns[1].values);
   for (std::size_t s = 0; s < options.signals.size(); ++s) {
     Measurement m;
     m.signal = options.signals[s];
-    m.values = table.columns[2 + s].values;
+    m.values = columns[2 + s].values;
     m.sigma = rig.noise[index_of(m.signal)];
     m.noise = NoiseSource::given;
     recording.measurements.push_back(std::move(m));

@@ -3,9 +3,9 @@
 #include <bit>
 #include <cstdint>
 
-#include "apps/axis_file.h"
-#include "apps/motion_file.h"
 #include "fuzz/check.h"
+#include "io/config/axis_file.h"
+#include "io/config/motion_file.h"
 
 namespace axisfit::fuzz {
 namespace {

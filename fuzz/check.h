@@ -12,9 +12,9 @@
 #include <string_view>
 #include <typeinfo>
 
-#include "apps/config.h"
-#include "sim/plain_text.h"
-#include "sim/table.h"
+#include "base/plain_text.h"
+#include "io/config/config.h"
+#include "io/recording/csv.h"
 
 namespace axisfit::fuzz {
 

@@ -1,10 +1,10 @@
 // fit-params --init: the job that it makes for a recording can be read.
 #include <optional>
 
-#include "apps/init_job.h"
-#include "apps/job_file.h"
-#include "apps/recording_guess.h"
 #include "fuzz/check.h"
+#include "init/init_job.h"
+#include "init/recording_guess.h"
+#include "io/config/job_file.h"
 
 namespace axisfit::fuzz {
 

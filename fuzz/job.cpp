@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/job_file.h"
 #include "fuzz/check.h"
+#include "io/config/job_file.h"
 
 namespace axisfit::fuzz {
 namespace {

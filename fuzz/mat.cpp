@@ -1,8 +1,8 @@
 // MATLAB files: what is read has values, and a table can be chosen of it.
 #include <cmath>
 
-#include "apps/mat_file.h"
 #include "fuzz/check.h"
+#include "io/recording/mat_file.h"
 
 namespace axisfit::fuzz {
 

@@ -10,13 +10,14 @@
 #include <cstring>
 #include <optional>
 
-#include "apps/axis_file.h"
-#include "apps/outcome.h"
-#include "apps/report_page.h"
-#include "apps/report_text.h"
-#include "apps/result_json.h"
-#include "apps/starter_axis.h"
+#include "fit/run.h"
 #include "fuzz/check.h"
+#include "init/starter_axis.h"
+#include "io/config/axis_file.h"
+#include "io/config/job_file.h"
+#include "report/html/report_page.h"
+#include "report/result_json.h"
+#include "report/text/report_text.h"
 
 namespace axisfit::fuzz {
 namespace {
@@ -200,8 +201,8 @@ void check_json(const Outcome& outcome, const Names& names) {
         "a value is lost");
 }
 
-void check_axis(const Folder& folder, const Outcome& outcome, const std::string& typed) {
-  Rig fitted = outcome.file.rig;
+void check_axis(const Folder& folder, Rig fitted, const Outcome& outcome,
+                const std::string& typed) {
   fitted.model = fitted_model(outcome.job(), outcome.fit());
   const std::string text =
       format_axis_file(fitted, "Fitted from " + typed + ".\n" + verdict_of(outcome));
@@ -238,11 +239,11 @@ void check_page(const std::string& page) {
 }
 
 /// A fit alone, without the look at its residual, which takes most of the time.
-Outcome fitted(JobFile& file) {
+Outcome fitted(Job job) {
   Outcome outcome;
-  outcome.first = estimate_with_noise(file.job);
-  outcome.file = std::move(file);
-  outcome.checks = check_recordings(outcome.file.job);
+  outcome.first = estimate_with_noise(job);
+  outcome.checks = check_recordings(job);
+  outcome.baseline = std::move(job);
   return outcome;
 }
 
@@ -255,12 +256,12 @@ void check(const Folder& folder, JobFile file, const Names& names, const std::st
   file.job.options.step = 0.02;
   const Forecast forecast = axisfit::forecast(file.job, draw_start(file.job, 0));
   const auto checks = check_recordings(file.job);
-  read_back(axisfit::check_json(file, checks, forecast, {1.0, 1.0}));
-  require_harmless(recordings_text(file, checks) + forecast_text(file.job, forecast),
+  read_back(axisfit::check_json(file.job, checks, forecast, {1.0, 1.0}));
+  require_harmless(recordings_text(file.job, checks) + forecast_text(file.job, forecast),
                    "--check prints what a terminal cannot show");
-  const Outcome outcome = draw.below(4) == 1 ? find_outcome(std::move(file), {}) : fitted(file);
+  const Outcome outcome = draw.below(4) == 1 ? find_outcome(file.job, {}) : fitted(file.job);
   check_json(outcome, names);
-  check_axis(folder, outcome, typed);
+  check_axis(folder, file.rig, outcome, typed);
   check_residuals(outcome);
   require_harmless(report_text(outcome), "the text has what a terminal cannot show");
   check_page(report_page(outcome, {typed, typed, job, typed, "axis"}));

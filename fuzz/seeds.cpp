@@ -10,9 +10,9 @@
 #include <set>
 #include <string>
 
-#include "apps/axis_file.h"
-#include "apps/job_file.h"
-#include "apps/motion_file.h"
+#include "io/config/axis_file.h"
+#include "io/config/job_file.h"
+#include "io/config/motion_file.h"
 #include "tests/apps/bad_cases.h"
 
 namespace axisfit {

@@ -6,9 +6,9 @@
 
 #include <cmath>
 
-#include "sim/coupling.h"
 #include "sim/mode.h"
 #include "sim/model.h"
+#include "sim/observer.h"
 #include "sim/scalar.h"
 
 namespace axisfit {

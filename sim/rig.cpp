@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/random.h"
+#include "base/random.h"
 #include "sim/recorder.h"
 #include "sim/simulate.h"
 
@@ -47,7 +47,7 @@ std::string column_name(Signal signal) {
   return std::string(info(signal).name) + "_" + unit;
 }
 
-Table record(const Rig& rig, const Motion& motion, const RecordingOptions& options) {
+std::vector<Column> record(const Rig& rig, const Motion& motion, const RecordingOptions& options) {
   const std::vector<double> times = sampling_times(options);
   Recorder<double> recorder(rig.model.instruments, options.signals, times);
   std::size_t reached = 0;
@@ -73,10 +73,10 @@ Table record(const Rig& rig, const Motion& motion, const RecordingOptions& optio
         " s: the state is not finite, or it swings too fast to be followed, or events follow each "
         "other without end");
 
-  Table table;
-  table.columns.push_back({"time_s", times});
+  std::vector<Column> columns;
+  columns.push_back({"time_s", times});
   // The command in force from each instant on.
-  Column& written = table.columns.emplace_back(Column{"command_v", {}});
+  Column& written = columns.emplace_back(Column{"command_v", {}});
   std::size_t next = 0;
   for (const double t : times) {
     // An instant and a sample that are the same may differ by rounding.
@@ -93,9 +93,9 @@ Table record(const Rig& rig, const Motion& motion, const RecordingOptions& optio
       if (signal == Signal::position)
         x = encoder_reading(x, rig.model.axis.r_g, rig.controller.counts_per_revolution);
     }
-    table.columns.push_back(std::move(column));
+    columns.push_back(std::move(column));
   }
-  return table;
+  return columns;
 }
 
 }  // namespace axisfit

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "base/column.h"
 #include "sim/controller.h"
 #include "sim/model.h"
 #include "sim/motion.h"
-#include "sim/table.h"
 
 namespace axisfit {
 
@@ -34,7 +34,7 @@ struct RecordingOptions {
 /// named by column_name(). The model's instruments give gain and bias, the rig noise, and the
 /// controller's encoder the position's resolution.
 /// Throws std::runtime_error when the motion cannot be simulated to its end.
-Table record(const Rig& rig, const Motion& motion, const RecordingOptions& options);
+std::vector<Column> record(const Rig& rig, const Motion& motion, const RecordingOptions& options);
 
 /// "velocity_mps": the signal's name and its unit in plain letters.
 std::string column_name(Signal signal);

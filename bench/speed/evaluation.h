@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include "apps/axis_file.h"
 #include "bench/simulated.h"
 #include "bench/speed/work.h"
-#include "fit/residual.h"
+#include "fit/estimation/residual.h"
+#include "io/config/axis_file.h"
 
 namespace axisfit::speed {
 

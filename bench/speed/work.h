@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "fit/jet.h"
+#include "fit/estimation/jet.h"
 #include "sim/affine.h"
 #include "sim/rig.h"
 

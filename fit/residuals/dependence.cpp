@@ -8,7 +8,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "fit/noise.h"
+#include "fit/data/noise.h"
 #include "fit/residuals/outliers.h"
 
 namespace axisfit {

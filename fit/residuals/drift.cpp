@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "fit/residuals/colour.h"
+#include "fit/residuals/autocovariance.h"
 #include "fit/residuals/series.h"
 
 namespace axisfit {

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "fit/estimate.h"
+#include "fit/estimation/estimate.h"
 
 namespace axisfit {
 

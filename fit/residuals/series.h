@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "fit/estimate.h"
+#include "fit/estimation/estimate.h"
 
 namespace axisfit {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/job_file.h"
+#include "io/config/job_file.h"
 #include "tests/apps/bad_cases.h"
 #include "tests/apps/shell.h"
 

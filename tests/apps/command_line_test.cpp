@@ -29,7 +29,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/table.h"
+#include "io/recording/csv.h"
 #include "tests/apps/files.h"
 #include "tests/apps/fit_job.h"
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <string>
 
-#include "apps/job_file.h"
-#include "fit/estimate.h"
+#include "fit/estimation/estimate.h"
+#include "io/config/job_file.h"
 
 namespace axisfit {
 namespace {

@@ -7,7 +7,8 @@
 #include <numbers>
 #include <string>
 
-#include "apps/outcome.h"
+#include "fit/run.h"
+#include "io/config/job_file.h"
 
 namespace axisfit {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 using Truth = std::map<std::string, double>;
 
 Outcome outcome_of(const std::string& job, const Wishes& wishes = {}) {
-  return find_outcome(read_job_file(AXISFIT_CONFIGS "/jobs/" + job), wishes);
+  return find_outcome(read_job_file(AXISFIT_CONFIGS "/jobs/" + job).job, wishes);
 }
 
 /// Every parameter lies within three standard errors of the truth, and nothing but noise is left in

@@ -15,7 +15,7 @@
 #include <string>
 #include <system_error>
 
-#include "sim/table.h"
+#include "io/recording/csv.h"
 
 namespace axisfit {
 
@@ -52,7 +52,7 @@ class TempFolder {
   /// Writes a CSV file with so many digits, or all of them, and returns its path.
   std::string write(const std::string& name, const Table& table, int digits = 0) const {
     std::ostringstream out;
-    write_csv(out, table, digits);
+    write_csv(out, table.columns, digits);
     return write(name, out.str());
   }
 

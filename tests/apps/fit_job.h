@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/axis_file.h"
+#include "io/config/axis_file.h"
+#include "io/recording/csv.h"
 #include "sim/rig.h"
 #include "tests/apps/files.h"
 
@@ -29,7 +30,7 @@ inline Table record_levels(const std::string& axis, const LevelsMotion& motion, 
   options.rate = rate;
   options.seed = seed;
   options.signals = signals;
-  return record(*rig, motion, options);
+  return {"", record(*rig, motion, options), {}};
 }
 
 /// Writes short.csv, a recording of the shipped x axis at two levels, and judge.csv, one with the

@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "sim/random.h"
+#include "base/random.h"
 #include "tests/apps/shell.h"
 
 namespace axisfit {

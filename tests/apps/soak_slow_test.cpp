@@ -6,10 +6,11 @@
 #include <fstream>
 #include <string>
 
-#include "apps/outcome.h"
-#include "apps/report_page.h"
-#include "apps/report_text.h"
-#include "apps/result_json.h"
+#include "fit/run.h"
+#include "io/config/job_file.h"
+#include "report/html/report_page.h"
+#include "report/result_json.h"
+#include "report/text/report_text.h"
 #include "tests/apps/files.h"
 #include "tests/apps/fit_job.h"
 
@@ -40,7 +41,7 @@ TEST(Soak, AThousandFitsTakeNoMoreMemoryThanTwoHundred) {
 
   // The whole of fit-params but for its command line.
   const auto fit = [](const std::string& job, bool close_loop = false) {
-    const Outcome outcome = find_outcome(read_job_file(job), {.close_loop = close_loop});
+    const Outcome outcome = find_outcome(read_job_file(job).job, {.close_loop = close_loop});
     ASSERT_TRUE(outcome.fit().usable);
     const std::string json = result_json(outcome).dump(2), text = report_text(outcome),
                       csv = residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis),

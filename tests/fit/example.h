@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "fit/estimate.h"
-#include "sim/random.h"
+#include "base/random.h"
+#include "fit/estimation/estimate.h"
 #include "sim/rig.h"
 #include "tests/sim/axes.h"
 
@@ -44,15 +44,15 @@ inline Recording recorded(const Model<double>& truth, const Motion& motion, doub
   options.seed = seed;
   options.signals = signals;
   options.noise = noisy;
-  const Table table = record(rig, motion, options);
+  const std::vector<Column> columns = record(rig, motion, options);
   Recording recording;
   recording.name = "fit";
-  recording.times = table.columns[0].values;
-  recording.command = schedule_from_samples(recording.times, table.columns[1].values);
+  recording.times = columns[0].values;
+  recording.command = schedule_from_samples(recording.times, columns[1].values);
   for (std::size_t s = 0; s < signals.size(); ++s) {
     Measurement& m = recording.measurements.emplace_back();
     m.signal = signals[s];
-    m.values = table.columns[2 + s].values;
+    m.values = columns[2 + s].values;
     m.sigma = usual_noise(signals[s]);
     m.noise = NoiseSource::given;
   }

@@ -19,17 +19,17 @@ TEST(Controller, CommandIsFoundAgainFromReferenceAndEncoder) {
   RecordingOptions options;
   options.duration = 2.0;
   options.signals = {Signal::position};
-  const Table table = record(rig, move, options);
-  const std::vector<double>& times = table.columns[0].values;
+  const std::vector<Column> columns = record(rig, move, options);
+  const std::vector<double>& times = columns[0].values;
   std::vector<double> reference;
   for (const double t : times) reference.push_back(reference_of(move)(t));
   const std::vector<double> command =
-      command_from_reference(rig.controller, times, reference, table.columns[2].values);
+      command_from_reference(rig.controller, times, reference, columns[2].values);
   ASSERT_EQ(command.size(), times.size());
   double error = 0.0;
   // The run ends before the sampling at its last instant.
   for (std::size_t i = 0; i + 1 < times.size(); ++i)
-    error = std::max(error, std::abs(command[i] - table.columns[1].values[i]));
+    error = std::max(error, std::abs(command[i] - columns[1].values[i]));
   // The recorded reference is interpolated at the track instants, the original is exact there.
   EXPECT_LT(error, 1e-6);
 }

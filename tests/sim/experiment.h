@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/jet.h"
+#include "fit/estimation/jet.h"
 #include "sim/recorder.h"
 #include "tests/sim/axes.h"
 

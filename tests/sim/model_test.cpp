@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "fit/jet.h"
+#include "fit/estimation/jet.h"
 #include "tests/sim/axes.h"
 
 namespace axisfit {

@@ -8,7 +8,7 @@
 #include <random>
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "fit/jet.h"
+#include "fit/estimation/jet.h"
 
 namespace axisfit {
 namespace {

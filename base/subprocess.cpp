@@ -1,0 +1,71 @@
+#include "base/subprocess.h"
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <string_view>
+#include <system_error>
+
+namespace axisfit {
+namespace {
+
+/// Does the work as the other process, which ends here.
+[[noreturn]] void answer(const std::function<std::string()>& work, int pipe) {
+  // A crash is an answer too, and nothing to be told of by whoever handles signals.
+  for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL}) ::signal(signal, SIG_DFL);
+  try {
+    const std::string text = work();
+    for (std::string_view rest = text; !rest.empty();) {
+      const ssize_t n = ::write(pipe, rest.data(), rest.size());
+      if (n < 0 && errno != EINTR) ::_exit(1);
+      if (n > 0) rest.remove_prefix(static_cast<std::size_t>(n));
+    }
+  } catch (...) {
+    ::_exit(1);
+  }
+  ::_exit(0);
+}
+
+std::string read_all(int pipe) {
+  std::string text;
+  std::array<char, 1 << 16> part;
+  while (true) {
+    const ssize_t n = ::read(pipe, part.data(), part.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return text;
+    text.append(part.data(), static_cast<std::size_t>(n));
+  }
+}
+
+}  // namespace
+
+std::optional<std::string> run_apart(const std::function<std::string()>& work) {
+  const auto fail = [] {
+    throw std::system_error(errno, std::generic_category(), "cannot start another process");
+  };
+  std::array<int, 2> ends{};
+  if (::pipe(ends.data()) != 0) fail();
+  const pid_t other = ::fork();
+  if (other < 0) {
+    ::close(ends[0]);
+    ::close(ends[1]);
+    fail();
+  }
+  if (other == 0) {
+    ::close(ends[0]);
+    answer(work, ends[1]);
+  }
+  ::close(ends[1]);
+  std::string text = read_all(ends[0]);
+  ::close(ends[0]);
+  int status = 0;
+  while (::waitpid(other, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return std::nullopt;
+  return text;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,110 @@
+#include "base/text_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace axisfit {
+namespace {
+
+/// Lines of at most `width` characters, unless a word is longer.
+std::vector<std::string> broken(const std::string& text, std::size_t width) {
+  std::vector<std::string> lines{""};
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = std::min(text.find(' ', at), text.size());
+    if (text.compare(end, 2, " %") == 0) end = std::min(text.find(' ', end + 1), text.size());
+    const std::string word = text.substr(at, end - at);
+    std::string& line = lines.back();
+    if (line.empty())
+      line = word;
+    else if (width_of(line) + 1 + width_of(word) <= width)
+      line += " " + word;
+    else
+      lines.push_back(word);
+    at = end + 1;
+  }
+  return lines;
+}
+
+constexpr std::size_t kIndent = 2, kGap = 2;
+constexpr std::size_t kLeastWrapped = 20;  ///< width of a column to wrap in
+
+/// The widths of the columns, where the first is left no more than there is room for.
+std::vector<std::size_t> widths_of(const std::vector<std::vector<std::string>>& rows,
+                                   const std::vector<Set>& set) {
+  std::vector<std::size_t> width(set.size(), 0);
+  for (const auto& row : rows)
+    for (std::size_t c = 0; c < row.size(); ++c)
+      width[c] = set[c] == Set::wrapped ? kLeastWrapped : std::max(width[c], width_of(row[c]));
+  const std::size_t others =
+      std::accumulate(width.begin() + 1, width.end(), kIndent) + kGap * (width.size() - 1);
+  const std::size_t room = kTextWidth - std::min(others, kTextWidth);
+  if (width[0] <= room) return width;
+  width[0] = 0;
+  for (const auto& row : rows)
+    if (const std::size_t first = width_of(row[0]); first <= room)
+      width[0] = std::max(width[0], first);
+  return width;
+}
+
+}  // namespace
+
+std::size_t width_of(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+std::string aligned(const std::vector<std::vector<std::string>>& rows,
+                    const std::vector<Set>& set) {
+  const std::vector<std::size_t> width = widths_of(rows, set);
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line(kIndent, ' ');
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (c > 0) line += std::string(kGap, ' ');
+      if (set[c] == Set::wrapped) {
+        const std::size_t indent = width_of(line);
+        const auto lines =
+            broken(row[c], kTextWidth - std::min(indent, kTextWidth - kLeastWrapped));
+        for (std::size_t i = 0; i < lines.size(); ++i)
+          line += (i > 0 ? "\n" + std::string(indent, ' ') : "") + lines[i];
+        continue;
+      }
+      if (width_of(row[c]) > width[c]) {  // the first
+        line += row[c];
+        if (row.size() == 1) continue;
+        text += line + "\n";
+        line.assign(kIndent + width[c], ' ');
+        continue;
+      }
+      const std::string pad(width[c] - width_of(row[c]), ' ');
+      line += set[c] == Set::left ? row[c] + pad : pad + row[c];
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+std::string paragraph(const std::string& text, std::size_t indent) {
+  std::string result;
+  for (const std::string& line : broken(text, kTextWidth - indent))
+    result += std::string(indent, ' ') + line + "\n";
+  return result;
+}
+
+std::string with_digits_of(double value, double error) {
+  if (!(error > 0.0) || !std::isfinite(error)) return fmt::format("{:.4g}", value);
+  const int last = static_cast<int>(std::floor(std::log10(error))) - 1;
+  const int first = value == 0.0 ? last : static_cast<int>(std::floor(std::log10(std::abs(value))));
+  const int digits = std::clamp(first - last + 1, 1, 15);
+  // Plain figures where they are readable, powers of ten elsewhere.
+  if (last <= 0 && first < 7 && first > -4)
+    return fmt::format("{:.{}f}", value, std::min(-last, 12));
+  if (last > 0 && first < 5) return fmt::format("{:.0f}", value);
+  return fmt::format("{:.{}e}", value, digits - 1);
+}
+
+}  // namespace axisfit

@@ -1,0 +1,146 @@
+// A fit as data: the model, the recordings, what is free, and how to go about it.
+// Nothing here knows where it was read from.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/interrupt.h"
+#include "sim/command.h"
+#include "sim/controller.h"
+#include "sim/model.h"
+
+namespace axisfit {
+
+class Journal;
+
+enum class Role {
+  fit,       ///< its residuals are minimised
+  validate,  ///< only judged
+};
+
+/// How the initial state of a recording is found.
+enum class InitialState {
+  given,  ///< the model's, or the recording's overrides
+  data,   ///< position and velocity from the first samples; the rest as given
+};
+
+/// Where the size of a measurement's noise comes from.
+enum class NoiseSource {
+  given,
+  differences,  ///< of the samples, see noise.h
+  rest,         ///< what the instrument shows at rest, see rest.h
+  fit,          ///< estimated together with the parameters, see estimate_with_noise
+};
+
+/// One measured signal of a recording, in SI units.
+struct Measurement {
+  Signal signal = Signal::velocity;
+  std::vector<double> values;  ///< one per sample
+  double sigma = 0.0;          ///< standard deviation of its noise, > 0
+  NoiseSource noise = NoiseSource::differences;
+  bool fitted = true;  ///< false: compared and reported, not part of the fit
+  /// Samples that are neither fitted nor judged, see rest.h; empty: none.
+  std::vector<bool> left_out;
+
+  bool counts(std::size_t sample) const { return left_out.empty() || !left_out[sample]; }
+};
+
+/// One recording. Samples run over `times`.
+struct Recording {
+  std::string name;  ///< short, unique within the job
+  std::string file;  ///< as the user wrote it
+  Role role = Role::fit;
+  std::vector<double> times;  ///< s, increasing, at least two
+  Schedule command;           ///< V
+  std::vector<Measurement> measurements;
+  InitialState initial_state = InitialState::given;
+  /// Samples at the start from which an initial state is taken.
+  std::size_t initial_samples = 20;
+  bool score_initial_samples = true;  ///< false: errors are reported without them
+  bool acceleration_at_rest = false;  ///< whether it counts while the arm rests, see rest.h
+  /// Samples of a recording to be fitted that are only judged, as if they were another recording;
+  /// empty: none.
+  std::vector<bool> held_out;
+  /// Quantities that differ from the model's in this recording: index in quantity_list(), value.
+  std::vector<std::pair<std::size_t, double>> overrides;
+
+  bool fits(const Measurement& measurement, std::size_t sample) const {
+    return role == Role::fit && measurement.fitted && measurement.counts(sample) &&
+           (held_out.empty() || !held_out[sample]);
+  }
+
+  const Measurement* find(Signal signal) const {
+    for (const Measurement& m : measurements)
+      if (m.signal == signal) return &m;
+    return nullptr;
+  }
+};
+
+/// Gaussian knowledge from elsewhere: value = mean +- sigma.
+struct Prior {
+  double mean = 0.0;
+  double sigma = 0.0;
+};
+
+/// A quantity that is estimated.
+struct FreeParameter {
+  std::size_t quantity = 0;              ///< index in quantity_list()
+  std::optional<std::size_t> recording;  ///< the only recording it applies to; none: all of them
+  double initial = 0.0;
+  double lower = 0.0;  ///< lower <= initial <= upper
+  double upper = 0.0;
+  bool logarithmic = true;  ///< estimated on a logarithmic scale; needs lower > 0
+  std::optional<Prior> prior;
+};
+
+/// How the simulation is held to the data while it is fitted, see coupling.h.
+enum class CouplingMode {
+  continuation,  ///< firmly at first, then ever more loosely, at last not at all
+  fixed,         ///< at one rate to the end: a prediction-error fit
+  none,          ///< never: plain least squares on the free-running simulation
+};
+
+enum class Loss { squares, huber };
+
+struct FitOptions {
+  CouplingMode coupling = CouplingMode::continuation;
+  /// 1/s (velocity recorded) or rad/s (position alone). Of the fixed coupling, or where the
+  /// continuation starts; zero: from the sampling interval, see continuation.h.
+  double coupling_rate = 0.0;
+  Loss loss = Loss::squares;
+  double huber_width = 3.0;  ///< residuals above this many sigma count linearly
+  int max_iterations = 50;   ///< of each stage of the continuation
+  double tolerance = 1e-10;  ///< relative change of the cost at which the last stage stops
+  int attempts = 4;          ///< continuations of a start, while they end unexplained
+  int starts = 1;            ///< the first from the initial values, the others drawn around them
+  double spread = 5.0;       ///< starts are drawn within this factor, either way
+  std::uint64_t seed = 1;
+  int threads = 0;                 ///< 0: as many as the machine has
+  double step = 0.5e-3;            ///< s, of the integrator
+  const StopFlag* stop = nullptr;  ///< must outlive all that is done with the job; null: none
+  Journal* journal = nullptr;      ///< of solutions, likewise
+};
+
+/// What the machine may be asked for. What is not given is taken to be what the recordings covered,
+/// since the machine bore that; the voltage of an electric drive to be its controller's limit.
+struct MachineLimits {
+  std::optional<double> lowest{}, highest{};  ///< m, position of the arm
+  std::optional<double> speed{};              ///< m/s of the arm, either way
+  std::optional<double> voltage{};            ///< V of the command, either way
+};
+
+struct Job {
+  std::string axis;  ///< its name, for reports
+  Model<double> model;
+  ControllerSettings controller;  ///< of experiments yet to be made, as are the
+  MachineLimits limits;
+  std::vector<Recording> recordings;
+  std::vector<FreeParameter> free;
+  FitOptions options;
+};
+
+}  // namespace axisfit

@@ -1,0 +1,235 @@
+#include "fit/data/recording_check.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "fit/data/noise.h"
+#include "fit/data/standstill.h"
+
+namespace axisfit {
+namespace {
+
+/// Least samples in a run, or at a limit, that are worth a word.
+constexpr std::size_t kMany = 25;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+/// Correlation of two lists of changes, about their means or about zero, and the ratio of their
+/// sizes: of b to a.
+RateRatio compared(Eigen::VectorXd a, Eigen::VectorXd b, bool about_means) {
+  if (about_means) {
+    a.array() -= a.mean();
+    b.array() -= b.mean();
+  }
+  const double size_a = a.norm(), size_b = b.norm();
+  if (!(size_a > 0.0) || !(size_b > 0.0)) return {};
+  const double correlation = a.dot(b) / (size_a * size_b);
+  return {std::copysign(size_b / size_a, correlation), correlation};
+}
+
+/// The longest run of equal values while the arm does not rest.
+void find_frozen(const Recording& recording, const std::vector<double>& values,
+                 const std::vector<bool>& rest, ValueCheck& check) {
+  const auto moves = [&](std::size_t i) { return rest.empty() || !rest[i]; };
+  std::size_t pairs = 0, equal = 0, longest = 0, at = 0;
+  for (std::size_t i = 1, run = 1; i < values.size(); ++i) {
+    if (!moves(i) || !moves(i - 1)) {
+      run = 1;
+      continue;
+    }
+    ++pairs;
+    if (values[i] != values[i - 1]) {
+      run = 1;
+      continue;
+    }
+    ++equal;
+    if (++run > longest) {
+      longest = run;
+      at = i + 1 - run;
+    }
+  }
+  if (longest < kMany) return;
+  // Outside of the run: so often a value is followed by its equal, for example on a coarse grid.
+  const double usual = static_cast<double>(equal - (longest - 1) + 1) /
+                       static_cast<double>(pairs - (longest - 1) + 2);
+  if (static_cast<double>(longest) * std::log(usual) >
+      std::log(1e-9 / static_cast<double>(values.size())))
+    return;
+  check.frozen = longest;
+  check.frozen_at = recording.times[at];
+}
+
+/// Samples that stay at the end of the range while the arm does not rest.
+void find_clipped(const std::vector<double>& values, const std::vector<bool>& rest,
+                  ValueCheck& check) {
+  // A constant signal, or one whose noise is below its rounding, may well stay at its extreme.
+  if (!(check.high > check.low) || check.noise < 0.5 * check.grid) return;
+  for (const double limit : {check.low, check.high}) {
+    std::size_t there = 0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      there += values[i] == limit && (rest.empty() || !rest[i]) ? 1 : 0;
+    if (there < kMany || there <= check.clipped) continue;
+    check.clipped = there;
+    check.clipped_at = limit;
+  }
+}
+
+ValueCheck check_values(const Recording& recording, const Measurement& measurement,
+                        const std::vector<bool>& rest) {
+  ValueCheck check;
+  const std::vector<double>& values = measurement.values;
+  std::tie(check.low, check.high) = std::pair(std::ranges::min(values), std::ranges::max(values));
+  check.noise = noise_from_differences(values);
+  check.grid = quantum(values);
+  // A position that stays is an arm at rest, or at its stop; the voltages have limits of their own.
+  const Signal signal = measurement.signal;
+  if (signal == Signal::position || signal == Signal::preamplifier_voltage ||
+      signal == Signal::motor_voltage)
+    return check;
+  find_clipped(values, rest, check);
+  if (check.clipped == 0) find_frozen(recording, values, rest, check);
+  return check;
+}
+
+}  // namespace
+
+Sampling sampling(std::span<const double> times) {
+  Sampling result;
+  result.samples = times.size();
+  if (times.size() < 2) return result;
+  result.duration = times.back() - times.front();
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
+  result.interval = median(intervals);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    const double d = intervals[i];
+    if (d <= 1.5 * result.interval) {
+      sum += (d - result.interval) * (d - result.interval);
+      continue;
+    }
+    ++result.gaps;
+    if (d > result.largest_gap) {
+      result.largest_gap = d;
+      result.gap_at = times[i];
+    }
+  }
+  const double even = static_cast<double>(intervals.size() - result.gaps);
+  result.jitter = std::sqrt(sum / even) / result.interval;
+  return result;
+}
+
+std::optional<RateRatio> rate_ratio(std::span<const double> times, std::span<const double> values,
+                                    std::span<const double> rate) {
+  const std::size_t n = times.size();
+  std::vector<double> integral(n, 0.0);
+  for (std::size_t i = 1; i < n; ++i)
+    integral[i] = integral[i - 1] + 0.5 * (rate[i] + rate[i - 1]) * (times[i] - times[i - 1]);
+  RateRatio best;
+  for (std::size_t stretches = 4; 2 * stretches < n && stretches <= 512; stretches *= 2) {
+    const auto size = static_cast<Eigen::Index>(stretches);
+    Eigen::VectorXd changes(size), integrals(size);
+    for (std::size_t k = 0; k < stretches; ++k) {
+      const std::size_t from = k * (n - 1) / stretches, to = (k + 1) * (n - 1) / stretches;
+      changes[static_cast<Eigen::Index>(k)] = values[to] - values[from];
+      integrals[static_cast<Eigen::Index>(k)] = integral[to] - integral[from];
+    }
+    for (const bool about_means : {false, true}) {
+      const RateRatio found = compared(changes, integrals, about_means);
+      if (std::abs(found.correlation) > std::abs(best.correlation)) best = found;
+    }
+  }
+  if (best.ratio == 0.0) return std::nullopt;
+  return best;
+}
+
+double telling_coupling(std::span<const double> times, std::span<const double> position,
+                        std::span<const double> velocity) {
+  constexpr double kMissing = 0.01, kAboveNoise = 10.0;
+  const bool of_velocity = !velocity.empty();
+  const std::span<const double> values = of_velocity ? velocity : position;
+  const std::size_t n = times.size();
+  // Over stretches, so that noise hardly counts.
+  const std::size_t stretch = std::max<std::size_t>(1, n / 200);
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = stretch; i + stretch < n; i += stretch, ++count) {
+    const double before = times[i] - times[i - stretch], after = times[i + stretch] - times[i];
+    const double change = of_velocity ? values[i + stretch] - values[i]
+                                      : (values[i + stretch] - values[i]) / after -
+                                            (values[i] - values[i - stretch]) / before;
+    squares += std::pow(change / (of_velocity ? after : 0.5 * (before + after)), 2);
+  }
+  const double acceleration =
+      std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, count)));
+  const double moved = kAboveNoise * noise_from_differences(values);
+  const double rate =
+      of_velocity ? kMissing * acceleration / moved : std::sqrt(kMissing * acceleration / moved);
+  const Sampling found = sampling(times);
+  const double firmest = 0.3 / found.interval;
+  return std::isfinite(rate) ? std::clamp(rate, std::min(10.0 / found.duration, firmest), firmest)
+                             : firmest;
+}
+
+RecordingCheck check_recording(const Recording& recording) {
+  RecordingCheck check;
+  check.sampling = sampling(recording.times);
+  const std::vector<bool> rest = resting(recording);
+  for (const Measurement& m : recording.measurements)
+    check.measurements.push_back(check_values(recording, m, rest));
+
+  // The command in force from the first sample on.
+  const Schedule& command = recording.command;
+  const double begin = recording.times.front(), end = recording.times.back();
+  double largest = 0.0, held = 0.0;
+  bool any = false;
+  for (std::size_t k = 0; k < command.times.size(); ++k) {
+    const double until = k + 1 < command.times.size() ? command.times[k + 1] : end;
+    if (until <= begin || command.times[k] > end) continue;
+    const double value = command.values[k];
+    check.command.low = any ? std::min(check.command.low, value) : value;
+    check.command.high = any ? std::max(check.command.high, value) : value;
+    any = true;
+    if (command.times[k] > begin) ++check.switches;
+    if (std::abs(value) > largest) {
+      largest = std::abs(value);
+      held = 0.0;
+    }
+    if (std::abs(value) == largest) held += until - std::max(begin, command.times[k]);
+  }
+  check.at_largest = largest > 0.0 && end > begin ? held / (end - begin) : 0.0;
+
+  for (const auto& [rate, of] : {std::pair(Signal::velocity, Signal::position),
+                                 std::pair(Signal::acceleration, Signal::velocity)}) {
+    const Measurement *a = recording.find(of), *b = recording.find(rate);
+    if (a == nullptr || b == nullptr) continue;
+    const auto found = rate_ratio(recording.times, a->values, b->values);
+    if (found && found->related()) check.rates.push_back({rate, of, *found});
+  }
+  if (const Measurement* velocity = recording.find(Signal::velocity)) {
+    for (const double v : velocity->values) check.speed = std::max(check.speed, std::abs(v));
+  } else if (const Measurement* position = recording.find(Signal::position)) {
+    // Over a hundredth of the recording, where rounding is nothing beside the way.
+    const std::size_t n = position->values.size(), step = std::max<std::size_t>(1, n / 100);
+    for (std::size_t i = step; i < n; i += step)
+      check.speed =
+          std::max(check.speed, std::abs((position->values[i] - position->values[i - step]) /
+                                         (recording.times[i] - recording.times[i - step])));
+  }
+  return check;
+}
+
+std::vector<RecordingCheck> check_recordings(const Job& job) {
+  std::vector<RecordingCheck> checks;
+  for (const Recording& recording : job.recordings) checks.push_back(check_recording(recording));
+  return checks;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,86 @@
+// What a recording shows by itself, before any model is asked: how it is sampled, what its signals
+// cover, and whether they agree with one another.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "fit/data/job.h"
+
+namespace axisfit {
+
+/// The intervals between the samples of a recording.
+struct Sampling {
+  std::size_t samples = 0;
+  double duration = 0.0;  ///< s
+  double interval = 0.0;  ///< s, the median
+  double jitter = 0.0;    ///< standard deviation of the intervals that are no gaps, over the median
+  std::size_t gaps = 0;   ///< intervals of more than 1.5 medians
+  double largest_gap = 0.0;  ///< s, zero without gaps
+  double gap_at = 0.0;       ///< s, recorded time where the largest one begins
+};
+Sampling sampling(std::span<const double> times);
+
+/// What the values of a signal look like, in its unit.
+struct ValueCheck {
+  double low = 0.0, high = 0.0;
+  double noise = 0.0;  ///< white part, from differences (noise.h)
+  double grid = 0.0;   ///< step between the values; zero: none
+  /// The longest run of equal values that neither a rest of the arm nor rounding explains: a sensor
+  /// that hangs. Zero samples where there is none.
+  std::size_t frozen = 0;
+  double frozen_at = 0.0;  ///< s, where it begins
+  /// Samples at exactly the lowest or the highest value while the arm moves, more than noise would
+  /// ever put there: a range that the signal left. Zero where there are none.
+  std::size_t clipped = 0;
+  double clipped_at = 0.0;  ///< that value
+};
+
+/// How a recorded rate compares with the rate of change of another signal.
+struct RateRatio {
+  double ratio = 0.0;        ///< rate = ratio * d(values)/dt
+  double correlation = 0.0;  ///< between the changes that the two tell of, -1 to 1
+
+  /// Whether the one is the rate of the other at all, whatever the factor. Then noise makes the
+  /// ratio wrong by no more than some 10 %.
+  bool related() const { return correlation > 0.9 || correlation < -0.9; }
+};
+
+/// Compares the changes of `values` over stretches of the recording with the integral of `rate`
+/// over them, so that noise and rounding of single samples do not count; in stretches of the length
+/// at which the two agree best. A constant bias of the rate does no harm. Nothing where either does
+/// not change.
+std::optional<RateRatio> rate_ratio(std::span<const double> times, std::span<const double> values,
+                                    std::span<const double> rate);
+
+/// How firmly to hold a simulation to the recording (a fixed coupling, job.h) so that what its
+/// model lacks shows: at this rate a hundredth of the acceleration that the axis usually has would
+/// move it by ten times the noise. A firmer hold hides more and feeds the noise into the
+/// simulation; a looser one lets it drift. 1/s to the velocity, or where that is empty rad/s to the
+/// position.
+double telling_coupling(std::span<const double> times, std::span<const double> position,
+                        std::span<const double> velocity);
+
+/// Two signals of a recording of which one is the rate of the other.
+struct RateCheck {
+  Signal rate = Signal::velocity, of = Signal::position;
+  RateRatio found;
+};
+
+struct RecordingCheck {
+  Sampling sampling;
+  ValueCheck command;                    ///< of its values: low and high alone
+  std::size_t switches = 0;              ///< changes of the command
+  double at_largest = 0.0;               ///< share of the time the command is at its largest size
+  std::vector<ValueCheck> measurements;  ///< in the recording's order
+  std::vector<RateCheck> rates;          ///< those that are related
+  double speed = 0.0;                    ///< m/s, largest, either way; zero where none is recorded
+};
+
+RecordingCheck check_recording(const Recording& recording);
+
+/// Of every recording of a job, in its order.
+std::vector<RecordingCheck> check_recordings(const Job& job);
+
+}  // namespace axisfit

@@ -1,0 +1,25 @@
+// What would tell two models apart that explain the same recordings.
+#pragma once
+
+#include "fit/design/experiment.h"
+#include "fit/selection/select_effects.h"
+
+namespace axisfit {
+
+struct Separation {
+  std::string words;  ///< one sentence for the user
+  std::optional<Experiment>
+      experiment;                ///< the motion; none where a known one will do, or none does
+  std::optional<Signal> signal;  ///< in which they differ most
+  double size = 0.0;             ///< rms of that difference, in units of the signal's noise
+};
+
+/// In which signal and motion two rivals of a loop differ most. Tried are the motions of the job's
+/// recordings, with the signals that they lack, and the family of experiments within the limits
+/// (completed as for suggest_experiment, by the final fit). Differences are counted in the job's
+/// noise of a signal, or, where it has none, in thousandths of its range. The models are taken as
+/// fitted: that their parameters may be fitted anew makes the difference smaller.
+Separation what_separates(const ClosedLoop& loop, const Rivals& rivals,
+                          const ControllerSettings& controller, const MachineLimits& limits);
+
+}  // namespace axisfit

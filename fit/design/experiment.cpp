@@ -1,0 +1,267 @@
+#include "fit/design/experiment.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "base/parallel.h"
+#include "fit/residuals/series.h"
+#include "sim/sampling.h"
+
+namespace axisfit {
+namespace {
+
+const Recording& first_fitted(const Job& job) {
+  return *std::ranges::find(job.recordings, Role::fit, &Recording::role);
+}
+
+/// Mean square of the residuals of a signal times samples per independent sample.
+double excess_of(const std::vector<ResidualSeries>& residuals, const Job& job, Signal signal) {
+  double excess = 1.0;
+  for (const ResidualSeries& s : residuals)
+    if (s.fitted && job.recordings[s.recording].measurements[s.measurement].signal == signal)
+      excess = std::max(excess, mean_square(s.values) * autocorrelation_time(s.values));
+  return excess;
+}
+
+/// The job with one more recording, of an experiment yet to be made; all others only to validate.
+Job with_next(const Job& job, const std::vector<ResidualSeries>& residuals) {
+  Job next = job;
+  const Recording& like = first_fitted(job);
+  Recording recording;
+  recording.name = "next";
+  recording.times = sampling_of_next(job);
+  const std::size_t start = find_quantity("initial.y0")->index;
+  for (const auto& [quantity, value] : like.overrides)
+    if (quantity == start) recording.overrides.emplace_back(quantity, value);
+  for (const Measurement& m : like.measurements) {
+    if (!m.fitted) continue;
+    Measurement& measurement = recording.measurements.emplace_back();
+    measurement.signal = m.signal;
+    measurement.sigma = m.sigma * std::sqrt(excess_of(residuals, job, m.signal));
+  }
+  for (Recording& r : next.recordings) r.role = Role::validate;
+  next.recordings.push_back(std::move(recording));
+  return next;
+}
+
+bool keeps_to(const MachineLimits& limits, const Prediction& prediction) {
+  return prediction.finished && std::ranges::all_of(prediction.samples, [&](const Sample& s) {
+           return is_within(limits, s.position, s.velocity);
+         });
+}
+
+/// What each experiment would show; not finite where it does not keep to the limits.
+std::vector<Linearization> shown_by(const std::vector<Experiment>& family, const Job& next,
+                                    const FitResult& fit, const ControllerSettings& controller,
+                                    const MachineLimits& limits,
+                                    const std::function<void(int done, int of)>& progress) {
+  const std::size_t added = next.recordings.size() - 1;
+  const Model<double> model = fitted_model(next, fit);
+  const ParameterSpace space(next);
+  const Eigen::VectorXd u = space.internal(values_of(fit));
+  const Crew crew(next.options.threads);
+  std::vector<Linearization> shown(family.size());
+  std::mutex mutex;
+  int done = 0;
+  parallel_for(family.size(), [&](std::size_t i) {
+    if (is_set(next.options.stop)) throw Interrupted();
+    Job trial = next;
+    Recording& recording = trial.recordings[added];
+    recording.command = commands_of(family[i], model, controller, recording.times);
+    const Prediction prediction = predict(trial, space, added, u.data(), {});
+    if (keeps_to(limits, prediction)) {
+      for (std::size_t m = 0; m < recording.measurements.size(); ++m)
+        recording.measurements[m].values = prediction.simulated[m];
+      shown[i] = linearize(trial, space, u, fit.coupling_rate);
+      shown[i].residuals.setZero();  // of rounding, which has a colour
+    }
+    const std::lock_guard lock(mutex);
+    if (progress) progress(++done, static_cast<int>(family.size()));
+  });
+  return shown;
+}
+
+/// Without those of priors.
+Eigen::Index rows_of(const Linearization& linear) {
+  return linear.series.empty() ? 0 : linear.series.back().first + linear.series.back().count;
+}
+
+/// Both, the rows of the first without its priors, before all others.
+Linearization joined(const Linearization& first, const Linearization& second) {
+  const Eigen::Index rows = rows_of(first);
+  Linearization both;
+  both.finite = true;
+  both.series = first.series;
+  for (SeriesRows series : second.series) {
+    series.first += rows;
+    both.series.push_back(series);
+  }
+  both.residuals.resize(rows + second.residuals.size());
+  both.residuals << first.residuals.head(rows), second.residuals;
+  both.jacobian.resize(both.residuals.size(), second.jacobian.cols());
+  both.jacobian << first.jacobian.topRows(rows), second.jacobian;
+  return both;
+}
+
+/// Standard errors, of u, from normal equations. An error of one is no knowledge.
+Eigen::VectorXd errors_of(Eigen::MatrixXd normal) {
+  normal.diagonal().array() += 1.0;
+  return normal.inverse().diagonal().cwiseSqrt();
+}
+
+/// The normal equations of a fit, every series worth what its residual says.
+Eigen::MatrixXd normal_of(const Job& job, const Linearization& at,
+                          const std::vector<ResidualSeries>& residuals) {
+  Eigen::MatrixXd normal = at.jacobian.transpose() * at.jacobian;
+  for (const SeriesRows& rows : at.series) {
+    const Signal signal = job.recordings[rows.recording].measurements[rows.measurement].signal;
+    const auto block = at.jacobian.middleRows(rows.first, rows.count);
+    normal -= (1.0 - 1.0 / excess_of(residuals, job, signal)) * (block.transpose() * block);
+  }
+  return normal;
+}
+
+}  // namespace
+
+MachineLimits completed_limits(MachineLimits limits, const Job& job, const FitResult& fit,
+                               const ControllerSettings& controller) {
+  double lowest = INFINITY, highest = -INFINITY, speed = 0.0, force = 0.0;
+  for (const RecordingResult& r : fit.recordings)
+    for (const Sample& s : r.prediction.samples) {
+      lowest = std::min(lowest, s.position);
+      highest = std::max(highest, s.position);
+      speed = std::max(speed, std::abs(s.velocity));
+      force = std::max(force, std::abs(s.drive_force));
+    }
+  if (!limits.lowest) limits.lowest = lowest;
+  if (!limits.highest) limits.highest = highest;
+  if (!limits.speed) limits.speed = speed;
+  if (!limits.voltage)
+    limits.voltage = job.model.structure.drive == Drive::force_source
+                         ? force / fitted_model(job, fit).axis.K_f
+                         : controller.limit;
+  limits.voltage = std::min(*limits.voltage, controller.limit);
+  return limits;
+}
+
+bool is_within(const MachineLimits& limits, double position, double velocity) {
+  // What a recording covered once, a motion may reach.
+  constexpr double kTouch = 1e-6;
+  return position >= *limits.lowest - kTouch && position <= *limits.highest + kTouch &&
+         std::abs(velocity) <= *limits.speed * (1.0 + kTouch);
+}
+
+std::vector<Experiment> experiment_family(const Structure& structure, const MachineLimits& limits,
+                                          double duration) {
+  std::vector<Experiment> family;
+  const auto add = [&](const Motion& motion, std::string words) {
+    family.push_back({motion, duration, std::move(words)});
+  };
+  for (const double share : {1.0, 0.5, 0.2, 0.1, 0.05})
+    for (const double sign : {1.0, -1.0}) {
+      const double u = sign * share * *limits.voltage;
+      const std::string volts = fmt::format("{:.3g} V", u);
+      add(StepMotion{u, 0.0}, "a step of " + volts);
+      for (const double part : {0.25, 0.125, 0.0625}) {
+        const double hold = part * duration;
+        add(LevelsMotion{{u, -u, 0.5 * u, -0.5 * u, 0.2 * u, -0.2 * u, 0.0}, hold},
+            fmt::format("levels of {}, -1, 0.5, -0.5, 0.2 and -0.2 times that, then zero, each "
+                        "held for {:.3g} s",
+                        volts, hold));
+        add(LevelsMotion{{u, 0.0, -u, 0.0}, hold},
+            fmt::format("levels of {}, zero, the opposite and zero, each held for {:.3g} s", volts,
+                        hold));
+      }
+      for (const double f : {0.5, 1.0, 2.0, 5.0, 10.0, 20.0})
+        add(SineMotion{u, f, f}, fmt::format("a sine of {} and {:g} Hz", volts, f));
+      for (const double f : {5.0, 20.0, 60.0})
+        add(SineMotion{u, 0.5, f}, fmt::format("a chirp of {} from 0.5 to {:g} Hz", volts, f));
+      for (const double bit : {0.01, 0.025, 0.05, 0.1, 0.2})
+        add(PrbsMotion{u, bit, 0.0, 1},
+            fmt::format("a pseudo-random sequence of +-{:.3g} V, a new choice every {:g} s",
+                        std::abs(u), bit));
+    }
+  if (structure.drive == Drive::force_source) return family;  // no set-velocity input
+  for (const double part : {0.9, 0.5, 0.2, -0.9, -0.5, -0.2})
+    for (const double share : {0.9, 0.5, 0.2}) {
+      const MoveMotion move{part * (*limits.highest - *limits.lowest), share * *limits.speed,
+                            4.0 * share * *limits.speed};
+      if (move.distance == 0.0 || move.speed == 0.0) continue;
+      add(move, fmt::format("a move of {:.3g} m at {:.3g} m/s and {:.3g} m/s^2", move.distance,
+                            move.speed, move.acceleration));
+    }
+  return family;
+}
+
+Schedule commands_of(const Experiment& experiment, const Model<double>& model,
+                     const ControllerSettings& controller, std::span<const double> times) {
+  const auto* move = std::get_if<MoveMotion>(&experiment.motion);
+  if (move == nullptr)
+    return schedule_of(experiment.motion, experiment.duration, controller.period);
+  if (!(model.axis.T_d < controller.period)) return {};  // nor can it be simulated
+  SlaveControlUnit unit(controller, reference_of(*move));
+  return simulate_controlled(model, unit, times, [](std::size_t, const Integrator<double>&) {});
+}
+
+std::vector<double> sampling_of_next(const Job& job) {
+  const std::vector<double>& like = first_fitted(job).times;
+  constexpr double kLongest = 10.0;  // s; longer motions repeat themselves
+  const double interval = mean_interval(like);
+  std::vector<double> times;
+  for (std::size_t i = 0; i < like.size() && static_cast<double>(i) * interval <= kLongest; ++i)
+    times.push_back(static_cast<double>(i) * interval);
+  return times;
+}
+
+std::optional<Suggestion> suggest_experiment(
+    const Job& job, const FitResult& fit, const ControllerSettings& controller,
+    const MachineLimits& limits, const std::function<void(int done, int of)>& progress) {
+  if (!fit.usable || job.free.empty()) return std::nullopt;
+  Suggestion suggestion;
+  suggestion.limits = completed_limits(limits, job, fit, controller);
+  const std::vector<ResidualSeries> residuals = residual_series(job, fit);
+  const Job next = with_next(job, residuals);
+  const std::vector<Experiment> family = experiment_family(job.model.structure, suggestion.limits,
+                                                           next.recordings.back().times.back());
+  const std::vector<Linearization> shown =
+      shown_by(family, next, fit, controller, suggestion.limits, progress);
+
+  const auto worst_of = [&](const Eigen::VectorXd& errors) {
+    std::pair<std::size_t, double> worst{0, -1.0};
+    for (std::size_t i = 0; i < job.free.size(); ++i) {
+      const double error = errors[static_cast<Eigen::Index>(i)];
+      // What stands at its bound is as good as known.
+      if (!fit.parameters[i].uncertainty.at_bound && error > worst.second) worst = {i, error};
+    }
+    return worst;
+  };
+  const Eigen::MatrixXd normal = normal_of(job, *fit.at_solution, residuals);
+  suggestion.parameter = worst_of(errors_of(normal)).first;
+  const Linearization* best = nullptr;
+  double least = INFINITY;
+  for (std::size_t i = 0; i < family.size(); ++i) {
+    if (!shown[i].finite) continue;
+    ++suggestion.allowed;
+    const auto rows = shown[i].jacobian.topRows(rows_of(shown[i]));
+    const double worst = worst_of(errors_of(normal + rows.transpose() * rows)).second;
+    if (!(worst < least)) continue;
+    least = worst;
+    best = &shown[i];
+    suggestion.experiment = family[i];
+  }
+  suggestion.tried = static_cast<int>(family.size());
+  if (best == nullptr) return std::nullopt;
+
+  // As the fit itself will judge.
+  const ParameterSpace space(job);
+  const Eigen::VectorXd u = space.internal(values_of(fit));
+  suggestion.now = uncertainty(space, u, *fit.at_solution);
+  suggestion.predicted = uncertainty(space, u, joined(*best, *fit.at_solution));
+  return suggestion;
+}
+
+}  // namespace axisfit

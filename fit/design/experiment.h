@@ -1,0 +1,67 @@
+// The next recording: which motion would tell most of what the recordings so far leave open.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fit/estimation/estimate.h"
+#include "sim/controller.h"
+#include "sim/motion.h"
+
+namespace axisfit {
+
+/// Limits all of which are given.
+MachineLimits completed_limits(MachineLimits limits, const Job& job, const FitResult& fit,
+                               const ControllerSettings& controller);
+
+/// Whether a place (m) and a speed (m/s) of the arm are within complete limits.
+bool is_within(const MachineLimits& limits, double position, double velocity);
+
+/// A motion from rest, and for how long.
+struct Experiment {
+  Motion motion;
+  double duration = 0.0;  ///< s
+  std::string words{};    ///< "a step of 10 V"
+};
+
+/// Steps, levels, sines, chirps, pseudo-random sequences, each at several amplitudes up to the
+/// voltage and either way, and moves up to the travel and the speed where the axis has a
+/// set-velocity input. Limits are complete; whether a motion keeps to them is for its simulation to
+/// say.
+std::vector<Experiment> experiment_family(const Structure& structure, const MachineLimits& limits,
+                                          double duration);
+
+/// The commands of an experiment over the times (s) from zero; those of a move as the controller
+/// writes them to the axis.
+Schedule commands_of(const Experiment& experiment, const Model<double>& model,
+                     const ControllerSettings& controller, std::span<const double> times);
+
+/// The sampling times (s) of one more recording: those of the first one that is fitted, from zero
+/// and for at most 10 s.
+std::vector<double> sampling_of_next(const Job& job);
+
+struct Suggestion {
+  Experiment experiment;
+  std::size_t parameter = 0;  ///< the one whose interval is the widest now
+  Uncertainty now;            ///< of the estimates
+  Uncertainty predicted;      ///< after one more recording, of that motion
+  MachineLimits limits;       ///< as they were taken, all given
+  int tried = 0;              ///< motions of the family
+  int allowed = 0;            ///< those that kept to the limits
+};
+
+/// Of all motions that keep to the limits in simulation, the one after which the least determined
+/// of the parameters is determined best: the largest standard error, relative to the parameter's
+/// size, is smallest (E. Walter and L. Pronzato, Identification of Parametric Models, Springer
+/// 1997, chapter 6). Assumes that the new recording has the signals, the sampling and the noise of
+/// the first one that was fitted, starts where that started, from rest, and leaves residuals of the
+/// size and colour that the fit has left; that the estimates are right; and that the model is
+/// linear over their errors. None when the fit is not usable or no motion keeps to the limits.
+std::optional<Suggestion> suggest_experiment(
+    const Job& job, const FitResult& fit, const ControllerSettings& controller,
+    const MachineLimits& limits, const std::function<void(int done, int of)>& progress = {});
+
+}  // namespace axisfit

@@ -1,0 +1,18 @@
+// How long a fit will take.
+#pragma once
+
+#include "fit/data/job.h"
+
+namespace axisfit {
+
+struct Effort {
+  double evaluation = 0.0;  ///< s, measured: one simulation of all that is fitted, with derivatives
+  double expected = 0.0;    ///< s, of the fit and the look at its residual; an order of magnitude
+};
+
+/// Measures one evaluation at the initial values, and multiplies by the number of evaluations that
+/// such a job usually takes. A fit that does not explain its recordings makes further attempts and
+/// takes up to ten times as long.
+Effort expected_effort(const Job& job);
+
+}  // namespace axisfit

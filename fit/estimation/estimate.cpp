@@ -1,0 +1,324 @@
+#include "fit/estimation/estimate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "base/random.h"
+
+namespace axisfit {
+namespace {
+
+struct Trial {
+  std::vector<double> from;
+  bool interrupted = false;
+  ContinuationResult result;
+};
+
+/// Where the only start of a fit is.
+Progress progress_of(const Stage& stage) {
+  return {.phase = stage.coupling_rate > 0.0
+                       ? fmt::format("fitting, held to the data at {:.3g} 1/s", stage.coupling_rate)
+                       : "fitting, running free",
+          .best = stage.reduced_cost};
+}
+
+/// All starts, spread over threads; every one is independent of the others.
+std::vector<Trial> run_starts(const Job& job, const ParameterSpace& space,
+                              const ProgressReport& progress) {
+  const int starts = std::max(1, job.options.starts);
+  std::vector<Trial> trials(static_cast<std::size_t>(starts));
+  std::mutex mutex;
+  Progress all{.phase = "starts", .of = starts};
+  if (progress && starts > 1) progress(all);
+  parallel_for(trials.size(), [&](std::size_t i) {
+    Trial& trial = trials[i];
+    trial.interrupted = is_set(job.options.stop);
+    if (trial.interrupted) return;  // a million starts would take their time to throw
+    trial.from = draw_start(job, static_cast<int>(i));
+    try {
+      trial.result =
+          continue_to_free(job, space, space.internal(trial.from), [&](const Stage& stage) {
+            if (progress && starts == 1) progress(progress_of(stage));
+          });
+    } catch (const Interrupted&) {
+      trial.interrupted = true;
+      return;
+    }
+    const std::lock_guard lock(mutex);
+    ++all.done;
+    if (trial.result.last.usable) all.best = std::fmin(all.best, trial.result.last.reduced_cost);
+    if (progress && starts > 1) progress(all);
+  });
+  return trials;
+}
+
+double mean_square_error(const Measurement& measured, const std::vector<double>& simulated,
+                         std::size_t first) {
+  double sum = 0.0;
+  std::size_t n = 0;
+  for (std::size_t i = first; i < simulated.size(); ++i) {
+    if (!measured.counts(i)) continue;
+    sum += (measured.values[i] - simulated[i]) * (measured.values[i] - simulated[i]);
+    ++n;
+  }
+  return n > 0 ? sum / static_cast<double>(n) : 0.0;
+}
+
+double standard_deviation(const std::vector<double>& values) {
+  const double n = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double sum = 0.0;
+  for (const double x : values) sum += (x - mean) * (x - mean);
+  return std::sqrt(sum / n);
+}
+
+RecordingResult judge(const Job& job, const ParameterSpace& space, std::size_t index,
+                      const Eigen::VectorXd& u, double coupling_rate) {
+  const Recording& recording = job.recordings[index];
+  RecordingResult result;
+  result.prediction = predict(job, space, index, u.data(), {});
+  const Coupling coupling = coupling_for(recording, coupling_rate);
+  if (coupling.active()) result.held = predict(job, space, index, u.data(), coupling);
+  const std::size_t first = recording.score_initial_samples ? 0 : recording.initial_samples;
+  for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
+    const Measurement& measurement = recording.measurements[m];
+    SignalError error;
+    error.signal = measurement.signal;
+    error.fitted = measurement.fitted && recording.role == Role::fit;
+    error.sigma = measurement.sigma;
+    error.noise = measurement.noise;
+    if (result.prediction.finished) {
+      const double mean_square =
+          mean_square_error(measurement, result.prediction.simulated[m], first);
+      const auto [low, high] = std::ranges::minmax(measurement.values);
+      error.rmse = std::sqrt(mean_square);
+      const double percent = 100.0 * error.rmse / (high - low);
+      error.nrmse_percent = std::isfinite(percent) ? percent : 0.0;
+      error.reduced_chi_square = mean_square / (measurement.sigma * measurement.sigma);
+    }
+    if (result.held && result.held->finished) {
+      const double mean_square = mean_square_error(measurement, result.held->simulated[m], first);
+      error.prediction_rmse = std::sqrt(mean_square);
+      error.prediction_reduced_chi_square = mean_square / (measurement.sigma * measurement.sigma);
+    }
+    result.signals.push_back(error);
+  }
+  return result;
+}
+
+/// A fitted signal that the model follows no better than a constant would: then there is no fit.
+std::string hopeless_signal(const Job& job, const FitResult& result) {
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    for (std::size_t m = 0; m < result.recordings[r].signals.size(); ++m) {
+      const SignalError& e = result.recordings[r].signals[m];
+      if (!e.fitted) continue;
+      if (!e.prediction_rmse && !result.recordings[r].prediction.finished)
+        return fmt::format("{} of {}", info(e.signal).name, job.recordings[r].name);
+      const double rmse = e.prediction_rmse.value_or(e.rmse);
+      const double chi_square = e.prediction_reduced_chi_square.value_or(e.reduced_chi_square);
+      // Small beside the noise, if that is not itself taken from the residual.
+      const bool noisy = chi_square <= 2.0 && e.noise != NoiseSource::fit;
+      if (!noisy && rmse > standard_deviation(job.recordings[r].measurements[m].values))
+        return fmt::format("{} of {}", info(e.signal).name, job.recordings[r].name);
+    }
+  }
+  return {};
+}
+
+std::string open_parameters(const FitResult& result) {
+  std::string names;
+  for (const ParameterResult& p : result.parameters)
+    if (!p.uncertainty.determined && !p.uncertainty.at_bound)
+      names += (names.empty() ? "" : ", ") + p.name;
+  return names;
+}
+
+/// Sets status, usable and verdict.
+void conclude(const Job& job, const SolveResult& solved, FitResult& result) {
+  result.status = !solved.usable     ? Status::failed
+                  : solved.converged ? Status::converged
+                                     : Status::not_converged;
+  if (result.status == Status::failed) {
+    result.verdict =
+        "No usable fit: the simulation cannot be carried through at the initial values. "
+        "Check them, and the axis file, for impossible values.";
+    return;
+  }
+  if (result.status == Status::not_converged) {
+    result.verdict = fmt::format(
+        "No usable fit: no minimum was found within {} iterations. Try --starts 20, or free fewer "
+        "parameters.",
+        job.options.max_iterations);
+    return;
+  }
+  if (const std::string hopeless = hopeless_signal(job, result); !hopeless.empty()) {
+    result.verdict = fmt::format(
+        "No usable fit: the model follows the {} no better than a constant would. Try other "
+        "initial "
+        "values, --starts 20, or check units and signs of the columns.",
+        hopeless);
+    return;
+  }
+  result.usable = true;
+  // Whether it explains everything is for the test of the residuals to say.
+  result.verdict = fmt::format("Usable fit: reduced chi-square {:.4g} of what was fitted.",
+                               result.reduced_chi_square);
+  const std::string open = open_parameters(result);
+  if (!open.empty()) result.verdict += " These recordings do not determine " + open + ".";
+}
+
+}  // namespace
+
+std::vector<double> draw_start(const Job& job, int start) {
+  std::seed_seq seeds{job.options.seed & 0xffffffffu, job.options.seed >> 32,
+                      static_cast<std::uint64_t>(start)};
+  std::mt19937_64 generator(seeds);
+  std::vector<double> values;
+  for (const FreeParameter& p : job.free) {
+    const double z = 2.0 * uniform(generator) - 1.0;
+    double value = p.initial;
+    if (start > 0) {
+      if (p.logarithmic)
+        value *= std::pow(job.options.spread, z);
+      else  // one that begins at zero stays there: it has no size to draw from
+        value += z * job.options.spread * std::abs(p.initial);
+    }
+    values.push_back(std::clamp(value, p.lower, p.upper));
+  }
+  return values;
+}
+
+FitResult estimate(const Job& job, const ProgressReport& progress) {
+  const Crew crew(job.options.threads);
+  const ParameterSpace space(job);
+  std::vector<Trial> trials = run_starts(job, space, progress);
+  const bool interrupted = std::erase_if(trials, [](const Trial& t) { return t.interrupted; }) > 0;
+  if (trials.empty()) throw Interrupted();
+  const auto better = [](const Trial& a, const Trial& b) {
+    if (a.result.last.usable != b.result.last.usable) return a.result.last.usable;
+    return a.result.last.cost < b.result.last.cost;
+  };
+  const Trial& best = *std::ranges::min_element(trials, better);
+  const SolveResult& solved = best.result.last;
+
+  FitResult result;
+  result.interrupted = interrupted;
+  for (const Trial& trial : trials)
+    result.starts.push_back({trial.from, space.values(trial.result.last.u),
+                             trial.result.last.usable, trial.result.last.reduced_cost});
+  result.message = solved.message;
+  result.iterations = solved.iterations;
+  result.stages = best.result.stages;
+  result.coupling_rate = last_coupling_rate(job);
+  result.recordings.resize(job.recordings.size());
+  parallel_for(job.recordings.size(), [&](std::size_t r) {
+    result.recordings[r] = judge(job, space, r, solved.u, result.coupling_rate);
+  });
+
+  result.at_solution =
+      std::make_shared<const Linearization>(linearize(job, space, solved.u, result.coupling_rate));
+  const Linearization& at_solution = *result.at_solution;
+  const double freedom =
+      static_cast<double>(at_solution.residuals.size()) - static_cast<double>(space.size());
+  if (at_solution.finite && freedom > 0.0)
+    result.reduced_chi_square = at_solution.residuals.squaredNorm() / freedom;
+  Uncertainty found = uncertainty(space, solved.u, at_solution);
+  const std::vector<double> values = space.values(solved.u);
+  for (std::size_t i = 0; i < space.size(); ++i)
+    result.parameters.push_back({space.name(i), values[i], found.parameters[i]});
+  result.correlation = std::move(found.correlation);
+  result.freedom = found.freedom;
+  result.colour = found.colour;
+  result.identifiability =
+      identifiability(space, solved.u, at_solution,
+                      std::sqrt(found.colour * std::max(1.0, result.reduced_chi_square)));
+  conclude(job, solved, result);
+  return result;
+}
+
+FitResult estimate_with_noise(Job& job, const ProgressReport& progress) {
+  FitResult result = estimate(job, progress);
+  Job again = job;
+  again.options.starts = 1;
+  // It is at the minimum already, and follows it.
+  if (again.options.coupling == CouplingMode::continuation)
+    again.options.coupling = CouplingMode::none;
+  constexpr int kTurns = 20;
+  constexpr double kStays = 1e-4;
+  for (int turn = 0; turn < kTurns && result.usable; ++turn) {
+    // Of every signal: its sum of squares and number of samples.
+    std::map<Signal, std::pair<double, double>> sums;
+    for (const SeriesRows& rows : result.at_solution->series) {
+      const Measurement& m = again.recordings[rows.recording].measurements[rows.measurement];
+      if (m.noise != NoiseSource::fit) continue;
+      const auto r = result.at_solution->residuals.segment(rows.first, rows.count);
+      sums[m.signal].first += r.squaredNorm() * m.sigma * m.sigma;
+      sums[m.signal].second += static_cast<double>(rows.count);
+    }
+    if (sums.empty()) return result;
+    const double n = static_cast<double>(result.at_solution->residuals.size());
+    const double spent = n / std::max(1.0, n - static_cast<double>(job.free.size()));
+    double change = 0.0;
+    for (Recording& recording : again.recordings)
+      for (Measurement& m : recording.measurements) {
+        const auto sum = sums.find(m.signal);
+        if (m.noise != NoiseSource::fit || sum == sums.end()) continue;
+        const double sigma = std::sqrt(spent * sum->second.first / sum->second.second);
+        if (!(sigma > 0.0)) continue;
+        change = std::max(change, std::abs(std::log(sigma / m.sigma)));
+        m.sigma = sigma;
+      }
+    if (change < kStays) break;
+    const std::vector<double> values = values_of(result);
+    for (std::size_t i = 0; i < again.free.size(); ++i) again.free[i].initial = values[i];
+    FitResult next;
+    try {
+      next = estimate(again, progress);
+    } catch (const Interrupted&) {
+      result.interrupted = true;
+      return result;  // of the job as it was given
+    }
+    next.starts = std::move(result.starts);
+    next.stages = std::move(result.stages);
+    result = std::move(next);
+  }
+  again.free = job.free;
+  again.options = job.options;
+  job = std::move(again);
+  return result;
+}
+
+std::vector<Minimum> distinct_minima(std::vector<StartResult> starts) {
+  std::erase_if(starts, [](const StartResult& s) { return !s.usable; });
+  std::ranges::stable_sort(starts, {}, &StartResult::reduced_cost);
+  constexpr double kSame = 1e-3;
+  std::vector<Minimum> minima;
+  for (StartResult& s : starts) {
+    if (minima.empty() || s.reduced_cost > (1.0 + kSame) * minima.back().reduced_cost)
+      minima.push_back({s.reduced_cost, 0, std::move(s.to)});
+    ++minima.back().starts;
+  }
+  return minima;
+}
+
+std::vector<double> values_of(const FitResult& result) {
+  std::vector<double> values;
+  for (const ParameterResult& p : result.parameters) values.push_back(p.value);
+  return values;
+}
+
+Model<double> fitted_model(const Job& job, const FitResult& result) {
+  Model<double> model = job.model;
+  const std::vector<double*> member = members(model);
+  for (std::size_t i = 0; i < job.free.size(); ++i)
+    if (!job.free[i].recording) *member[job.free[i].quantity] = result.parameters[i].value;
+  return model;
+}
+
+}  // namespace axisfit

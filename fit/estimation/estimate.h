@@ -1,0 +1,114 @@
+// The fit of a job, from its data to a judged result.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "fit/estimation/continuation.h"
+#include "fit/estimation/identifiability.h"
+#include "fit/estimation/residual.h"
+#include "fit/estimation/uncertainty.h"
+
+namespace axisfit {
+
+enum class Status {
+  converged,      ///< a minimum was found
+  not_converged,  ///< the iteration limit came first
+  failed,         ///< no point could be simulated to the end
+};
+
+/// Differences between a measured and a simulated signal.
+struct SignalError {
+  Signal signal = Signal::velocity;
+  bool fitted = true;
+  double rmse = 0.0;           ///< free-running simulation, in the signal's unit
+  double nrmse_percent = 0.0;  ///< of the measured range; zero where that is none
+  double sigma = 0.0;          ///< of the noise
+  NoiseSource noise = NoiseSource::differences;
+  double reduced_chi_square = 0.0;  ///< (rmse / sigma)^2
+  /// The same with the coupling at which the fit ended; only where that is not zero.
+  std::optional<double> prediction_rmse, prediction_reduced_chi_square;
+};
+
+struct RecordingResult {
+  Prediction prediction;  ///< free running
+  /// With the coupling at which the fit ended; only where that is not zero.
+  std::optional<Prediction> held;
+  std::vector<SignalError> signals;
+
+  /// The prediction in the way the recording was fitted.
+  const Prediction& judged() const { return held ? *held : prediction; }
+};
+
+struct ParameterResult {
+  std::string name;
+  double value = 0.0;
+  ParameterUncertainty uncertainty;
+};
+
+/// How one start of a multistart ended.
+struct StartResult {
+  std::vector<double> from;
+  std::vector<double> to;
+  bool usable = false;
+  double reduced_cost = 0.0;
+};
+
+/// Where several starts ended.
+struct Minimum {
+  double reduced_cost = 0.0;
+  int starts = 0;
+  std::vector<double> values;  ///< of the best of them
+};
+
+/// The usable ends of starts, those of equal cost (to a thousandth) taken together, best first.
+std::vector<Minimum> distinct_minima(std::vector<StartResult> starts);
+
+struct FitResult {
+  Status status = Status::failed;
+  bool usable = false;  ///< may be relied on for what it says: converged, and better than nothing
+  std::string verdict;  ///< one sentence for the user
+  std::string message;  ///< the solver's reason to stop
+  bool interrupted = false;  ///< not all starts were finished
+  std::vector<ParameterResult> parameters;
+  std::vector<RecordingResult> recordings;
+  /// Of what was fitted, degrees of freedom counted; not a number where nothing was.
+  double reduced_chi_square = std::numeric_limits<double>::quiet_NaN();
+  /// Where nothing was fitted, not finite. Shared between copies, for it is large.
+  std::shared_ptr<const Linearization> at_solution;
+  Eigen::MatrixXd correlation;      ///< of the estimates, see uncertainty.h
+  double freedom = 0.0;             ///< independent samples, parameters subtracted
+  double colour = 1.0;              ///< samples per independent sample, of the most coloured signal
+  Identifiability identifiability;  ///< at the solution
+  double coupling_rate = 0.0;       ///< of the last stage
+  int iterations = 0;               ///< of the best start, all stages
+  std::vector<Stage> stages;        ///< of the best start
+  std::vector<StartResult> starts;
+};
+
+/// Where start number `start` begins: the initial values for the first, values drawn around them
+/// for the others, by the job's seed and spread and the start's number alone.
+std::vector<double> draw_start(const Job& job, int start);
+
+/// The values of the free parameters.
+std::vector<double> values_of(const FitResult& result);
+
+/// Fits a job. The result depends on the job alone, not on the number of threads. When the job's
+/// stop flag is set, it is that of the starts that were finished; Interrupted where there is none.
+FitResult estimate(const Job& job, const ProgressReport& progress = {});
+
+/// Fits a job, and where the noise of a measurement is to be estimated together with the
+/// parameters, goes on in turn: sigma in the job becomes the size of the residual, degrees of
+/// freedom counted, and the job is fitted again with it, until both stay. That is the maximum of
+/// the likelihood of independent normal noise. A signal has one sigma in all recordings in which it
+/// is to be estimated.
+FitResult estimate_with_noise(Job& job, const ProgressReport& progress = {});
+
+/// The model with the estimates in place of the free quantities that all recordings share.
+Model<double> fitted_model(const Job& job, const FitResult& result);
+
+}  // namespace axisfit

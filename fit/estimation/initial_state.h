@@ -1,0 +1,14 @@
+// The initial state of a recording from its own first samples.
+#pragma once
+
+#include "fit/data/job.h"
+
+namespace axisfit {
+
+/// Arm position and velocity at the first sample, from the recording's first `initial_samples`: the
+/// velocity is a recorded one's mean path, else the slope of the position, by cubic least squares.
+/// Adds them to the recording's overrides as initial.y0 and initial.y1, unless they are there.
+/// Does nothing for what was not recorded.
+void initial_state_from_data(Recording& recording);
+
+}  // namespace axisfit

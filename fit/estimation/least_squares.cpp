@@ -1,0 +1,302 @@
+#include "fit/estimation/least_squares.h"
+
+#include <ceres/evaluation_callback.h>
+#include <ceres/iteration_callback.h>
+#include <ceres/manifold.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <atomic>
+#include <iterator>
+#include <limits>
+#include <span>
+
+#include "base/parallel.h"
+
+namespace axisfit {
+namespace {
+
+/// (value - mean) / sigma for a parameter with a prior.
+class PriorCost : public ceres::CostFunction {
+ public:
+  PriorCost(const ParameterSpace& space, std::size_t parameter)
+      : space_(space), parameter_(parameter) {
+    set_num_residuals(1);
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(space.size()));
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const Prior& prior = *space_[parameter_].prior;
+    const double u = parameters[0][parameter_];
+    residuals[0] = (space_.value(parameter_, u) - prior.mean) / prior.sigma;
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      std::fill_n(jacobians[0], space_.size(), 0.0);
+      jacobians[0][parameter_] = space_.slope(parameter_, u) / prior.sigma;
+    }
+    return true;
+  }
+
+ private:
+  const ParameterSpace& space_;
+  std::size_t parameter_;
+};
+
+/// u - start
+class KeepCost : public ceres::CostFunction {
+ public:
+  explicit KeepCost(Eigen::VectorXd start) : start_(std::move(start)) {
+    set_num_residuals(static_cast<int>(start_.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(start_.size()));
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const Eigen::Index n = start_.size();
+    Eigen::Map<Eigen::VectorXd>(residuals, n) =
+        Eigen::Map<const Eigen::VectorXd>(parameters[0], n) - start_;
+    if (jacobians != nullptr && jacobians[0] != nullptr)
+      Eigen::Map<Eigen::MatrixXd>(jacobians[0], n, n).setIdentity();
+    return true;
+  }
+
+ private:
+  Eigen::VectorXd start_;
+};
+
+/// Keeps what another cost gave last. A solver with bounds asks for the Jacobian at a point that it
+/// tries, then for the residuals there, and if it takes it for the Jacobian once more.
+class KeptCost : public ceres::CostFunction {
+ public:
+  explicit KeptCost(std::unique_ptr<ceres::CostFunction> cost)
+      : cost_(std::move(cost)),
+        size_(static_cast<std::size_t>(cost_->parameter_block_sizes().front())) {
+    set_num_residuals(cost_->num_residuals());
+    *mutable_parameter_block_sizes() = cost_->parameter_block_sizes();
+    residuals_.resize(static_cast<std::size_t>(num_residuals()));
+  }
+
+  void compute(const double* u, bool with_jacobian) const {
+    const std::span<const double> at(u, size_);
+    if (std::ranges::equal(at, u_) && (has_jacobian_ || !with_jacobian)) return;
+    u_.assign(at.begin(), at.end());
+    has_jacobian_ = with_jacobian;
+    finished_ = false;  // also where it throws
+    if (with_jacobian) jacobian_.resize(residuals_.size() * size_);
+    double* jacobian = jacobian_.data();
+    finished_ = cost_->Evaluate(&u, residuals_.data(), with_jacobian ? &jacobian : nullptr);
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const bool with_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
+    compute(parameters[0], with_jacobian);
+    if (!finished_) return false;
+    std::ranges::copy(residuals_, residuals);
+    if (with_jacobian) std::ranges::copy(jacobian_, jacobians[0]);
+    return true;
+  }
+
+ private:
+  std::unique_ptr<ceres::CostFunction> cost_;
+  std::size_t size_;  ///< of u
+  mutable std::vector<double> u_, residuals_, jacobian_;
+  mutable bool has_jacobian_ = false, finished_ = false;
+};
+
+/// Computes costs side by side, at a point where a solver is about to ask for one after the other.
+class SideBySide : public ceres::EvaluationCallback {
+ public:
+  explicit SideBySide(const double* u) : u_(u) {}
+  void add(const KeptCost* cost) { costs_.push_back(cost); }
+  void PrepareForEvaluation(bool with_jacobian, bool) override {
+    parallel_for(costs_.size(), [&](std::size_t i) { costs_[i]->compute(u_, with_jacobian); });
+  }
+
+ private:
+  const double* u_;
+  std::vector<const KeptCost*> costs_;
+};
+
+Costs priors_of(const ParameterSpace& space) {
+  Costs costs;
+  for (std::size_t i = 0; i < space.size(); ++i)
+    if (space[i].prior) costs.push_back(std::make_unique<PriorCost>(space, i));
+  return costs;
+}
+
+/// The point of a solution between its bounds. Knows which parameters are at one, and which of
+/// these are held there.
+class BoundedPoint {
+ public:
+  BoundedPoint(const ParameterSpace& space, const std::vector<std::size_t>& fixed, double* u,
+               ceres::Problem& problem)
+      : u_(u), problem_(problem), fixed_(space.size(), false) {
+    for (const std::size_t i : fixed) fixed_[i] = true;
+    for (std::size_t i = 0; i < space.size(); ++i) {
+      lower_.push_back(space.internal(i, space[i].lower));
+      upper_.push_back(space.internal(i, space[i].upper));
+      u[i] = std::clamp(u[i], lower_[i], upper_[i]);  // exp and log may round off a bound
+      problem.SetParameterLowerBound(u, static_cast<int>(i), lower_[i]);
+      problem.SetParameterUpperBound(u, static_cast<int>(i), upper_[i]);
+    }
+    held_ = fixed_;
+    changes_.assign(space.size(), 0);
+  }
+
+  bool at_bound(std::size_t i) const {
+    return !fixed_[i] && (u_[i] <= lower_[i] || u_[i] >= upper_[i]);
+  }
+  bool any_at_bound() const {
+    for (std::size_t i = 0; i < held_.size(); ++i)
+      if (at_bound(i)) return true;
+    return false;
+  }
+
+  /// Holds or lets go what the gradient says; whether anything changed.
+  bool review() {
+    problem_.SetManifold(u_, nullptr);
+    std::vector<double> gradient;
+    if (!problem_.Evaluate({}, nullptr, nullptr, &gradient, nullptr)) return false;
+    bool changed = false;
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+      if (fixed_[i]) continue;
+      const bool outwards = u_[i] <= lower_[i] ? gradient[i] > 0.0 : gradient[i] < 0.0;
+      const bool hold = at_bound(i) && outwards;
+      constexpr int kChanges = 4;  // held and let go twice
+      if (hold == held_[i] || ++changes_[i] > kChanges) continue;
+      held_[i] = hold;
+      changed = true;
+    }
+    return changed;
+  }
+
+  /// Makes constant what is held; false when nothing is left to vary.
+  bool apply() {
+    std::vector<int> constant;
+    for (std::size_t i = 0; i < held_.size(); ++i)
+      if (held_[i]) constant.push_back(static_cast<int>(i));
+    if (constant.size() == held_.size()) return false;
+    problem_.SetManifold(
+        u_, constant.empty() ? nullptr
+                             : new ceres::SubsetManifold(static_cast<int>(held_.size()), constant));
+    return true;
+  }
+
+ private:
+  double* u_;
+  ceres::Problem& problem_;
+  std::vector<bool> fixed_, held_;
+  std::vector<double> lower_, upper_;
+  std::vector<int> changes_;
+};
+
+/// Ends a solution as soon as a step arrives at a bound at which it did not begin, or it is to
+/// stop.
+class EarlyEnd : public ceres::IterationCallback {
+ public:
+  EarlyEnd(const BoundedPoint& point, std::size_t size, const StopFlag* stop)
+      : point_(point), stop_(stop) {
+    for (std::size_t i = 0; i < size; ++i) began_there_.push_back(point.at_bound(i));
+  }
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (is_set(stop_)) return ceres::SOLVER_ABORT;
+    for (std::size_t i = 0; i < began_there_.size() && summary.step_is_successful; ++i)
+      if (!began_there_[i] && point_.at_bound(i)) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    return ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const BoundedPoint& point_;
+  const StopFlag* stop_;
+  std::vector<bool> began_there_;
+};
+
+}  // namespace
+
+SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& start,
+                     const SolveOptions& options) {
+  // A rejected point is no event that a user should read of; the outcome is in the result.
+  static const bool silent = (FLAGS_minloglevel = google::FATAL, true);
+  (void)silent;
+  SolveResult result;
+  result.u = start;
+  double* u = result.u.data();
+  SideBySide side_by_side(u);
+  ceres::Problem::Options of_problem;
+  of_problem.evaluation_callback = &side_by_side;
+  ceres::Problem problem(of_problem);
+  for (auto& cost : costs) {
+    auto* kept = new KeptCost(std::move(cost));  // the problem's
+    problem.AddResidualBlock(kept, nullptr, u);
+    side_by_side.add(kept);
+  }
+  for (auto& cost : priors_of(space)) problem.AddResidualBlock(cost.release(), nullptr, u);
+  if (options.keep_to_start) problem.AddResidualBlock(new KeepCost(start), nullptr, u);
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.num_threads = 1;
+  solver.function_tolerance = options.function_tolerance;
+  solver.parameter_tolerance = options.parameter_tolerance;
+  solver.update_state_every_iteration = true;
+  solver.logging_type = ceres::SILENT;
+
+  // The solver projects steps onto the bounds: one that leads beyond a bound moves the other
+  // parameters as if it had got there, and at a bound it gets no further. So a parameter that is
+  // pushed against its bound is held there while the others are fitted, and let go when it is not
+  // pushed any more.
+  BoundedPoint point(space, options.fixed, u, problem);
+  if (point.any_at_bound()) point.review();
+  for (;;) {
+    if (!point.apply()) {  // the point itself is the solution
+      result.usable = result.converged =
+          problem.Evaluate({}, &result.cost, nullptr, nullptr, nullptr);
+      break;
+    }
+    EarlyEnd end(point, space.size(), options.stop);
+    solver.callbacks = {&end};
+    solver.max_num_iterations = std::max(1, options.max_iterations - result.iterations);
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    result.usable = summary.IsSolutionUsable();
+    result.converged = summary.termination_type == ceres::CONVERGENCE;
+    // The solver reports a negative cost where even the start could not be evaluated.
+    result.cost = result.usable ? summary.final_cost : std::numeric_limits<double>::infinity();
+    result.iterations += static_cast<int>(summary.iterations.size());
+    result.message = summary.message;
+    if (!result.usable || !point.any_at_bound() || result.iterations > options.max_iterations)
+      break;
+    const bool stopped = summary.termination_type == ceres::USER_SUCCESS;
+    if (!point.review() && !stopped) break;
+  }
+  result.reduced_cost = 2.0 * result.cost / problem.NumResiduals();
+  return result;
+}
+
+Linearization linearize(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Linearization result;
+  SeriesRows& all = result.series.emplace_back();
+  for (const auto& cost : costs) all.count += cost->num_residuals();
+  std::ranges::move(priors_of(space), std::back_inserter(costs));
+  std::vector<Eigen::Index> first{0};
+  for (const auto& cost : costs) first.push_back(first.back() + cost->num_residuals());
+  result.residuals.resize(first.back());
+  result.jacobian.resize(first.back(), u.size());
+  std::atomic<bool> finite = true;
+  parallel_for(costs.size(), [&](std::size_t i) {
+    const Eigen::Index row = first[i], n = costs[i]->num_residuals();
+    RowMajor block(n, u.size());
+    const double* parameters = u.data();
+    double* jacobian = block.data();
+    if (!costs[i]->Evaluate(&parameters, result.residuals.data() + row, &jacobian)) finite = false;
+    result.jacobian.middleRows(row, n) = block;
+  });
+  result.finite = finite;
+  return result;
+}
+
+}  // namespace axisfit

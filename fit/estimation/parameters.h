@@ -1,0 +1,50 @@
+// The free parameters as one vector, on the scales on which they are estimated.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fit/data/job.h"
+
+namespace axisfit {
+
+/// Maps free parameters to the vector u that the solver works on: the logarithm of a logarithmic
+/// parameter, and a linear one divided by its magnitude.
+class ParameterSpace {
+ public:
+  /// The parameters must outlive the space.
+  ParameterSpace(std::span<const FreeParameter> free, std::vector<std::string> names);
+  /// Of a job, which must outlive the space. Named by their quantities, with "@recording" where one
+  /// belongs to one recording only.
+  explicit ParameterSpace(const Job& job);
+
+  std::size_t size() const { return free_.size(); }
+  const FreeParameter& operator[](std::size_t i) const { return free_[i]; }
+  const std::string& name(std::size_t i) const { return names_[i]; }
+
+  double value(std::size_t i, double u) const;
+  /// d value / d u
+  double slope(std::size_t i, double u) const;
+  double internal(std::size_t i, double value) const;
+
+  Eigen::VectorXd internal(std::span<const double> values) const;
+  std::vector<double> values(const Eigen::VectorXd& u) const;
+
+  /// Whether the i-th parameter acts on the recording.
+  bool applies(std::size_t i, std::size_t recording) const {
+    return !free_[i].recording || *free_[i].recording == recording;
+  }
+
+ private:
+  std::span<const FreeParameter> free_;
+  std::vector<std::string> names_;
+  std::vector<double> magnitude_;
+};
+
+/// The model of one recording of a job at u, with the recording's overrides and initial state.
+Model<double> model_at(const Job& job, const ParameterSpace& space, const double* u,
+                       std::size_t recording);
+
+}  // namespace axisfit

@@ -1,0 +1,187 @@
+#include "fit/estimation/residual.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "fit/estimation/jet.h"
+
+namespace axisfit {
+namespace {
+
+/// Runs a recording through a model, read by a recorder of these signals; `also` sees the axis at
+/// every sample.
+template <class T, class Also>
+SimulationOutcome run(const Job& job, const Recording& recording, const Model<T>& model,
+                      const Coupling& coupling, Recorder<T>& recorder, Also&& also,
+                      std::vector<ModeChange>* modes = nullptr, const StopFlag* stop = nullptr) {
+  IntegratorOptions options = recording_options(recording.times, job.options.step);
+  options.modes = modes;
+  options.stop = stop;
+  // The velocity of a force source turns where its command switches, at samples: there its chords
+  // are the curve.
+  const bool curved_velocity = model.structure.drive != Drive::force_source;
+  const auto series = [&](Signal signal) {
+    const Measurement* m = coupling.active() ? recording.find(signal) : nullptr;
+    if (m == nullptr) return std::vector<double>{};
+    const bool curved = signal == Signal::position || curved_velocity;
+    return recorder.refined(curved ? target_corners(recording.times, m->values) : m->values);
+  };
+  const std::vector<double> velocity = series(Signal::velocity),
+                            position = series(Signal::position);
+  return simulate<T>(
+      model, recording.command, recorder.instants(),
+      [&](std::size_t i, const Integrator<T>& axis) {
+        recorder.read(axis);
+        if (recorder.is_sample(i)) also(axis);
+      },
+      coupling, {velocity, position}, options);
+}
+
+/// sign(r) sqrt(rho(r^2)) for Huber's rho of width k, and its derivative.
+std::pair<double, double> robust(double r, double k) {
+  const double size = std::abs(r);
+  if (size <= k) return {r, 1.0};
+  const double root = std::sqrt(2.0 * k * size - k * k);
+  return {std::copysign(root, r), k / root};
+}
+
+}  // namespace
+
+Coupling coupling_for(const Recording& recording, double rate) {
+  if (!(rate > 0.0)) return {};
+  const bool position = recording.find(Signal::position) != nullptr;
+  if (recording.find(Signal::velocity) != nullptr) return Coupling::to_velocity(rate, position);
+  if (position) return Coupling::to_position(rate);
+  return {};
+}
+
+Prediction predict(const Job& job, const ParameterSpace& space, std::size_t index, const double* u,
+                   const Coupling& coupling) {
+  const Recording& recording = job.recordings[index];
+  std::vector<Signal> signals;
+  for (const Measurement& m : recording.measurements) signals.push_back(m.signal);
+  const Model<double> model = model_at(job, space, u, index);
+  Recorder<double> recorder(model.instruments, signals, recording.times);
+  Prediction prediction;
+  // The force is the sample's: that of the target is periodic between samples, and not zero at
+  // them.
+  const auto measured = [&](Signal signal) {
+    const Measurement* m = recording.find(signal);
+    return m == nullptr ? 0.0 : m->values[prediction.samples.size()];
+  };
+  const SimulationOutcome outcome = run(
+      job, recording, model, coupling, recorder,
+      [&](const Integrator<double>& axis) {
+        const Equations<double>& equations = axis.equations();
+        const State<double>& y = axis.state();
+        const double drive = equations.drive_force(axis.mode(), y, axis.input());
+        prediction.samples.push_back(
+            {axis.input().command, y[0], y[1], y[2],
+             equations.current(axis.mode(), y, axis.input()), drive,
+             model.structure.transmission == Transmission::rigid
+                 ? drive
+                 : equations.gear_force(axis.mode(), y),
+             coupling.active() ? equations.coupling_force(y, Target{measured(Signal::velocity),
+                                                                    measured(Signal::position)})
+                               : 0.0});
+      },
+      &prediction.modes);
+  for (std::size_t m = 0; m < signals.size(); ++m)
+    prediction.simulated.push_back(recorder.readings(m));
+  prediction.finished = outcome.finished;
+  prediction.events = outcome.events;
+  return prediction;
+}
+
+RecordingCost::RecordingCost(const Job& job, const ParameterSpace& space, std::size_t recording,
+                             const Coupling& coupling, const StopFlag* stop)
+    : job_(job), space_(space), recording_(recording), coupling_(coupling), stop_(stop) {
+  const Recording& r = job.recordings[recording];
+  int residuals = 0;
+  for (std::size_t m = 0; m < r.measurements.size(); ++m) {
+    const Measurement& measurement = r.measurements[m];
+    if (!measurement.fitted) continue;
+    fitted_.push_back(m);
+    signals_.push_back(measurement.signal);
+    for (std::size_t i = 0; i < r.times.size(); ++i) residuals += r.fits(measurement, i);
+  }
+  for (std::size_t i = 0; i < space.size(); ++i)
+    if (space.applies(i, recording)) applicable_.push_back(i);
+  set_num_residuals(residuals);
+  mutable_parameter_block_sizes()->push_back(static_cast<int>(space.size()));
+}
+
+template <class T>
+bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobian,
+                             std::span<const std::size_t> columns) const {
+  const Recording& recording = job_.recordings[recording_];
+  Model<T> model = convert<T>(model_at(job_, space_, u, recording_));
+  if constexpr (!std::is_same_v<T, double>) {
+    const std::vector<T*> member = members(model);
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      member[space_[columns[k]].quantity]->v[static_cast<Eigen::Index>(k)] =
+          space_.slope(columns[k], u[columns[k]]);
+  }
+  Recorder<T> recorder(model.instruments, signals_, recording.times);
+  if (!run(
+           job_, recording, model, coupling_, recorder, [](const Integrator<T>&) {}, nullptr, stop_)
+           .finished)
+    return false;
+  bool finite = true;
+  std::size_t row = 0;
+  for (std::size_t f = 0; f < fitted_.size(); ++f) {
+    const Measurement& m = recording.measurements[fitted_[f]];
+    const std::vector<T> simulated = recorder.readings(f);
+    for (std::size_t i = 0; i < simulated.size(); ++i) {
+      if (!recording.fits(m, i)) continue;
+      double r = (m.values[i] - value_of(simulated[i])) / m.sigma, weight = 1.0;
+      if (job_.options.loss == Loss::huber)
+        std::tie(r, weight) = robust(r, job_.options.huber_width);
+      residuals[row] = r;
+      finite = finite && std::isfinite(r);
+      if constexpr (!std::is_same_v<T, double>) {
+        for (std::size_t k = 0; k < columns.size(); ++k) {
+          const double d = -weight * simulated[i].v[static_cast<Eigen::Index>(k)] / m.sigma;
+          jacobian[row * space_.size() + columns[k]] = d;
+          finite = finite && std::isfinite(d);
+        }
+      }
+      ++row;
+    }
+  }
+  return finite;
+}
+
+bool RecordingCost::Evaluate(double const* const* parameters, double* residuals,
+                             double** jacobians) const {
+  if (is_set(stop_)) return false;
+  if (jacobians == nullptr || jacobians[0] == nullptr)
+    return evaluate<double>(parameters[0], residuals, nullptr, {});
+  return evaluate_with_jacobian(parameters[0], residuals, jacobians[0]);
+}
+
+bool RecordingCost::evaluate_with_jacobian(const double* u, double* residuals,
+                                           double* jacobian) const {
+  std::fill_n(jacobian, static_cast<std::size_t>(num_residuals()) * space_.size(), 0.0);
+  // One pass for all parameters, in the narrowest dual number that holds them; more than the widest
+  // holds take several passes.
+  constexpr std::size_t kWidest = 24;
+  std::span<const std::size_t> rest = applicable_;
+  do {
+    const auto columns = rest.first(std::min(rest.size(), kWidest));
+    rest = rest.subspan(columns.size());
+    const std::size_t n = columns.size();
+    const bool finished =
+        n <= 2    ? evaluate<ceres::Jet<double, 2>>(u, residuals, jacobian, columns)
+        : n <= 4  ? evaluate<ceres::Jet<double, 4>>(u, residuals, jacobian, columns)
+        : n <= 6  ? evaluate<ceres::Jet<double, 6>>(u, residuals, jacobian, columns)
+        : n <= 8  ? evaluate<ceres::Jet<double, 8>>(u, residuals, jacobian, columns)
+        : n <= 12 ? evaluate<ceres::Jet<double, 12>>(u, residuals, jacobian, columns)
+                  : evaluate<ceres::Jet<double, 24>>(u, residuals, jacobian, columns);
+    if (!finished) return false;
+  } while (!rest.empty());
+  return true;
+}
+
+}  // namespace axisfit

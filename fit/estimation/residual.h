@@ -1,0 +1,76 @@
+// The whitened residuals of one recording, and their exact Jacobian, as a cost of Ceres Solver.
+#pragma once
+
+#include <ceres/cost_function.h>
+
+#include <vector>
+
+#include "fit/estimation/parameters.h"
+#include "sim/recorder.h"
+#include "sim/simulate.h"
+
+namespace axisfit {
+
+/// The simulated axis at one sample, SI, forces on the arm side.
+struct Sample {
+  double command = 0.0;         ///< V
+  double position = 0.0;        ///< m, of the arm
+  double velocity = 0.0;        ///< m/s, of the arm
+  double motor_angle = 0.0;     ///< rad
+  double current = 0.0;         ///< A
+  double drive_force = 0.0;     ///< N
+  double gear_force = 0.0;      ///< N; of a rigid transmission the drive force
+  double coupling_force = 0.0;  ///< N, zero when uncoupled
+};
+
+/// What the simulation says of a recording.
+struct Prediction {
+  bool finished = false;
+  /// Per measurement, in the recording's order, one value per sample, in the signal's unit.
+  std::vector<std::vector<double>> simulated;
+  std::vector<Sample> samples;
+  std::vector<ModeChange> modes;  ///< that the axis passed through, the first included
+  int events = 0;
+};
+
+/// Simulates a recording with the parameters at u.
+Prediction predict(const Job& job, const ParameterSpace& space, std::size_t recording,
+                   const double* u, const Coupling& coupling);
+
+/// The coupling of a recording at a rate: to its velocity, or else to its position, or none.
+Coupling coupling_for(const Recording& recording, double rate);
+
+/// Residuals (measured - simulated) / sigma of all fitted measurements of a recording, measurement
+/// by measurement, without the samples that are left out. One parameter block: the whole vector u
+/// of the space.
+///
+/// A point whose simulation does not finish makes Evaluate return false: for the solver a rejected
+/// step. With a Huber loss every residual r is replaced by sign(r) sqrt(rho(r^2)), so that the sum
+/// of squares is the robust cost.
+class RecordingCost : public ceres::CostFunction {
+ public:
+  /// Job and space must outlive the cost, and stay as they are. When `stop` is set no point
+  /// finishes any more.
+  RecordingCost(const Job& job, const ParameterSpace& space, std::size_t recording,
+                const Coupling& coupling, const StopFlag* stop = nullptr);
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  template <class T>
+  bool evaluate(const double* u, double* residuals, double* jacobian,
+                std::span<const std::size_t> columns) const;
+  bool evaluate_with_jacobian(const double* u, double* residuals, double* jacobian) const;
+
+  const Job& job_;
+  const ParameterSpace& space_;
+  std::size_t recording_;
+  Coupling coupling_;
+  const StopFlag* stop_;
+  std::vector<std::size_t> fitted_;      // indices of measurements
+  std::vector<Signal> signals_;          // their signals
+  std::vector<std::size_t> applicable_;  // indices of parameters
+};
+
+}  // namespace axisfit

@@ -1,0 +1,60 @@
+#include "fit/estimation/solve.h"
+
+#include "fit/estimation/journal.h"
+#include "fit/estimation/residual.h"
+
+namespace axisfit {
+namespace {
+
+Costs recording_costs(const Job& job, const ParameterSpace& space, double coupling_rate,
+                      const StopFlag* stop) {
+  Costs list;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    if (job.recordings[r].role == Role::fit)
+      list.push_back(std::make_unique<RecordingCost>(
+          job, space, r, coupling_for(job.recordings[r], coupling_rate), stop));
+  return list;
+}
+
+}  // namespace
+
+SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
+                  double coupling_rate, SolveOptions options) {
+  options.stop = job.options.stop;
+  if (is_set(options.stop)) throw Interrupted();
+  Journal* const journal = job.options.journal;
+  const ProblemKey key =
+      journal != nullptr ? problem_key(job, u, coupling_rate, options) : ProblemKey{};
+  if (journal != nullptr) {
+    // Files can be forged, and what is read beyond a vector's end is anything.
+    std::optional<SolveResult> known = journal->find(key);
+    if (known && known->u.size() == u.size()) return *std::move(known);
+  }
+  SolveResult result =
+      minimize(space, recording_costs(job, space, coupling_rate, options.stop), u, options);
+  if (is_set(options.stop)) throw Interrupted();
+  if (journal != nullptr) journal->keep(key, result);
+  return result;
+}
+
+Linearization linearize(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
+                        double coupling_rate) {
+  // To its end, for a result that was found before a stop needs it.
+  Linearization result = linearize(space, recording_costs(job, space, coupling_rate, nullptr), u);
+  // As RecordingCost has them: recording by recording, measurement by measurement.
+  result.series.clear();
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    const Recording& recording = job.recordings[r];
+    for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
+      Eigen::Index n = 0;
+      for (std::size_t i = 0; i < recording.times.size(); ++i)
+        n += recording.fits(recording.measurements[m], i) ? 1 : 0;
+      if (n > 0) result.series.push_back({r, m, row, n});
+      row += n;
+    }
+  }
+  return result;
+}
+
+}  // namespace axisfit

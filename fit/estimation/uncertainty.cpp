@@ -1,0 +1,192 @@
+#include "fit/estimation/uncertainty.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "fit/residuals/autocovariance.h"
+
+namespace axisfit {
+namespace {
+
+/// (J'J)^-1, of columns J of any length, over what is not rounding.
+class NormalInverse {
+ public:
+  explicit NormalInverse(const Eigen::MatrixXd& j) : length_(j.colwise().norm()) {
+    // Columns of equal length: the rank must not depend on units. A column of zeros stays one.
+    Eigen::MatrixXd scaled = j;
+    for (Eigen::Index k = 0; k < j.cols(); ++k)
+      scaled.col(k) /= length_[k] > 0.0 ? length_[k] : 1.0;
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinV);
+    const Eigen::VectorXd& s = svd.singularValues();
+    const Eigen::MatrixXd& v = svd.matrixV();
+    constexpr double kRounding = 1e-9, kPart = 0.1;
+    open_.assign(static_cast<std::size_t>(j.cols()), false);
+    matrix_.setZero(j.cols(), j.cols());
+    for (Eigen::Index m = 0; m < s.size(); ++m) {
+      if (s[m] > kRounding * s[0]) matrix_ += v.col(m) * v.col(m).transpose() / (s[m] * s[m]);
+      for (Eigen::Index k = 0; k < j.cols() && s[m] <= kRounding * s[0]; ++k)
+        if (std::abs(v(k, m)) > kPart) open_[static_cast<std::size_t>(k)] = true;
+    }
+    for (Eigen::Index k = 0; k < j.cols(); ++k) {
+      if (!(length_[k] > 0.0)) open_[static_cast<std::size_t>(k)] = true;
+      const double back = length_[k] > 0.0 ? 1.0 / length_[k] : 0.0;
+      matrix_.row(k) *= back;
+      matrix_.col(k) *= back;
+    }
+  }
+  const Eigen::MatrixXd& matrix() const { return matrix_; }
+  /// Whether the k-th parameter can change with no effect, alone or together with others.
+  bool is_open(Eigen::Index k) const { return open_[static_cast<std::size_t>(k)]; }
+  bool has_open() const { return std::ranges::find(open_, true) != open_.end(); }
+
+ private:
+  Eigen::VectorXd length_;
+  Eigen::MatrixXd matrix_;
+  std::vector<bool> open_;
+};
+
+/// Autocovariances of the residuals of every series.
+struct Colours {
+  std::vector<std::vector<double>> autocovariance;
+  double independent = 0.0;  ///< samples
+  double colour = 1.0;
+  double inflation = 1.0;  ///< of what white noise of the stated size contributes, at most
+};
+
+Colours colours_of(const Linearization& at, std::size_t parameters) {
+  Colours result;
+  double samples = 0.0;
+  for (const SeriesRows& rows : at.series) samples += static_cast<double>(rows.count);
+  const double spent = samples / std::max(1.0, samples - static_cast<double>(parameters));
+  for (const SeriesRows& rows : at.series) {
+    std::vector<double> g = modelled_autocovariance(
+        {at.residuals.data() + rows.first, static_cast<std::size_t>(rows.count)});
+    // Less than the stated noise is chance, or a statement that errs to the safe side.
+    const double scale = std::max(spent, g[0] > 0.0 ? 1.0 / g[0] : 0.0);
+    for (double& x : g) x *= scale;
+    if (!(g[0] > 0.0)) g[0] = 1.0;
+    const double sum = std::accumulate(g.begin() + 1, g.end(), 0.0);
+    const double colour = std::max(1.0, 1.0 + 2.0 * sum / g[0]);
+    result.colour = std::max(result.colour, colour);
+    result.inflation = std::max(result.inflation, std::sqrt(g[0] * colour));
+    result.independent += static_cast<double>(rows.count) / colour;
+    result.autocovariance.push_back(std::move(g));
+  }
+  return result;
+}
+
+/// J'G J; the rows after the last series are those of priors, whose variance is one.
+Eigen::MatrixXd meat(const Linearization& at, const Colours& colours, const Eigen::MatrixXd& j) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(j.cols(), j.cols());
+  Eigen::Index end = 0;
+  for (std::size_t s = 0; s < at.series.size(); ++s) {
+    const SeriesRows& rows = at.series[s];
+    const auto block = j.middleRows(rows.first, rows.count);
+    const std::vector<double>& g = colours.autocovariance[s];
+    Eigen::MatrixXd spread = g[0] * block;
+    for (std::size_t i = 1; i < g.size(); ++i) {
+      const auto lag = static_cast<Eigen::Index>(i);
+      const Eigen::Index rest = rows.count - lag;
+      spread.topRows(rest) += g[i] * block.bottomRows(rest);
+      spread.bottomRows(rest) += g[i] * block.topRows(rest);
+    }
+    sum += block.transpose() * spread;
+    end = rows.first + rows.count;
+  }
+  const auto priors = j.bottomRows(j.rows() - end);
+  return sum + priors.transpose() * priors;
+}
+
+}  // namespace
+
+double student_95(double freedom) {
+  return quantile(boost::math::students_t(std::max(1.0, freedom)), 0.975);
+}
+
+Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
+                        const Linearization& at_solution) {
+  Uncertainty result;
+  result.parameters.resize(space.size());
+  const auto size = static_cast<Eigen::Index>(space.size());
+  result.correlation.setConstant(size, size, NAN);
+  const auto lower = [&](std::size_t i) { return space.internal(i, space[i].lower); };
+  const auto upper = [&](std::size_t i) { return space.internal(i, space[i].upper); };
+  std::vector<Eigen::Index> inside;
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    const double here = u[static_cast<Eigen::Index>(i)];
+    const double near = 1e-6 * std::max(1.0, std::min(std::abs(here), upper(i) - lower(i)));
+    result.parameters[i].at_bound = here - lower(i) < near || upper(i) - here < near;
+    if (!result.parameters[i].at_bound) inside.push_back(static_cast<Eigen::Index>(i));
+  }
+  if (!at_solution.finite) return result;
+
+  const Colours colours = colours_of(at_solution, inside.size());
+  result.colour = colours.colour;
+  result.freedom = colours.independent - static_cast<double>(inside.size());
+  for (ParameterUncertainty& p : result.parameters) p.inflation = colours.inflation;
+  const double t = student_95(result.freedom);
+
+  if (!inside.empty()) {
+    const Eigen::MatrixXd j = at_solution.jacobian(Eigen::all, inside);
+    const NormalInverse inverse(j);
+    const Eigen::MatrixXd covariance =
+        inverse.matrix() * meat(at_solution, colours, j) * inverse.matrix();
+    for (Eigen::Index k = 0; k < j.cols(); ++k) {
+      if (inverse.is_open(k)) continue;
+      const auto i = static_cast<std::size_t>(inside[static_cast<std::size_t>(k)]);
+      const double error = std::sqrt(covariance(k, k));
+      const double here = u[inside[static_cast<std::size_t>(k)]];
+      ParameterUncertainty& p = result.parameters[i];
+      p.inflation = error / std::sqrt(inverse.matrix()(k, k));
+      // An error of more than a factor of e, or one that spans the allowed range, is no knowledge.
+      const double ratio = space[i].logarithmic ? error : 2.0 * t * error / (upper(i) - lower(i));
+      constexpr double kWeak = 0.25;
+      p.determined = ratio < 1.0;
+      if (!p.determined) continue;
+      p.weak = ratio > kWeak;
+      p.standard_error = error * space.slope(i, here);
+      p.lower = std::max(space[i].lower, space.value(i, here - t * error));
+      p.upper = std::min(space[i].upper, space.value(i, here + t * error));
+    }
+    for (Eigen::Index a = 0; a < j.cols(); ++a)
+      for (Eigen::Index b = 0; b < j.cols(); ++b) {
+        const Eigen::Index row = inside[static_cast<std::size_t>(a)];
+        const Eigen::Index column = inside[static_cast<std::size_t>(b)];
+        if (result.parameters[static_cast<std::size_t>(row)].determined &&
+            result.parameters[static_cast<std::size_t>(column)].determined)
+          result.correlation(row, column) =
+              covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
+      }
+  }
+
+  if (inside.size() == space.size()) return result;
+  const NormalInverse inverse(at_solution.jacobian);
+  if (inverse.has_open()) return result;
+  const Eigen::MatrixXd covariance =
+      inverse.matrix() * meat(at_solution, colours, at_solution.jacobian) * inverse.matrix();
+  // Where the minimum would be if there were no bounds.
+  const Eigen::VectorXd step =
+      -inverse.matrix() * (at_solution.jacobian.transpose() * at_solution.residuals);
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    ParameterUncertainty& p = result.parameters[i];
+    if (!p.at_bound) continue;
+    const auto k = static_cast<Eigen::Index>(i);
+    p.inflation = std::sqrt(covariance(k, k) / inverse.matrix()(k, k));
+    const double inwards = u[k] - lower(i) < upper(i) - u[k] ? 1.0 : -1.0;
+    const double beyond = std::max(0.0, -inwards * step[k]);
+    const double variance = t * t * covariance(k, k);
+    if (!std::isfinite(variance)) continue;
+    // sqrt(variance + beyond^2) - beyond, without its cancellation and overflow
+    const double whole = std::hypot(std::sqrt(variance), beyond) + beyond;
+    const double reach = whole > 0.0 ? variance / whole : 0.0;
+    const double other = space.value(i, std::clamp(u[k] + inwards * reach, lower(i), upper(i)));
+    p.lower = inwards > 0.0 ? space[i].lower : other;
+    p.upper = inwards > 0.0 ? other : space[i].upper;
+  }
+  return result;
+}
+
+}  // namespace axisfit

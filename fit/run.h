@@ -1,0 +1,113 @@
+// What a run of fit-params finds: the fit, what it leaves unexplained, and the models on the way to
+// explaining that. Text and JSON are made from it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fit/data/job.h"
+#include "fit/data/recording_check.h"
+#include "fit/design/discrimination.h"
+#include "fit/design/experiment.h"
+#include "fit/estimation/estimate.h"
+#include "fit/estimation/profile.h"
+#include "fit/selection/diagnosis.h"
+#include "fit/selection/select_effects.h"
+
+namespace axisfit {
+
+struct SignalErrors {
+  double rmse = 0.0;           ///< in the signal's unit
+  double nrmse_percent = 0.0;  ///< of the measured range
+  double reduced_chi_square = 0.0;
+};
+
+/// The errors of one signal of one recording over the samples that were fitted, or over those that
+/// were not.
+struct SignalScore : SeriesKey {
+  std::optional<SignalErrors> free_running;  ///< none where that did not finish
+  std::optional<SignalErrors> held;          ///< at a coupling, where the fit kept one to its end
+
+  const std::optional<SignalErrors>& judged() const { return held ? held : free_running; }
+};
+
+/// How well a model does.
+struct ModelScore {
+  std::vector<SignalScore> signals;  ///< without those that are only compared
+  std::vector<MissingForce> forces;  ///< of every recording
+};
+
+/// What is asked for beyond a fit.
+struct Wishes {
+  bool close_loop = false;
+  std::vector<std::string> profiles{};  ///< of these parameters; "all": of all
+  bool experiment = false;              ///< suggest the next one
+  const StopFlag* stop = nullptr;       ///< ends early, with what is finished
+  std::optional<double> time_limit{};   ///< s, after which something sets it
+};
+
+struct Outcome {
+  Job baseline;  ///< as declared
+  Wishes wishes;
+  FitResult first;                     ///< fit of the declared job
+  std::vector<RecordingCheck> checks;  ///< of each recording
+  /// None unless it was asked for and the first fit is usable.
+  std::optional<ClosedLoop> loop;
+  std::vector<ModelScore> scores;        ///< of the loop's models
+  std::optional<Diagnosis> diagnosis;    ///< of the final model; none unless that is usable
+  std::vector<Profile> profiles;         ///< of the final model, those asked for
+  std::vector<Separation> separations;   ///< of the loop's undecided effects, pair by pair
+  std::optional<Suggestion> suggestion;  ///< of the next experiment, where it was asked for
+  bool interrupted = false;              ///< not all that was asked for was finished
+  bool out_of_time = false;              ///< because of the time limit
+  double wall_time = 0.0;                ///< s
+
+  /// The final model's: the result of the loop, or else the declared one.
+  const Job& job() const { return loop ? loop->result.job : baseline; }
+  const FitResult& fit() const { return loop ? loop->result.fit : first; }
+};
+
+/// Whether the noise of any measurement of a job comes from there.
+bool has_noise_from(const Job& job, NoiseSource source);
+
+/// The experiment to make next, where it was asked for and there is one: that which tells undecided
+/// effects apart, or else that which determines the parameters.
+const Experiment* next_experiment(const Outcome& outcome);
+
+/// Whether the fit can be used, and what a closed loop says of it.
+std::string verdict_of(const Outcome& outcome);
+
+/// " by the time limit of 60 s", or nothing: to follow "stopped".
+std::string stop_reason(const Outcome& outcome);
+
+/// Fits the job, looks for what it lacks and, where asked, adds that. Throws std::runtime_error
+/// when a wish names a parameter that is not fitted, and Interrupted when it is stopped before one
+/// start of the fit is finished.
+Outcome find_outcome(Job job, const Wishes& wishes, const ProgressReport& progress = {});
+
+/// Samples of a signal that do not count, since the arm rests (fit/data/standstill.h).
+struct LeftOut {
+  std::size_t samples = 0;
+  double mean = 0.0;      ///< of what was measured there
+  bool is_noise = false;  ///< whether that mean is no further from zero than noise would be
+};
+std::optional<LeftOut> left_out(const Measurement& measurement);
+
+/// "determined", "weakly determined", "not determined", "at bound"
+std::string_view verdict_name(const ParameterUncertainty& uncertainty);
+
+/// "accepted", "undecided", "refused"
+const char* decision_name(Decision decision);
+
+/// "fit", "validate" or, where a recording was fitted in part, "held_out".
+const char* role_name(const Recording& recording, bool fitted);
+
+/// Of one signal of a recording: "fit", "validate", or "compare" where it is only compared.
+const char* role_name(const Recording& recording, const SignalError& signal);
+
+/// A free parameter of the final model with the user's initial value, which the loop does not keep;
+/// of an added effect, with the one it was started from.
+const FreeParameter& as_declared(const Outcome& outcome, std::size_t parameter);
+
+}  // namespace axisfit

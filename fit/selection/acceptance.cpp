@@ -1,0 +1,149 @@
+#include "fit/selection/acceptance.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <numeric>
+
+namespace axisfit {
+namespace {
+
+/// Mean square times autocorrelation time: what one independent sample contributes.
+double worth(const ResidualSeries& series) {
+  return mean_square(series.values) * autocorrelation_time(series.values);
+}
+
+double sum_of_squares(const ResidualSeries& series) {
+  return mean_square(series.values) * static_cast<double>(series.values.size());
+}
+
+}  // namespace
+
+Improvement improvement(const std::vector<ResidualSeries>& before,
+                        const std::vector<ResidualSeries>& after) {
+  Improvement result;
+  double gain = 0.0, variance = 0.0, square_before = 0.0, square_after = 0.0;
+  for (const ResidualSeries& old : before) {
+    const ResidualSeries* now = find_series(after, old);
+    if (now == nullptr) return result;
+    const double unit = worth(*now);
+    if (old.fitted) {
+      result.fit_gain += (sum_of_squares(old) - sum_of_squares(*now)) / unit;
+      result.samples += static_cast<double>(now->values.size()) / autocorrelation_time(now->values);
+      continue;
+    }
+    // With d the change of the prediction, r' = r - d: the fall of the sum of squares is
+    // |d|^2 + 2 d r', of which only the second part is chance, with the variance 4 d^2 * worth.
+    double change = 0.0;
+    for (std::size_t i = 0; i < old.values.size(); ++i)
+      change += std::pow(old.values[i] - now->values[i], 2);
+    variance += 4.0 * change * unit;
+    square_before += sum_of_squares(old);
+    square_after += sum_of_squares(*now);
+  }
+  gain = square_before - square_after;
+  result.comparable = true;
+  result.z = variance > 0.0 ? gain / std::sqrt(variance) : 0.0;
+  result.p_value = 0.5 * std::erfc(result.z / std::sqrt(2.0));
+  result.validate_percent =
+      square_before > 0.0 ? 100.0 * (1.0 - std::sqrt(square_after / square_before)) : 0.0;
+  return result;
+}
+
+double disadvantage(const std::vector<ResidualSeries>& best, std::size_t best_parameters,
+                    const std::vector<ResidualSeries>& other, std::size_t other_parameters) {
+  double loss = 0.0, samples = 0.0;
+  for (const ResidualSeries& series : best) {
+    const ResidualSeries* rival = find_series(other, series);
+    if (rival == nullptr) return INFINITY;
+    loss += (sum_of_squares(*rival) - sum_of_squares(series)) / worth(series);
+    samples += static_cast<double>(series.values.size()) / autocorrelation_time(series.values);
+  }
+  return loss + (static_cast<double>(other_parameters) - static_cast<double>(best_parameters)) *
+                    std::log(std::max(2.0, samples));
+}
+
+Determination determination(const Job& job, const FitResult& result, const Candidate& candidate,
+                            const std::vector<ResidualSeries>& residuals) {
+  Determination d;
+  const std::size_t own = candidate.parameters();
+  const std::size_t first = job.free.size() - own;
+  const std::size_t strengths = candidate.strengths.size();
+  for (std::size_t i = first; i < job.free.size(); ++i) {
+    const ParameterResult& p = result.parameters[i];
+    if (p.uncertainty.at_bound && d.at_bound.empty()) d.at_bound = p.name;
+    if (i >= first + strengths && !p.uncertainty.determined && d.open.empty()) d.open = p.name;
+  }
+  constexpr double kByChance = 3e-4;
+  const boost::math::chi_squared_distribution<> by_chance(static_cast<double>(strengths));
+  d.required = quantile(complement(by_chance, kByChance));
+
+  const ParameterSpace space(job);
+  const Eigen::VectorXd u = space.internal(values_of(result));
+  const Linearization& at = *result.at_solution;
+  if (!at.finite) return d;
+  Eigen::MatrixXd others(at.jacobian.rows(),
+                         static_cast<Eigen::Index>(job.free.size() - strengths));
+  Eigen::Index k = 0;
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    if (i >= first && i < first + strengths) continue;
+    others.col(k) = at.jacobian.col(static_cast<Eigen::Index>(i));
+    if (const double length = others.col(k).norm(); length > 0.0) others.col(k) /= length;
+    ++k;
+  }
+  const Eigen::VectorXd mark =
+      at.jacobian.middleCols(static_cast<Eigen::Index>(first),
+                             static_cast<Eigen::Index>(strengths)) *
+      u.segment(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(strengths));
+  // A neutral value that is not zero, as a gain of one, is not part of the strength.
+  Eigen::VectorXd zero(static_cast<Eigen::Index>(strengths));
+  const std::vector<double> neutral = neutral_strengths(candidate);
+  for (std::size_t i = 0; i < strengths; ++i)
+    zero[static_cast<Eigen::Index>(i)] = space.internal(first + i, neutral[i]);
+  const Eigen::VectorXd shown =
+      mark - at.jacobian.middleCols(static_cast<Eigen::Index>(first),
+                                    static_cast<Eigen::Index>(strengths)) *
+                 zero;
+  Eigen::VectorXd rest = shown;
+  if (others.cols() > 0) {
+    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(others);
+    rest -= others * solver.solve(shown);
+  }
+  d.distinct = shown.squaredNorm() > 0.0 ? rest.squaredNorm() / shown.squaredNorm() : 0.0;
+  for (const SeriesRows& rows : at.series)
+    if (const auto* series = find_series(residuals, {rows.recording, rows.measurement, true}))
+      d.wald += rest.segment(rows.first, rows.count).squaredNorm() / worth(*series);
+  return d;
+}
+
+std::string refusal(const Candidate& candidate, const Improvement& gain,
+                    const Determination& determined, std::size_t tried, double chance) {
+  if (!gain.comparable) return "with it the simulation does not get through all recordings";
+  // Schwarz's criterion, with the price of having been chosen among many.
+  const double price = static_cast<double>(candidate.parameters()) * std::log(gain.samples) +
+                       2.0 * std::log(static_cast<double>(std::max<std::size_t>(1, tried)));
+  if (gain.fit_gain < price)
+    return fmt::format(
+        "explains no more than chance: the fit gains {:.3g} where {} of {} effects must gain "
+        "{:.3g}",
+        std::max(0.0, gain.fit_gain), "the best", tried, price);
+  constexpr double kLeastPercent = 0.5;
+  if (gain.p_value > chance)
+    return fmt::format("does not help on what was not fitted (p = {:.2g})", gain.p_value);
+  if (gain.validate_percent < kLeastPercent)
+    return fmt::format("hardly helps on what was not fitted: {:.2g} % less error",
+                       gain.validate_percent);
+  if (!determined.at_bound.empty()) return determined.at_bound + " ends at its bound";
+  if (!determined.open.empty()) return "the recordings do not determine " + determined.open;
+  constexpr double kAlias = 1e-10;  // below is rounding
+  if (determined.distinct < kAlias) return "the other parameters imitate it wholly";
+  if (determined.wald < determined.required)
+    return fmt::format("its strength is not determined: {:.2g} standard errors from zero",
+                       std::sqrt(determined.wald));
+  return {};
+}
+
+}  // namespace axisfit

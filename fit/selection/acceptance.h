@@ -1,0 +1,57 @@
+// Whether an effect that was added to a model may stay.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fit/residuals/series.h"
+#include "fit/selection/catalogue.h"
+
+namespace axisfit {
+
+/// What an extended model does to the errors of a simpler one. Sums of squares are in units of the
+/// information of one independent sample: divided by the mean square of the extended model's
+/// residual and by its autocorrelation time, series by series.
+struct Improvement {
+  bool comparable = false;  ///< false: the extended model could not be simulated everywhere
+  double fit_gain = 0.0;    ///< fall of the sum of squares of what was fitted
+  double samples = 0.0;     ///< effective number of independent samples that were fitted
+  /// Fall of the sum of squares of what was not fitted, by its standard deviation if the effect
+  /// were chance, and the probability of that or more.
+  double z = 0.0;
+  double p_value = 1.0;
+  double validate_percent = 0.0;  ///< fall of the root mean square of what was not fitted
+};
+
+Improvement improvement(const std::vector<ResidualSeries>& before,
+                        const std::vector<ResidualSeries>& after);
+
+/// How much worse `other` explains all recordings than `best`, in the same units, each parameter
+/// beyond those of `best` at the price of Schwarz's criterion, log of the number of samples.
+/// Negative when `other` is better after all.
+double disadvantage(const std::vector<ResidualSeries>& best, std::size_t best_parameters,
+                    const std::vector<ResidualSeries>& other, std::size_t other_parameters);
+
+/// What the fit says of a candidate's own parameters, the last of the job's.
+struct Determination {
+  /// Sum of squares that would be lost with strengths of zero, in units as above: the square of
+  /// value over standard error where there is one strength.
+  double wald = 0.0;
+  double required = 0.0;  ///< the least that counts as determined
+  double distinct = 0.0;  ///< part of the strengths' effect that no other parameter can imitate
+  std::string at_bound;   ///< a parameter held by a bound; empty: none
+  std::string open;       ///< a shape that the data leave open; empty: none
+};
+
+Determination determination(const Job& job, const FitResult& result, const Candidate& candidate,
+                            const std::vector<ResidualSeries>& residuals);
+
+/// How probable it may be that an effect helps by chance on what was not fitted.
+constexpr double kChance = 1e-3;
+
+/// Why the candidate must be refused; empty when it may stay.
+/// `tried` is the number of candidates and settings among which it was chosen.
+std::string refusal(const Candidate& candidate, const Improvement& gain,
+                    const Determination& determined, std::size_t tried, double chance = kChance);
+
+}  // namespace axisfit

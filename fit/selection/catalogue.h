@@ -1,0 +1,63 @@
+// What a model can lack: the effects among which the residual's cause is sought.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fit/data/job.h"
+
+namespace axisfit {
+
+/// One effect that is absent from a job's model, as something that could be added to it.
+struct Candidate {
+  std::string name;  ///< "coulomb_friction", "acceleration.bias"
+  std::string slot;  ///< where it acts: "arm force", "friction", "inertia", "drive", "sensor" ...
+  std::string meaning;  ///< a few words
+  /// Quantities (indices in quantity_list()) that are estimated, and neutral while it is absent.
+  std::vector<std::size_t> strengths;
+  /// Quantities that give it its shape, and the settings of them to be tried, one value for each.
+  /// A candidate without shapes has one empty setting.
+  std::vector<std::size_t> shapes;
+  std::vector<std::vector<double>> settings;
+  bool shapes_are_free = true;  ///< whether the shapes are estimated too; a curve's ends are not
+  /// Strengths at which the score test looks instead of at zero, where the derivative there says
+  /// little: that of a lag or delay holds while it is shorter than anything else. Empty: none.
+  std::vector<double> probes = {};
+  bool unnamed = false;  ///< a curve: it fits whatever no other effect explains
+
+  std::size_t parameters() const {
+    return strengths.size() + (shapes_are_free ? shapes.size() : 0);
+  }
+};
+
+/// Whether they are the same effect, whatever its shape.
+inline bool same_effect(const Candidate& a, const Candidate& b) {
+  return a.strengths == b.strengths;
+}
+
+/// The strengths of an absent effect: zero, but for a gain, which is one.
+std::vector<double> neutral_strengths(const Candidate& candidate);
+
+/// What the recordings span: the scales on which shapes are sought.
+struct Scales {
+  double position_low = 0.0, position_high = 0.0;  ///< m, of the arm
+  double speed = 0.0;                              ///< m/s, largest magnitude
+  double velocity_low = 0.0, velocity_high = 0.0;  ///< m/s
+  double start = 0.0, end = 0.0;                   ///< s
+  double interval = 0.0;                           ///< s, between samples, mean
+  std::vector<double> periods;                     ///< m, of forces along the stroke, best first
+  std::vector<double> drive_periods;  ///< m, of such in proportion to the drive's force
+};
+
+/// All candidates that the job's axis can have, its recordings could show, and its model lacks.
+std::vector<Candidate> catalogue(const Job& job, const Scales& scales);
+
+/// The job with the candidate added to its free parameters, started from these strengths and
+/// shapes, the other free parameters from `values`.
+Job with_candidate(const Job& job, const Candidate& candidate, std::span<const double> values,
+                   std::span<const double> strengths, std::span<const double> shapes);
+
+}  // namespace axisfit

@@ -1,0 +1,29 @@
+// What a fit leaves unexplained, where, and what it might be.
+#pragma once
+
+#include <vector>
+
+#include "fit/residuals/dependence.h"
+#include "fit/residuals/missing_force.h"
+#include "fit/selection/catalogue.h"
+
+namespace axisfit {
+
+/// An effect that the residual speaks for; a suspicion, not a finding.
+struct Suspect {
+  Candidate candidate;
+  std::vector<double> shapes, strengths;  ///< as the score test sees them
+  double share = 0.0;  ///< of the sum of squares of the held simulation, that it would explain
+};
+
+struct Diagnosis {
+  std::vector<SeriesTest> tests;     ///< of every signal of every recording
+  std::vector<MissingForce> forces;  ///< of every recording
+  bool explained = false;            ///< every series shows no more than its noise
+  std::vector<Suspect> suspects;     ///< strongest first, none when explained
+};
+
+/// Looks at a usable fit. The suspects take one score test of the catalogue.
+Diagnosis diagnose(const Job& job, const FitResult& result);
+
+}  // namespace axisfit

@@ -1,0 +1,53 @@
+#include "fit/selection/extended_model.h"
+
+#include <algorithm>
+
+#include "fit/selection/score.h"
+
+namespace axisfit {
+
+FitResult refit(const Job& job) {
+  Job quick = job;
+  quick.options.starts = 1;
+  quick.options.attempts = 1;
+  quick.options.tolerance = 1e-7;
+  quick.options.max_iterations = std::min(job.options.max_iterations, 25);
+  // Smooth effects are then a few parts in a hundred thousand off, and twice as quick.
+  quick.options.step = 2.0 * job.options.step;
+  if (job.options.coupling == CouplingMode::continuation)
+    quick.options.coupling_rate = score_rates(job).front();
+  return estimate(quick);
+}
+
+FitResult refit_from(Job job, const std::vector<double>& values) {
+  for (std::size_t i = 0; i < job.free.size(); ++i)
+    job.free[i].initial = std::clamp(values[i], job.free[i].lower, job.free[i].upper);
+  return refit(job);
+}
+
+Extension extend(const Job& job, const Candidate& candidate, const std::vector<double>& values,
+                 const std::vector<double>& strengths, const std::vector<double>& shapes) {
+  Extension e;
+  e.candidate = candidate;
+  e.job = with_candidate(job, candidate, values, strengths, shapes);
+  e.fit = refit(e.job);
+  e.residuals = residual_series(e.job, e.fit);
+  return e;
+}
+
+OwnValues own_values(const Job& job, const FitResult& fit, const Candidate& candidate) {
+  Model<double> fitted = fitted_model(job, fit);
+  const auto member = members(fitted);
+  OwnValues own;
+  for (const std::size_t q : candidate.strengths) own.strengths.push_back(*member[q]);
+  for (const std::size_t q : candidate.shapes) own.shapes.push_back(*member[q]);
+  return own;
+}
+
+double advantage(const Extension& a, const Extension& b) {
+  const double of_a = disadvantage(a.residuals, a.job.free.size(), b.residuals, b.job.free.size());
+  const double of_b = disadvantage(b.residuals, b.job.free.size(), a.residuals, a.job.free.size());
+  return of_a > 0.0 ? of_a : -of_b;
+}
+
+}  // namespace axisfit

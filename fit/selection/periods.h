@@ -1,0 +1,27 @@
+// Periods of a force along the stroke that a residual shows.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "base/interrupt.h"
+#include "fit/estimation/residual.h"
+
+namespace axisfit {
+
+/// The periods (m) at which a force sin, cos(2 pi y0 / period) on the arm explains most of the
+/// residuals, best first, at most `most` of them, from twice the stroke down to what sampling
+/// shows. `residuals` are those of one recording, as RecordingCost orders them, and `basis` spans
+/// what the free parameters explain of them already, in orthonormal columns of as many rows. With
+/// `of_drive` the force is in proportion to the drive's, as that of a ripple of its torque.
+///
+/// Throws Interrupted when the stop flag is set.
+///
+/// A spectrum in space. The response to the force is that of a rigid axis held by the coupling:
+/// good enough to find a period, not to judge it.
+std::vector<double> periods_in(const Recording& recording, const Prediction& prediction,
+                               const Coupling& coupling, const Eigen::VectorXd& residuals,
+                               const Eigen::MatrixXd& basis, std::size_t most, bool of_drive,
+                               const StopFlag* stop = nullptr);
+
+}  // namespace axisfit

@@ -1,0 +1,156 @@
+#include "fit/selection/score.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "fit/estimation/continuation.h"
+#include "fit/estimation/residual.h"
+#include "fit/selection/periods.h"
+#include "sim/sampling.h"
+
+namespace axisfit {
+namespace {
+
+/// The job with its free parameters fixed at these values.
+Job fixed_at(const Job& job, std::span<const double> values) {
+  Job fixed = job;
+  fixed.free.clear();
+  const auto member = members(fixed.model);
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    if (job.free[i].recording)
+      fixed.recordings[*job.free[i].recording].overrides.emplace_back(job.free[i].quantity,
+                                                                      values[i]);
+    else
+      *member[job.free[i].quantity] = values[i];
+  }
+  return fixed;
+}
+
+/// Orthonormal columns that span those of a matrix; a column of zeros where they span nothing, for
+/// of a matrix without columns Eigen takes no blocks.
+Eigen::MatrixXd basis_of(const Eigen::MatrixXd& a) {
+  const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(a.rows(), 1);
+  if (a.cols() == 0) return nothing;
+  Eigen::MatrixXd scaled = a;
+  for (Eigen::Index k = 0; k < a.cols(); ++k)
+    if (const double length = a.col(k).norm(); length > 0.0) scaled.col(k) /= length;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
+  qr.setThreshold(1e-9);
+  if (qr.rank() == 0) return nothing;
+  return qr.householderQ() * Eigen::MatrixXd::Identity(a.rows(), qr.rank());
+}
+
+Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u, double rate,
+                 const Linearization& base, const Eigen::MatrixXd& basis) {
+  Scales s{INFINITY, -INFINITY, 0.0, INFINITY, -INFINITY, INFINITY, -INFINITY, 0.0, {}, {}};
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    const Recording& recording = job.recordings[r];
+    if (recording.role != Role::fit) continue;
+    const Coupling coupling = coupling_for(recording, rate);
+    const Prediction prediction = predict(job, space, r, u.data(), coupling);
+    for (const Sample& sample : prediction.samples) {
+      s.position_low = std::min(s.position_low, sample.position);
+      s.position_high = std::max(s.position_high, sample.position);
+      s.velocity_low = std::min(s.velocity_low, sample.velocity);
+      s.velocity_high = std::max(s.velocity_high, sample.velocity);
+    }
+    s.start = std::min(s.start, recording.times.front());
+    s.end = std::max(s.end, recording.times.back());
+    s.interval = std::max(s.interval, mean_interval(recording.times));
+    const Eigen::Index rows = RecordingCost(job, space, r, coupling).num_residuals();
+    constexpr std::size_t kPeriods = 3;
+    for (const bool of_drive : {false, true}) {
+      auto& periods = of_drive ? s.drive_periods : s.periods;
+      for (const double period :
+           periods_in(recording, prediction, coupling, base.residuals.segment(row, rows),
+                      basis.middleRows(row, rows), kPeriods, of_drive, job.options.stop))
+        periods.push_back(period);
+    }
+    row += rows;
+  }
+  s.speed = std::max(std::abs(s.velocity_low), std::abs(s.velocity_high));
+  return s;
+}
+
+}  // namespace
+
+ScoreTest score_test(const Job& job, const std::vector<double>& values, double rate, bool curves) {
+  const Crew crew(job.options.threads);
+  ScoreTest test;
+  const ParameterSpace space(job);
+  SolveOptions options;
+  options.max_iterations = 15;
+  options.function_tolerance = 1e-6;
+  const SolveResult held = solve(job, space, space.internal(values), rate, options);
+  if (!held.usable) return test;
+  const std::vector<double> held_values = space.values(held.u);
+  const Linearization base = linearize(job, space, held.u, rate);
+  if (!base.finite) return test;
+  const Eigen::MatrixXd basis = basis_of(base.jacobian);
+  const Eigen::VectorXd rest = base.residuals - basis * (basis.transpose() * base.residuals);
+  test.sum_of_squares = rest.squaredNorm();
+  test.usable = std::isfinite(test.sum_of_squares);  // squares may overflow
+  if (!test.usable) return test;
+  test.candidates = catalogue(job, scales_of(job, space, held.u, rate, base, basis));
+  std::erase_if(test.candidates, [&](const Candidate& c) { return c.unnamed != curves; });
+  for (std::size_t c = 0; c < test.candidates.size(); ++c)
+    for (const auto& setting : test.candidates[c].settings)
+      test.scores.push_back({c, setting, {}, held_values, 0.0});
+
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> base_solver(base.jacobian);
+  const Job fixed = fixed_at(job, held_values);
+  parallel_for(test.scores.size(), [&](std::size_t i) {
+    if (is_set(job.options.stop)) throw Interrupted();
+    Score& score = test.scores[i];
+    const Candidate& candidate = test.candidates[score.candidate];
+    score.strengths.assign(candidate.strengths.size(), 0.0);
+    const std::vector<double> neutral = neutral_strengths(candidate);
+    Candidate shaped = candidate;
+    shaped.shapes_are_free = false;
+    const Job extended = with_candidate(fixed, shaped, {}, neutral, score.shapes);
+    const ParameterSpace strengths(extended);
+    const Eigen::VectorXd u = strengths.internal(neutral);
+    const Linearization d = linearize(extended, strengths, u, rate);
+    if (!d.finite || d.jacobian.rows() != basis.rows()) return;
+    const auto consider = [&](const Eigen::MatrixXd& derivatives) {
+      const Eigen::MatrixXd columns = derivatives - basis * (basis.transpose() * derivatives);
+      // What is left of a column is rounding where the free parameters do the same.
+      for (Eigen::Index k = 0; k < columns.cols(); ++k)
+        if (columns.col(k).norm() < 1e-4 * derivatives.col(k).norm()) return;
+      const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(columns);
+      const Eigen::VectorXd step = solver.solve(-rest);
+      if (!step.allFinite()) return;
+      const std::vector<double> reached = strengths.values(u + step);
+      for (std::size_t k = 0; k < reached.size(); ++k) {
+        const Quantity& q = quantity_list()[candidate.strengths[k]].quantity;
+        if (reached.size() == 1 && (reached[k] < q.lower || reached[k] > q.upper)) return;
+      }
+      const double gain = test.sum_of_squares - (rest + columns * step).squaredNorm();
+      if (!(gain > score.gain)) return;
+      score.gain = gain;
+      score.strengths = reached;
+      // The free parameters give way to the effect; no further than a linear step can be believed.
+      const Eigen::VectorXd way = base_solver.solve(-(base.residuals + derivatives * step));
+      score.values = space.values(held.u + way.cwiseMax(-0.7).cwiseMin(0.7));
+    };
+    if (candidate.probes.empty()) consider(d.jacobian);
+    for (const double probe : candidate.probes) {
+      const Eigen::VectorXd there = strengths.internal(std::vector{probe});
+      const Linearization probed = linearize(extended, strengths, there, rate);
+      if (probed.finite) consider((probed.residuals - d.residuals) / (there[0] - u[0]));
+    }
+  });
+  std::ranges::stable_sort(test.scores, std::greater{}, &Score::gain);
+  return test;
+}
+
+std::vector<double> score_rates(const Job& job) {
+  const double first = first_coupling_rate(job);
+  if (job.options.coupling == CouplingMode::fixed || !std::isfinite(first)) return {first};
+  return {first / 30.0, first / 100.0};
+}
+
+}  // namespace axisfit

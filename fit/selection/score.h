@@ -1,0 +1,45 @@
+// Which effect would explain the residual: the score test of every candidate at strength zero.
+//
+// The simulation is held to the data at a moderate coupling, so that it stays on the measured path
+// although the model lacks something, and the free parameters are fitted there. With r the whitened
+// residuals, J their Jacobian, D the derivatives with respect to a candidate's strengths and P the
+// projection off the columns of J, the candidate would lower the sum of squares by
+//
+//   gain = | projection of P r on the columns of P D |^2
+//
+// which is chi-square distributed with as many degrees of freedom as strengths when it is absent
+// and the noise is white: C. R. Rao's score or Lagrange multiplier test (1948).
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "fit/estimation/solve.h"
+#include "fit/selection/catalogue.h"
+
+namespace axisfit {
+
+struct Score {
+  std::size_t candidate = 0;   ///< in the list of candidates
+  std::vector<double> shapes;  ///< the setting tried
+  /// Where one step of least squares would put them, and the job's free parameters with them.
+  std::vector<double> strengths, values;
+  double gain = 0.0;  ///< fall of the sum of squares that this step promises
+};
+
+struct ScoreTest {
+  bool usable = false;  ///< false: the simulation could not be held to the data
+  double sum_of_squares = 0.0;
+  std::vector<Candidate> candidates;
+  std::vector<Score> scores;  ///< of every candidate and setting, the largest gain first
+};
+
+/// Scores all named effects of the catalogue, or all curves, from a fit with the given values of
+/// the free parameters. `coupling_rate` as in coupling_for().
+ScoreTest score_test(const Job& job, const std::vector<double>& values, double coupling_rate,
+                     bool curves = false);
+
+/// The coupling rates (1/s) at which a job's residual is scored.
+std::vector<double> score_rates(const Job& job);
+
+}  // namespace axisfit

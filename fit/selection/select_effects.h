@@ -1,0 +1,69 @@
+// Closing the loop: from the residual of a fit to the effect that the model lacks.
+//
+// Round by round: score every absent effect (score.h), refit with each of the few most likely ones,
+// put them through the gate (gate.h), keep the best. Then accepted effects are exchanged for their
+// rivals, and taken away again one by one, to see whether they are needed. What no effect of the
+// catalogue explains is drawn as a curve without a name.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fit/estimation/estimate.h"
+#include "fit/selection/acceptance.h"
+#include "fit/selection/catalogue.h"
+
+namespace axisfit {
+
+struct CloseLoopOptions {
+  int shortlist = 6;  ///< effects that are refitted in each round
+  int max_effects = 6;
+};
+
+enum class Decision {
+  accepted,
+  undecided,  ///< explains the data as well as another effect
+  refused,
+};
+
+/// One effect that was refitted, and what became of it.
+struct EffectTrial {
+  Candidate candidate;
+  int round = 0;
+  Decision decision = Decision::refused;
+  std::string reason;
+  double score = 0.0;                       ///< gain that the score test promised
+  std::vector<ParameterResult> parameters;  ///< its own
+  Improvement improvement;                  ///< against the model before it
+};
+
+/// One model on the way: the declared one, and one after each accepted effect.
+struct LoopModel {
+  std::string added;  ///< the effect; empty for the declared model
+  Job job;
+  FitResult fit;
+};
+
+/// Two effects that explain the recordings equally well.
+struct Rivals {
+  std::string chosen, rival;
+  Model<double> with_chosen, with_rival;  ///< fitted
+};
+
+struct ClosedLoop {
+  std::vector<LoopModel> models;     ///< the declared one first, then one for each accepted effect
+  LoopModel result;                  ///< the last of them, fitted to all samples
+  std::vector<EffectTrial> effects;  ///< every effect that was refitted, its last trial
+  bool held_out_blocks = false;      ///< no recording to validate: blocks of the fitted were kept
+  bool explained = false;            ///< nothing but noise is left
+  bool interrupted = false;          ///< the search was not finished
+  std::string verdict;               ///< a few sentences for the user
+  std::vector<Rivals> rivals;        ///< the effects that stay undecided
+};
+
+/// `first` is the fit of the job as declared. When the job's stop flag is set, the effects accepted
+/// so far are the result.
+ClosedLoop close_loop(const Job& job, const FitResult& first, const CloseLoopOptions& options = {},
+                      const ProgressReport& progress = {});
+
+}  // namespace axisfit

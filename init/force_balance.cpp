@@ -1,0 +1,66 @@
+#include "init/force_balance.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace axisfit {
+namespace {
+
+/// Stretches of which each has its impulse: short beside the motion, long beside noise.
+constexpr std::size_t kStretches = 200;
+constexpr std::size_t kTerms = 4;
+
+}  // namespace
+
+std::optional<ForceBalance> force_balance(std::span<const double> times,
+                                          std::span<const double> position,
+                                          std::span<const double> velocity,
+                                          std::span<const double> force) {
+  const std::size_t n = times.size();
+  const std::size_t stretches = std::min(kStretches, n / 8);
+  if (stretches < 4 * kTerms || (position.empty() && velocity.empty())) return std::nullopt;
+  std::vector<double> way(n, 0.0), impulse(n, 0.0);
+  for (std::size_t i = 1; i < n; ++i) {
+    const double dt = times[i] - times[i - 1];
+    impulse[i] = impulse[i - 1] + force[i - 1] * dt;
+    way[i] = position.empty() ? way[i - 1] + 0.5 * (velocity[i] + velocity[i - 1]) * dt
+                              : position[i] - position[0];
+  }
+  // Mean speeds of neighbouring stretches differ by the mean acceleration from centre to centre;
+  // the force is that of the two.
+  const auto rows = static_cast<Eigen::Index>(stretches - 1);
+  Eigen::MatrixXd terms(rows, kTerms);
+  Eigen::VectorXd impulses(rows);
+  for (std::size_t k = 0; k + 1 < stretches; ++k) {
+    const std::size_t a = k * (n - 1) / stretches, b = (k + 1) * (n - 1) / stretches,
+                      c = (k + 2) * (n - 1) / stretches;
+    const double first = (way[b] - way[a]) / (times[b] - times[a]);
+    const double second = (way[c] - way[b]) / (times[c] - times[b]);
+    const double dt = 0.5 * (times[c] - times[a]);
+    const double mean = 0.5 * (first + second);
+    const auto row = static_cast<Eigen::Index>(k);
+    terms.row(row) << second - first, mean * dt,
+        (mean > 0.0   ? 1.0
+         : mean < 0.0 ? -1.0
+                      : 0.0) *
+            dt,
+        dt;
+    impulses[row] = 0.5 * (impulse[c] - impulse[a]);
+  }
+  Eigen::VectorXd size = terms.colwise().norm();
+  if (!(size.minCoeff() > 0.0) || !(impulses.norm() > 0.0)) return std::nullopt;
+  const Eigen::MatrixXd scaled = terms * size.cwiseInverse().asDiagonal();
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(scaled);
+  solver.setThreshold(1e-6);
+  if (solver.rank() < static_cast<Eigen::Index>(kTerms)) return std::nullopt;
+  const Eigen::VectorXd scaled_terms = solver.solve(impulses);
+  const Eigen::VectorXd found = scaled_terms.cwiseQuotient(size);
+  ForceBalance balance{found[0], found[1], found[2], found[3], 0.0};
+  const double explained = (scaled * scaled_terms).norm() / impulses.norm();
+  balance.correlation = std::copysign(std::min(1.0, explained), balance.mass);
+  return balance;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,581 @@
+#include "init/init_job.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <set>
+
+#include "base/plain_text.h"
+#include "base/units.h"
+#include "base/version.h"
+#include "fit/data/noise.h"
+#include "fit/data/recording_check.h"
+#include "fit/design/forecast.h"
+#include "fit/estimation/estimate.h"
+#include "init/force_balance.h"
+#include "init/recording_guess.h"
+#include "init/starter_axis.h"
+#include "io/config/axis_file.h"
+#include "io/config/job_file.h"
+#include "io/config/yaml_text.h"
+
+namespace axisfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kJobName = "job.yaml";
+constexpr const char* kAxisName = "axis.yaml";
+constexpr const char* kOnlyRatios = "only the ratios of the others to it show in a motion";
+
+std::string scalar(const std::string& text) {
+  YAML::Emitter out;
+  out << text;
+  return out.c_str();
+}
+
+/// "{column: time_s, unit: s}"
+std::string column_map(const GuessedColumn& column, const std::string& unit,
+                       const std::string& more = {}) {
+  YAML::Emitter out;
+  out << YAML::Flow << YAML::BeginMap << YAML::Key << "column" << YAML::Value << column.column
+      << YAML::Key << "unit" << YAML::Value << unit;
+  if (column.factor != 1.0)
+    out << YAML::Key << "factor" << YAML::Value << fmt::format("{:.10g}", column.factor);
+  if (column.negative) out << YAML::Key << "sign" << YAML::Value << "-1";
+  if (!more.empty()) out << YAML::Key << more << YAML::Value << "false";
+  out << YAML::EndMap;
+  return out.c_str();
+}
+
+/// The signal that a kind is measured as.
+std::optional<Signal> signal_of(Kind kind) {
+  switch (kind) {
+    case Kind::position:
+      return Signal::position;
+    case Kind::velocity:
+      return Signal::velocity;
+    case Kind::acceleration:
+      return Signal::acceleration;
+    case Kind::tachometer:
+      return Signal::tachometer;
+    case Kind::current:
+      return Signal::motor_current;
+    case Kind::preamplifier_voltage:
+      return Signal::preamplifier_voltage;
+    case Kind::motor_voltage:
+      return Signal::motor_voltage;
+    case Kind::force:
+      return Signal::drive_force;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// What drives a recording: the key in the job, and the column.
+struct Input {
+  const char* key = "command";
+  Kind kind = Kind::command;
+  bool wanted = false;
+  std::string unit = "V";
+  double gain = 1.0;  ///< by which the column's values are multiplied besides
+};
+
+// What a force source may be driven by, the nearest to a force first.
+const std::vector<Input> kForceInputs{
+    {"drive_force", Kind::force, false, "N"}, {"drive_force", Kind::force, true, "N"},
+    {"command", Kind::current, false},        {"command", Kind::current, true},
+    {"command", Kind::command, false},        {"command", Kind::motor_voltage, false},
+    {"command", Kind::set_velocity, false}};
+
+/// What a velocity loop is driven by. A position that is asked for counts only where the controller
+/// is known, which makes the command of it.
+std::optional<Input> velocity_input(const RecordingGuess& recording, bool known_controller) {
+  for (const Kind kind : {Kind::set_velocity, Kind::command})
+    if (recording.find(kind)) return Input{"command", kind};
+  if (recording.find(Kind::velocity, true))
+    return Input{"command", Kind::velocity, true, "V", ControllerSettings().gain};
+  if (known_controller && recording.find(Kind::position, true) && recording.find(Kind::position))
+    return Input{"position_reference", Kind::position, true, "m"};
+  return std::nullopt;
+}
+
+bool has_input(const RecordingGuess& recording, const Input& input) {
+  return recording.find(input.kind, input.wanted) != nullptr;
+}
+
+struct Source {
+  std::string name, file;  ///< as the job has them
+  RecordingGuess guess;
+  std::optional<Input> input;
+};
+
+/// A quantity that the job may free.
+struct Candidate {
+  std::string name, entry;
+  std::string left_out = {};  ///< why it is not free; empty where it is
+};
+
+class Initialiser {
+ public:
+  Initialiser(const std::string& axis, const std::string& folder) : axis_(axis), folder_(folder) {}
+
+  InitialJob make(const std::vector<std::string>& paths) {
+    for (const std::string& path : paths) add(path);
+    if (axis_.empty()) {
+      choose_drive();
+    } else {
+      Diagnostics diagnostics;
+      const auto rig = read_axis_file(axis_, diagnostics);
+      diagnostics.throw_if_any();
+      structure_ = rig->model.structure;
+    }
+    choose_inputs();
+    drop_what_nothing_drives();
+    turn_signs();
+    if (axis_.empty()) start_axis();
+    list_candidates();
+    choose_free();
+    collect_guesses();
+    return {files(), std::move(guesses_)};
+  }
+
+ private:
+  /// From the folder of the job, unless that climbs through half of the disk.
+  std::string relative(const std::string& path) const {
+    const fs::path near = fs::proximate(fs::absolute(path), fs::absolute(folder_));
+    const bool far = near.generic_string().starts_with("../../../");
+    return (far ? fs::absolute(path) : near).lexically_normal().generic_string();
+  }
+
+  /// For the user's eye, what the files mark: a column of several recordings once.
+  void collect_guesses() {
+    std::set<std::string> told;
+    for (const Source& source : sources_) {
+      const auto tell = [&](const GuessedColumn& c) {
+        if (!c.guessed) return;
+        if (told.insert(c.column).second)
+          guesses_.push_back(harmless(fmt::format("{}: {}", c.column, fmt::join(c.reasons, "; "))));
+      };
+      tell(source.guess.time);
+      for (const GuessedColumn& c : source.guess.columns)
+        if (is_measured(c) || &c == &input_of(source)) tell(c);
+    }
+  }
+
+  static const GuessedColumn& input_of(const Source& source) {
+    return *source.guess.find(source.input->kind, source.input->wanted);
+  }
+
+  /// Whether the job compares the model with the column, unless it drives it.
+  bool is_measured(const GuessedColumn& c) const {
+    const auto signal = signal_of(c.kind);
+    return signal && !c.wanted && has_signal(*signal, structure_) &&
+           !(force_source() && c.kind == Kind::force);
+  }
+
+  void add(const std::string& path) {
+    Source source{fs::path(path).stem().string(),
+                  relative(path),
+                  guess_recording(RecordingFile(path), path),
+                  {}};
+    for (int n = 2; std::ranges::count(sources_, source.name, &Source::name) > 0; ++n)
+      source.name = fmt::format("{}-{}", fs::path(path).stem().string(), n);
+    sources_.push_back(std::move(source));
+  }
+
+  /// By what the first recording has of a kind that only one drive makes.
+  void choose_drive() {
+    const RecordingGuess& first = sources_.front().guess;
+    const bool loop = velocity_input(first, false) &&
+                      (first.find(Kind::set_velocity) || first.find(Kind::tachometer) ||
+                       first.find(Kind::preamplifier_voltage) ||
+                       std::ranges::none_of(kForceInputs, [&](const Input& input) {
+                         return has_input(first, input);
+                       }));
+    structure_.drive = loop ? Drive::velocity_loop : Drive::force_source;
+    structure_.transmission = loop ? Transmission::backlash : Transmission::rigid;
+  }
+
+  bool force_source() const { return structure_.drive == Drive::force_source; }
+
+  bool has_measured(const Source& source) const {
+    return std::ranges::any_of(source.guess.columns, [&](const GuessedColumn& c) {
+      return is_measured(c) && &c != &input_of(source);
+    });
+  }
+
+  /// One input for all recordings of a force source, since K_f belongs to it: one that all have, or
+  /// else the first of them.
+  void choose_inputs() {
+    if (!force_source()) {
+      for (Source& source : sources_) {
+        source.input = velocity_input(source.guess, !axis_.empty());
+        if (!source.input || source.input->kind != Kind::velocity) continue;
+        GuessedColumn& column = *source.guess.find(Kind::velocity, true);
+        column.reasons.push_back(fmt::format(
+            "a velocity that is asked for, as a command of {:g} V for 1 m/s", source.input->gain));
+        column.guessed = true;
+      }
+      return;
+    }
+    const auto all = std::ranges::find_if(kForceInputs, [&](const Input& input) {
+      return std::ranges::all_of(sources_,
+                                 [&](const Source& s) { return has_input(s.guess, input); });
+    });
+    const auto first = std::ranges::find_if(
+        kForceInputs, [&](const Input& input) { return has_input(sources_.front().guess, input); });
+    const auto chosen = all != kForceInputs.end() ? all : first;
+    for (Source& source : sources_)
+      if (chosen != kForceInputs.end() && has_input(source.guess, *chosen)) source.input = *chosen;
+  }
+
+  void drop_what_nothing_drives() {
+    std::vector<std::string> unusable;
+    std::erase_if(sources_, [&](const Source& source) {
+      const bool driven = source.input.has_value();
+      if (driven && has_measured(source)) return false;
+      std::vector<std::string> found;
+      for (const GuessedColumn& c : source.guess.columns) found.push_back(c.column);
+      for (const std::string& name : source.guess.unused)
+        found.push_back(name + " (not understood)");
+      unusable.push_back(harmless(fmt::format(
+          "{}: no column {}; it has {}. If one of them does, call it {}, for example; if not, "
+          "record it.",
+          source.guess.path, driven ? "tells how the axis moved" : "tells what drove the axis",
+          found.empty() ? "the time alone" : fmt::format("{}", fmt::join(found, ", ")),
+          driven           ? "position_mm or velocity_mps"
+          : force_source() ? "current_A, force_N or command_V"
+                           : "command_V")));
+      return true;
+    });
+    if (sources_.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(unusable, "\n")));
+    for (const std::string& text : unusable) guesses_.push_back("Left out: " + text);
+  }
+
+  static std::vector<double> driving(const Source& source) {
+    std::vector<double> values = input_of(source).values;
+    for (double& x : values) x *= source.input->gain;
+    return values;
+  }
+
+  static std::optional<ForceBalance> balance_of(const Source& source) {
+    const GuessedColumn *position = source.guess.find(Kind::position),
+                        *velocity = source.guess.find(Kind::velocity);
+    const std::vector<double> none;
+    return force_balance(source.guess.time.values, position ? position->values : none,
+                         velocity ? velocity->values : none, driving(source));
+  }
+
+  /// The axis file that is missing.
+  void start_axis() {
+    const Source& first = sources_.front();
+    if (!force_source()) {
+      starter_ = velocity_loop_starter(first.file);
+      guesses_.push_back(
+          "the axis is one with a velocity loop, with the values of a published axis");
+      return;
+    }
+    const GuessedColumn* velocity = first.guess.find(Kind::velocity);
+    DrivenMass seen;
+    seen.column = input_of(first).column;
+    seen.input = drives_in_newtons(first)             ? DrivenMass::Input::force
+                 : first.input->kind == Kind::current ? DrivenMass::Input::current
+                                                      : DrivenMass::Input::unknown;
+    seen.largest_input = largest(driving(first));
+    if (velocity) seen.largest_speed = largest(velocity->values);
+    seen.balance = balance_of(first);
+    starter_ = mass_starter(first.file, seen);
+    structure_ = starter_->structure;
+    if (seen.input != DrivenMass::Input::force)
+      guesses_.push_back(
+          "the gain of the drive, K_f in axis.yaml: M, B_a and the frictions are multiples of it");
+  }
+
+  static bool drives_in_newtons(const Source& source) {
+    return source.input->key == std::string_view("drive_force");
+  }
+
+  static double largest(const std::vector<double>& values) {
+    double size = 0.0;
+    for (const double x : values) size = std::max(size, std::abs(x));
+    return size;
+  }
+
+  /// An input that acts against the motion is recorded with the other sign.
+  void turn_signs() {
+    for (Source& source : sources_) {
+      GuessedColumn& input = *source.guess.find(source.input->kind, source.input->wanted);
+      std::string against;
+      if (force_source()) {
+        const auto balance = balance_of(source);
+        if (balance && balance->correlation < -0.5)
+          against = fmt::format("the axis accelerates against it (correlation {:.2f})",
+                                balance->correlation);
+      } else if (const GuessedColumn* position = source.guess.find(Kind::position);
+                 position && source.input->key == std::string_view("command")) {
+        const auto found = rate_ratio(source.guess.time.values, position->values, driving(source));
+        if (found && found->correlation < -0.5)
+          against =
+              fmt::format("the axis moves against it (correlation {:.2f})", found->correlation);
+      }
+      if (against.empty()) continue;
+      input.negative = !input.negative;
+      for (double& x : input.values) x = -x;
+      input.reasons.push_back(against + ": its sign is turned");
+      input.guessed = true;
+    }
+  }
+
+  // What is free
+
+  void list_candidates() {
+    // What no data sheet tells, the most wanted first. A gain of the drive last: what it scales
+    // has precedence.
+    static const std::vector<std::string> kWanted{"M",   "B_a", "V_L", "T_p",
+                                                  "k_g", "b_g", "F_s", "H"};
+    const auto add = [&](const std::string& name, const std::string& entry = "{}") {
+      const QuantityEntry* quantity = find_quantity(name);
+      if (is_used(*quantity, structure_)) candidates_.push_back({name, entry});
+    };
+    // Wherever the user's K_f takes them.
+    const bool any_gain = starter_ && starter_->gain_guessed;
+    const auto bounds = [](double lower, double upper, std::string_view unit) {
+      return fmt::format("{{bounds: [{}, {}]}}", with_unit(lower, unit), with_unit(upper, unit));
+    };
+    for (const std::string& name : kWanted) {
+      const Quantity& q = find_quantity(name)->quantity;
+      add(name, any_gain ? bounds(std::max(q.lower, 1e-3), q.upper, q.unit) : "{}");
+    }
+    std::erase_if(candidates_,
+                  [&](const Candidate& c) { return force_source() && c.name == "F_s"; });
+    for (const QuantityEntry& entry : quantity_list()) {
+      if (!effect_named(entry.group) || !is_used(entry, structure_) || entry.quantity.shape)
+        continue;
+      const bool force = starter_ && entry.quantity.unit == "N";
+      const double most = force ? (any_gain ? 1e4 : 2.0) * starter_->largest_force : 0.0;
+      add(entry.name, force ? bounds(entry.quantity.lower < 0.0 ? -most : 0.0, most, "N") : "{}");
+    }
+    if (starter_ && !force_source()) add("K_1");
+    // An encoder that rounds down reads half a step low.
+    const RecordingGuess& first = sources_.front().guess;
+    const GuessedColumn* position = first.find(Kind::position);
+    const bool offset = position && !force_source() && !is_rounded_away(*position, first);
+    if (const double grid = offset ? quantum(position->values) : 0.0; grid > 0.0)
+      add("position.bias", bounds(-two_digits(grid), two_digits(grid), "m"));
+    if (!force_source() || std::ranges::any_of(sources_, drives_in_newtons)) return;
+    add("K_f");
+    if (starter_) candidates_.back().left_out = kOnlyRatios;
+  }
+
+  /// Whether the noise of a position is below the steps of its encoder, while a velocity tells of
+  /// the same motion. Steps are no noise: at rest they are an offset. A force source needs the
+  /// position all the same, for what the velocity says little of: slow friction.
+  bool is_rounded_away(const GuessedColumn& position, const RecordingGuess& recording) const {
+    return !force_source() && recording.find(Kind::velocity) &&
+           noise_from_differences(position.values) < quantum(position.values);
+  }
+
+  /// Takes out one after the other what the recordings leave open, the least wanted first.
+  void choose_free() {
+    for (;;) {
+      const Job job = read_job();
+      const Forecast found = forecast(job, draw_start(job, 0));
+      if (!found.finite) {
+        guesses_.push_back(
+            "what the recordings can tell is not known: with the values of the axis file the "
+            "simulation does not get through them");
+        return;
+      }
+      if (job.free.size() == 1) return;
+      Candidate* last = nullptr;
+      bool unseen = false;
+      std::size_t index = 0;
+      for (Candidate& candidate : candidates_) {
+        if (!candidate.left_out.empty()) continue;
+        const ParameterUncertainty& u = found.uncertainty.parameters[index];
+        if (!u.determined || u.weak) {
+          last = &candidate;
+          unseen = std::ranges::count(found.together.without_influence, index) > 0;
+        }
+        ++index;
+      }
+      if (last == nullptr) return;
+      const std::string_view need = excitation_needed(last->name);
+      last->left_out = unseen ? "no recorded signal shows it" : "these recordings leave it open";
+      if (!need.empty()) last->left_out += fmt::format("; it needs {}", need);
+      if (last->name == "K_f") last->left_out = kOnlyRatios;
+    }
+  }
+
+  /// The job as the reader takes it, which is also the proof that it does.
+  Job read_job() const {
+    try {
+      return read_job_draft(files(), fs::absolute(folder_).string()).job;
+    } catch (const ConfigError& error) {
+      // The places are of a file that the user never sees.
+      std::set<std::string> messages;
+      for (const Diagnostic& d : error.diagnostics()) messages.insert(d.message);
+      throw std::runtime_error(
+          fmt::format("no job can be made of these recordings:\n{}", fmt::join(messages, "\n")));
+    }
+  }
+
+  Files files() const {
+    Files files;
+    if (starter_) files.emplace_back(kAxisName, starter_->text);
+    files.emplace_back(kJobName, job_text());
+    return files;
+  }
+
+  // The job file
+
+  std::string job_text() const {
+    std::string text = fmt::format(
+        "# Written by axisfit {} --init. It runs as it is:\n#\n"
+        "#   fit-params {} --check    what the recordings show, before the fit\n"
+        "#   fit-params {}\n#\n"
+        "# What is marked GUESSED nothing in the recordings says: look at that first. All\n"
+        "# keys: docs/job-file.md.\n"
+        "axis: {}\n"
+        "recordings:\n",
+        version(), kJobName, kJobName, scalar(starter_ ? kAxisName : relative(axis_)));
+    for (std::size_t i = 0; i < sources_.size(); ++i)
+      text += recording_text(sources_[i], sources_.size() > 1 && i + 1 == sources_.size());
+    text +=
+        fmt::format("free:   # initial values are those of the axis file{}\n",
+                    starter_ && starter_->gain_guessed ? "; bounds leave room for any K_f" : "");
+    for (const Candidate& c : candidates_) {
+      if (c.left_out.empty())
+        text += fmt::format("  {}: {}\n", c.name, c.entry);
+      else
+        text += comment(fmt::format("{}: {}   left out: {}", c.name, c.entry, c.left_out), 2);
+    }
+    return text + fit_text();
+  }
+
+  std::string recording_text(const Source& source, bool validates) const {
+    const RecordingGuess& guess = source.guess;
+    std::string text =
+        fmt::format("  - name: {}\n    file: {}\n", scalar(source.name), scalar(source.file));
+    text +=
+        validates ? "    role: validate   # not fitted: it judges the fit\n" : "    role: fit\n";
+    text += initial_text(guess);
+    const Sampling found = sampling(guess.time.values);
+    text += reasons_text(guess.time, 4);
+    text +=
+        fmt::format("    time: {}   # {:.4g} Hz, {:.4g} s\n",
+                    column_map(guess.time, guess.time.unit), 1.0 / found.interval, found.duration);
+    text += "    signals:\n";
+    const GuessedColumn& input = input_of(source);
+    text += input_text(source, input);
+    std::vector<std::string> unused = guess.unused;
+    for (const GuessedColumn& c : guess.columns) {
+      if (&c == &input) continue;
+      if (!is_measured(c)) {
+        unused.push_back(c.column);
+        continue;
+      }
+      GuessedColumn written = c;
+      const bool compared = c.kind == Kind::position && is_rounded_away(c, guess);
+      if (compared)
+        written.reasons.push_back(fmt::format(
+            "compared only: its steps of {:.3g} m are no noise, and the velocity tells the same",
+            quantum(c.values)));
+      text += reasons_text(written, 6);
+      text += fmt::format("      {}: {}\n", info(*signal_of(c.kind)).name,
+                          column_map(c, c.unit, compared ? "fit" : ""));
+    }
+    if (!unused.empty()) text += comment(fmt::format("Not used: {}", fmt::join(unused, ", ")), 4);
+    return text;
+  }
+
+  static std::string reasons_text(const GuessedColumn& column, std::size_t indent) {
+    if (column.reasons.empty()) return {};
+    return comment(
+        fmt::format("{}{}.", column.guessed ? kGuessed : "", fmt::join(column.reasons, "; ")),
+        indent);
+  }
+
+  std::string input_text(const Source& source, const GuessedColumn& input) const {
+    GuessedColumn written = input;
+    written.factor *= source.input->gain;
+    std::string unit = input.unit;
+    if (source.input->unit == "V" && si_unit(input.kind) != "V") {
+      // The job's command is in volts, whatever the drive takes.
+      const auto factor = unit_factor(unit, si_unit(input.kind));
+      written.factor *= std::get<double>(factor);
+      unit = "V";
+      if (source.input->kind != Kind::velocity)
+        written.reasons.push_back(
+            "the command of a force source; a job counts it in V, whatever it is, and K_f in N/V");
+    }
+    return reasons_text(written, 6) +
+           fmt::format("      {}: {}\n", source.input->key, column_map(written, unit));
+  }
+
+  /// A recording that begins at rest needs no more than where; another one its first samples.
+  std::string initial_text(const RecordingGuess& guess) const {
+    const GuessedColumn *position = guess.find(Kind::position),
+                        *velocity = guess.find(Kind::velocity);
+    if (position == nullptr && velocity == nullptr) return {};
+    if (force_source()) return "    initial_state: data   # from the first samples\n";
+    constexpr std::size_t kFirst = 4;
+    double speed = 0.0, noise = 0.0;
+    if (velocity) {
+      for (std::size_t i = 0; i < kFirst; ++i) speed += velocity->values[i] / double(kFirst);
+      noise = noise_from_differences(velocity->values);
+    } else {
+      const auto& t = guess.time.values;
+      speed = (position->values[kFirst] - position->values[0]) / (t[kFirst] - t[0]);
+      noise = std::max(noise_from_differences(position->values), quantum(position->values)) /
+              (t[kFirst] - t[0]);
+    }
+    if (std::abs(speed) > 5.0 * noise + 1e-9)
+      return "    initial_state: data   # from the first samples: the axis moves already\n";
+    if (position == nullptr || position->values.front() == 0.0) return {};
+    return fmt::format("    set: {{initial.y0: {}}}   # it begins at rest, there\n",
+                       with_unit(position->values.front(), "m"));
+  }
+
+  std::string fit_text() const {
+    // A mass that a force drives is an open integral: free running it drifts away from the
+    // recording whatever the fit.
+    const RecordingGuess& first = sources_.front().guess;
+    const GuessedColumn *position = first.find(Kind::position),
+                        *velocity = first.find(Kind::velocity);
+    if (!force_source() || position == nullptr) return {};
+    const std::vector<double> none;
+    const double rate =
+        telling_coupling(first.time.values, position->values, velocity ? velocity->values : none);
+    return "fit:\n" +
+           comment(
+               "The position is an open integral of the force: free running it drifts away "
+               "whatever the fit. So the simulation is held to the recording, and the "
+               "parameters are those that predict best. At this rate a hundredth of the "
+               "acceleration, were it missing, would show as ten times the noise; a firmer "
+               "hold hides more.",
+               2) +
+           fmt::format("  coupling: {{fixed: {} 1/s}}\n", two_digits(rate));
+  }
+
+  std::string axis_, folder_;
+  std::vector<Source> sources_;
+  Structure structure_;
+  std::optional<StarterAxis> starter_;  ///< none where an axis file is given
+  std::vector<Candidate> candidates_;
+  std::vector<std::string> guesses_;
+};
+
+}  // namespace
+
+InitialJob initial_job(const std::vector<std::string>& recordings, const std::string& axis,
+                       const std::string& folder) {
+  return Initialiser(axis, folder).make(recordings);
+}
+
+}  // namespace axisfit

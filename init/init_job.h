@@ -1,0 +1,26 @@
+// A first job file for recordings that nobody has described yet.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/results/output_folder.h"
+
+namespace axisfit {
+
+struct InitialJob {
+  Files files;                       ///< the job last
+  std::vector<std::string> guesses;  ///< what the user should look at, a sentence each
+};
+
+/// Looks at the recordings and writes a job that fits them as it is: columns, units and signs by
+/// recording_guess.h, an axis of its own making unless `axis` names a file, and as free what the
+/// recordings can determine of it. What had to be guessed is marked GUESSED in the files. The first
+/// recording is fitted, the last of several validates. Paths in the job start at `folder`, where
+/// the files are meant to go; nothing is written there.
+///
+/// Throws std::runtime_error where the recordings make no job.
+InitialJob initial_job(const std::vector<std::string>& recordings, const std::string& axis,
+                       const std::string& folder);
+
+}  // namespace axisfit

@@ -1,0 +1,40 @@
+// What the columns of a recording are: by their names, and by what their values say of each other.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "init/column_guess.h"
+#include "io/recording/recording_file.h"
+
+namespace axisfit {
+
+/// A column with what a job would say of it.
+struct GuessedColumn {
+  std::string column;  ///< its name
+  Kind kind = Kind::command;
+  bool wanted = false;  ///< see ColumnGuess
+  std::string unit;     ///< as written in the job
+  double factor = 1.0;
+  bool negative = false;             ///< its sign is to be turned
+  std::vector<std::string> reasons;  ///< what was measured, sentences without a full stop
+  bool guessed = false;              ///< something of it neither name nor measurement says
+  std::vector<double> values;        ///< in the SI unit of its kind
+};
+
+struct RecordingGuess {
+  std::string path;
+  GuessedColumn time;
+  std::vector<GuessedColumn> columns;  ///< one at most of each kind, measured and wanted
+  std::vector<std::string> unused;     ///< names of all others
+
+  const GuessedColumn* find(Kind kind, bool wanted = false) const;
+  GuessedColumn* find(Kind kind, bool wanted = false);
+};
+
+/// Names first. Where they leave a unit open, the derivative of the position against the velocity,
+/// and that of the velocity against the acceleration, tell the ratio of their units and their
+/// signs; last the size of the values. Throws RecordingError where nothing can be the time.
+RecordingGuess guess_recording(const RecordingFile& file, const std::string& path);
+
+}  // namespace axisfit

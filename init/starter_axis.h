@@ -1,0 +1,41 @@
+// Axis files to start from, for recordings whose axis nobody has described.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "init/force_balance.h"
+#include "sim/model.h"
+
+namespace axisfit {
+
+struct StarterAxis {
+  std::string text;  ///< of the axis file; what is guessed in it is marked
+  Structure structure;
+  double largest_force = 0.0;  ///< N, of the drive, either way; of a force source alone
+  bool gain_guessed = false;   ///< K_f is the user's to put, and what is fitted goes with it
+};
+
+/// The axis file of the paper's axis.
+std::string_view paper_axis();
+
+/// One with a velocity loop: the paper's. `recording` is the file that it is for.
+StarterAxis velocity_loop_starter(const std::string& recording);
+
+/// What a recording shows of a mass that a force moves.
+struct DrivenMass {
+  enum class Input { force, current, unknown };
+  std::string column;  ///< that drives it
+  Input input = Input::unknown;
+  double largest_input = 0.0;  ///< either way
+  double largest_speed = 1.0;  ///< m/s
+  std::optional<ForceBalance> balance;
+};
+
+/// A force source that moves one mass with viscous and Coulomb friction and a constant force. Where
+/// the input is no force, its gain is the power of ten, at least 1 N/V, that makes the mass 0.1 kg
+/// or more: motion does not show the gain.
+StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen);
+
+}  // namespace axisfit

@@ -1,0 +1,34 @@
+// Job files: what to fit to which recordings, in YAML. docs/job-file.md tells of every
+// key.
+#pragma once
+
+#include <string>
+
+#include "fit/design/experiment.h"
+#include "io/config/key.h"
+#include "io/results/output_folder.h"
+#include "sim/rig.h"
+
+namespace axisfit {
+
+/// A job with what only its files know.
+struct JobFile {
+  Job job;
+  Rig rig;                      ///< of the axis file, with the job's effects
+  std::string axis_file;        ///< as found
+  std::string text, axis_text;  ///< what stood in the two files when they were read
+};
+
+/// The keys of a job file.
+const Section& job_keys();
+
+/// Reads a job file, its axis file and its recordings. Recordings with relative paths are looked
+/// for below `data_directory`, or next to the job file where that is empty. Throws ConfigError with
+/// everything that is wrong.
+JobFile read_job_file(const std::string& path, const std::string& data_directory = {});
+
+/// The same for a job that is yet to be written: as if `files`, the last of which is the job, were
+/// in `folder`, which need not exist.
+JobFile read_job_draft(const Files& files, const std::string& folder);
+
+}  // namespace axisfit

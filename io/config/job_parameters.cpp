@@ -1,0 +1,157 @@
+#include "io/config/job_parameters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/units.h"
+#include "io/config/axis_file.h"
+#include "io/config/job_recording.h"
+
+namespace axisfit {
+namespace {
+
+/// "0.56 ohm", for messages.
+std::string rounded(double value, std::string_view unit) {
+  return with_unit(fmt::format("{:g}", value), unit);
+}
+
+/// The keys for a free quantity, whose values are such amounts.
+Section free_keys(const Amount& amount) {
+  return {
+      Key::optional("initial", amount, Otherwise{"value of the axis file or job"},
+                    "where the fit starts"),
+      Key::optional("bounds", Bounds{amount},
+                    Otherwise{"on a log scale initial / 100 and initial * 100; on a linear scale "
+                              "the range of the quantity"},
+                    "between which it is estimated; within the range of the quantity"),
+      Key::optional("scale", Choice{{{"log"}, {"linear"}}},
+                    Otherwise{"from the bounds or the kind of quantity"},
+                    "the scale on which it is estimated"),
+      Key::optional(
+          "prior",
+          Map{{Key::required("mean", amount, "its expected value"),
+               Key::required("sigma", sigma_amount(amount.unit), "its standard deviation")}},
+          Otherwise{"none"}, "known from elsewhere, normally distributed"),
+      Key::optional("per_recording", Flag{}, false,
+                    "`true`: a value for each recording with the role `fit`")};
+}
+
+void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job& job) {
+  const Quantity& quantity = entry.quantity;
+  FreeParameter parameter;
+  parameter.quantity = entry.index;
+  parameter.initial = *members(job.model)[entry.index];
+  std::optional<std::pair<double, double>> bounds;
+  std::optional<std::size_t> scale;
+  bool per_recording = false;
+  // "M:" alone is as good as "M: {}".
+  Diagnostics none;
+  const Section keys = free_keys({std::string(quantity.unit), quantity.lower, quantity.upper});
+  ConfigMap map(node.is_null() ? *ConfigNode::parse("{}", node.file(), none) : node, keys);
+  const bool initial_given = map.read("initial", parameter.initial).has_value();
+  if (const auto given = map.optional("bounds"))
+    bounds = given->as_bounds(quantity.unit, quantity.lower, quantity.upper);
+  map.read("scale", scale);
+  map.read("per_recording", per_recording);
+  if (const auto given = map.optional("prior")) {
+    ConfigMap prior(*given, keys_below(keys, "prior"));
+    parameter.prior.emplace();
+    std::optional<double> mean;
+    prior.read("mean", mean);
+    if (const auto sigma = prior.required("sigma"))
+      parameter.prior->sigma = read_sigma(*sigma, quantity.unit);
+    prior.finish();
+    if (mean && bounds && (*mean < bounds->first || *mean > bounds->second))
+      node.error(fmt::format("the prior of {} expects {}, outside its bounds, {} to {}", entry.name,
+                             rounded(*mean, quantity.unit), rounded(bounds->first, quantity.unit),
+                             rounded(bounds->second, quantity.unit)));
+    parameter.prior->mean = mean.value_or(parameter.initial);
+  }
+  map.finish();
+
+  // What has no zero in its range, or is part of every axis, is estimated by its order of
+  // magnitude; frictions, biases, delays and initial states may be zero and are not.
+  const bool positive = entry.group.empty() && quantity.standard != 0.0 && quantity.lower >= 0.0;
+  parameter.logarithmic =
+      scale ? *scale == 0 : (bounds ? bounds->first > 0.0 : positive && parameter.initial > 0.0);
+  for (const Recording& r : job.recordings)
+    if (const auto reason = ignored_by_coupling(entry, job.options.coupling, r); !reason.empty())
+      return node.error(reason);
+  const auto add = [&](double initial, std::optional<std::size_t> recording) {
+    FreeParameter p = parameter;
+    p.initial = initial;
+    p.recording = recording;
+    p.lower = bounds ? bounds->first : quantity.lower;
+    p.upper = bounds ? bounds->second : quantity.upper;
+    if (!bounds && p.logarithmic) {
+      p.lower = std::max(p.lower, initial / 100.0);
+      p.upper = std::min(p.upper, initial * 100.0);
+    }
+    if (p.logarithmic && !(p.lower > 0.0 && p.initial > 0.0))
+      node.error(
+          fmt::format("{} on a logarithmic scale needs an initial value and a lower bound "
+                      "above zero",
+                      entry.name));
+    else if (p.initial < p.lower || p.initial > p.upper)
+      node.error(fmt::format("the initial value {} of {} lies outside its bounds, {} to {}",
+                             rounded(p.initial, quantity.unit), entry.name,
+                             rounded(p.lower, quantity.unit), rounded(p.upper, quantity.unit)));
+    for (const Recording& r : job.recordings)
+      for (const auto& [index, value] : r.overrides)
+        if (!p.recording && index == p.quantity && entry.group != "initial")
+          node.error(entry.name == "K_f"
+                         ? fmt::format("K_f cannot be fitted to '{}', whose drive_force is in "
+                                       "newtons already",
+                                       r.name)
+                         : fmt::format("{} is fitted for all recordings but set for '{}': remove "
+                                       "one, or say per_recording: true",
+                                       entry.name, r.name));
+    job.free.push_back(p);
+  };
+  if (!per_recording) {
+    add(parameter.initial, std::nullopt);
+    return;
+  }
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    const Recording& recording = job.recordings[r];
+    if (recording.role != Role::fit) continue;
+    double initial = parameter.initial;
+    if (!initial_given)
+      for (const auto& [index, value] : recording.overrides)
+        if (index == entry.index) initial = value;
+    add(initial, r);
+  }
+}
+
+}  // namespace
+
+Section free_quantities() {
+  // Those for a quantity are the same but for its unit and range, which its description tells.
+  const Map amount{free_keys({"m", -kUnlimited, kUnlimited, "a value of the quantity"}), 0, true,
+                   "free_quantity"};
+  const Map number{free_keys({"1", -kUnlimited, kUnlimited, "a value of the quantity"}), 0, true,
+                   "free_number"};
+  Section keys;
+  for (const QuantityEntry& entry : quantity_list()) {
+    const Key quantity = Key::of(entry.quantity, entry.name);
+    Key key = Key::optional(entry.name, is_dimensionless(entry.quantity.unit) ? number : amount,
+                            Otherwise{"not fitted"},
+                            fmt::format("{}; {}", quantity.meaning, value_text(quantity.form)));
+    key.used = quantity.used;
+    keys.push_back(std::move(key));
+  }
+  return keys;
+}
+
+void read_free(const ConfigNode& node, Job& job) {
+  ConfigMap map(node);
+  for (const auto& [key, value] : map.entries())
+    if (const QuantityEntry* entry = quantity_named(key, job.model.structure))
+      read_free_parameter(value, *entry, job);
+  map.finish();
+  if (node.is_map() && map.entries().empty())
+    node.error("nothing is free: name at least one quantity to fit");
+}
+
+}  // namespace axisfit

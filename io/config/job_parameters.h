@@ -1,0 +1,16 @@
+// A job file's `free`: the quantities that are estimated.
+#pragma once
+
+#include "fit/data/job.h"
+#include "io/config/config.h"
+
+namespace axisfit {
+
+/// All quantities, each with the keys for a free one.
+Section free_quantities();
+
+/// Adds to the job, whose model and recordings are read already. With diagnostics where anything is
+/// wrong.
+void read_free(const ConfigNode& node, Job& job);
+
+}  // namespace axisfit

@@ -1,0 +1,428 @@
+#include "io/config/job_recording.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/units.h"
+#include "fit/data/noise.h"
+#include "fit/data/standstill.h"
+#include "fit/estimation/continuation.h"
+#include "fit/estimation/initial_state.h"
+#include "io/config/axis_file.h"
+#include "io/recording/csv.h"
+#include "io/recording/recording_file.h"
+
+namespace axisfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of a noise, in any unit. Below this squares of residuals over it overflow.
+constexpr double kLeastSigma = 1e-40;
+
+/// Every quantity of the list, as a value that differs from the axis file's.
+Section override_keys() {
+  Section keys;
+  for (const QuantityEntry& entry : quantity_list()) {
+    Key key = Key::of(entry.quantity, entry.name);
+    key.is_required = false;
+    key.standard.clear();
+    key.otherwise = "of the axis file or job";
+    keys.push_back(std::move(key));
+  }
+  return keys;
+}
+
+/// The input and all that can be measured.
+Section signal_keys() {
+  const Map column{column_keys(), 0, false, "column"};
+  Section keys{
+      Key::optional("command", column, Otherwise{"one of the other inputs"},
+                    "the set-velocity voltage U in V; each value is held from its sample on"),
+      Key::optional("position_reference", column, Otherwise{"not needed beside a command"},
+                    "in m, instead of the command: the slave control unit of the axis file makes "
+                    "the command from it and the position")};
+  for (const SignalInfo& signal : kSignalTable) {
+    Section measured = column_keys();
+    measured.push_back(
+        Key::optional("sigma",
+                      Either{{sigma_amount(signal.unit),
+                              Choice{{{"rest", "what the signal shows while the arm rests"},
+                                      {"fit", "estimated together with the parameters"}}}}},
+                      Otherwise{"estimated from the samples"}, "standard deviation of the noise"));
+    measured.push_back(Key::optional("fit", Flag{}, Measurement().fitted,
+                                     "`false`: compare and report, do not fit"));
+    keys.push_back(Key::optional(
+        std::string(signal.name), Map{std::move(measured), 0, false, "measured_column"},
+        Otherwise{"not measured"}, fmt::format("{}, in {}", signal.meaning, signal.unit)));
+  }
+  return keys;
+}
+
+class RecordingReader {
+ public:
+  RecordingReader(const Rig& rig, CouplingMode coupling, const std::string& data_directory)
+      : rig_(rig), coupling_(coupling), data_directory_(data_directory) {}
+
+  Recording read(const ConfigNode& node) {
+    Recording recording;
+    ConfigMap map(node, recording_keys());
+    std::optional<std::string> path;
+    const auto file = map.read("file", path);
+    if (path) {
+      recording.file = *path;
+      recording.name = fs::path(*path).stem().string();
+    }
+    map.read("name", recording.name);
+    map.read("role", recording.role);
+    map.read("initial_state", recording.initial_state);
+    const auto initial_samples = map.read("initial_samples", recording.initial_samples);
+    map.read("acceleration_at_rest", recording.acceleration_at_rest);
+    map.read("score_initial_samples", recording.score_initial_samples);
+    if (const auto set = map.optional("set")) read_overrides(*set, recording);
+    const auto time = map.required("time");
+    const auto signals = map.required("signals");
+    const auto trim = map.optional("trim");
+    std::optional<RecordingFile> data;
+    if (path) {
+      try {
+        data.emplace(resolved(*file, *path, data_directory_));
+      } catch (const RecordingError& error) {
+        file->error(error.what());
+      }
+    }
+    if (data && time && signals) read_samples(*data, *time, *signals, trim, recording);
+    if (!recording.score_initial_samples && recording.times.size() >= 10 &&
+        recording.initial_samples >= recording.times.size())
+      initial_samples.value_or(node).error(
+          fmt::format("{} initial samples that are not scored leave nothing of {} to score",
+                      recording.initial_samples, recording.times.size()));
+    map.finish();
+    return recording;
+  }
+
+ private:
+  void read_overrides(const ConfigNode& node, Recording& recording) {
+    ConfigMap map(node);
+    for (const auto& [key, value] : map.entries())
+      if (const QuantityEntry* entry = quantity_named(key, rig_.model.structure))
+        if (const auto given = read_value(value, entry->quantity))
+          recording.overrides.emplace_back(entry->index, *given);
+    map.finish();
+    Model<double> model = rig_.model;
+    for (const auto& [index, value] : recording.overrides) *members(model)[index] = value;
+    if (const std::string reason = refusal(model); !reason.empty()) node.error(reason);
+  }
+
+  using Values = std::vector<double>;
+
+  /// The part of a recording that is kept, in recorded time, s.
+  struct Trim {
+    double from = -kUnlimited, to = kUnlimited;
+    bool keeps(double time) const { return time >= from && time <= to; }
+  };
+
+  static Trim read_trim(const ConfigNode& node) {
+    Trim trim;
+    ConfigMap map(node, keys_below(recording_keys(), "trim"));
+    map.read("from", trim.from);
+    map.read("to", trim.to);
+    map.finish();
+    return trim;
+  }
+
+  static Values trimmed(const Values& values, const Values& times, const Trim& trim) {
+    Values kept;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (trim.keeps(times[i])) kept.push_back(values[i]);
+    return kept;
+  }
+
+  void read_samples(const RecordingFile& data, const ConfigNode& time_node,
+                    const ConfigNode& signals_node, const std::optional<ConfigNode>& trim_node,
+                    Recording& recording) {
+    const auto times = read_times(data, time_node);
+    const Trim trim = trim_node ? read_trim(*trim_node) : Trim();
+    ConfigMap signals(signals_node, keys_below(recording_keys(), "signals"));
+    const auto input = read_input(data, signals_node, signals, times, recording);
+    const std::size_t named = read_measurements(data, signals, times, trim, recording);
+    const bool all_known = signals.finish();
+    if (!times || !input) return;
+    // Commands from before the first sample kept still act on it.
+    Values command_times, commands;
+    for (std::size_t i = 0; i < times->size() && (*times)[i] <= trim.to; ++i) {
+      command_times.push_back((*times)[i]);
+      commands.push_back((*input)[i]);
+    }
+    recording.times = trimmed(*times, *times, trim);
+    // Effects of the time mean that of the recording, and at 1.7e9 s a double is too coarse to
+    // step on.
+    if (constexpr double kDay = 86400.0; std::abs(times->front()) > kDay) {
+      for (double& t : command_times) t -= times->front();
+      for (double& t : recording.times) t -= times->front();
+    }
+    recording.command = schedule_from_samples(command_times, commands);
+    if (recording.times.size() < 10) {
+      const std::size_t left = recording.times.size();
+      const std::string samples = fmt::format("{} sample{}", left, left == 1 ? "" : "s");
+      trim_node.value_or(time_node).error(
+          trim_node ? fmt::format("{} of {}, from {:g} s to {:g} s, are left: at least 10 must be",
+                                  samples, times->size(), times->front(), times->back())
+                    : fmt::format("the recording has {}: at least 10 are needed", samples));
+      recording.times = {0.0, 1.0};
+      return;
+    }
+    if (all_known) check_samples(signals_node, named, recording);
+    take_noise_from_rest(signals_node, recording);
+    if (recording.initial_state == InitialState::data) initial_state_from_data(recording);
+    if (!recording.acceleration_at_rest) leave_out_acceleration_at_rest(recording);
+  }
+
+  /// What drives the axis: a command in volts, for a force source also a recorded force, or a
+  /// position reference. Nothing, with diagnostics, unless it fits the times.
+  std::optional<Values> read_input(const RecordingFile& data, const ConfigNode& signals_node,
+                                   ConfigMap& signals, const std::optional<Values>& times,
+                                   Recording& recording) {
+    const bool force_source = rig_.model.structure.drive == Drive::force_source;
+    const auto command = signals.optional("command");
+    const auto force = force_source ? signals.optional("drive_force") : std::nullopt;
+    const auto reference = force_source ? std::nullopt : signals.optional("position_reference");
+    if (command && force)
+      force->error("give either the command or the drive force, not both: each drives the axis");
+    if (command && reference)
+      reference->error("the command is recorded and drives the axis: remove the reference");
+    if (!command && !force && !reference)
+      signals_node.error(force_source
+                             ? "the axis is driven by a command or a drive_force: name one "
+                               "of them"
+                             : "the axis is driven by the command: name its column, or that of the "
+                               "position_reference, from which the slave control unit makes it");
+    if (command && force) return std::nullopt;
+    if (reference && !command) return read_reference(data, *reference, signals, times);
+    std::optional<Values> input;
+    if (force) {
+      input = read_column(data, *force, "N");
+      // The source turns U into K_f U newtons; a force in newtons needs no gain.
+      const std::size_t gain = find_quantity("K_f")->index;
+      if (std::ranges::any_of(recording.overrides, [&](const auto& o) { return o.first == gain; }))
+        force->error("a drive_force is in newtons already: remove K_f from 'set'");
+      recording.overrides.emplace_back(gain, 1.0);
+    } else if (command) {
+      input = read_column(data, *command, "V");
+    }
+    if (input && times && !same_length(force ? *force : *command, *input, *times)) input.reset();
+    return input;
+  }
+
+  static const Section& measurement_keys(std::string_view signal) {
+    return keys_below(keys_below(recording_keys(), "signals"), signal);
+  }
+
+  /// The command that the axis file's slave control unit makes of a recorded position reference.
+  std::optional<Values> read_reference(const RecordingFile& data, const ConfigNode& node,
+                                       ConfigMap& signals,
+                                       const std::optional<Values>& times) const {
+    const auto reference = read_column(data, node, "m");
+    const auto position_node = signals.optional("position");
+    if (!position_node) {
+      node.error(
+          "a position_reference drives the slave control unit, which reads the encoder: name "
+          "the column of the position too");
+      return std::nullopt;
+    }
+    ConfigMap map(*position_node, measurement_keys("position"));
+    const auto position = read_column(data, map, "m");
+    if (!reference || !position || !times) return std::nullopt;
+    if (!same_length(node, *reference, *times) || !same_length(*position_node, *position, *times))
+      return std::nullopt;
+    return command_from_reference(rig_.controller, *times, *reference, *position);
+  }
+
+  /// All signals but the input. Returns how many were named, rightly or wrongly.
+  std::size_t read_measurements(const RecordingFile& data, ConfigMap& signals,
+                                const std::optional<Values>& times, const Trim& trim,
+                                Recording& recording) {
+    const Structure& structure = rig_.model.structure;
+    std::size_t named = 0;
+    for (const SignalInfo& signal : kSignalTable) {
+      const bool is_input =
+          signal.signal == Signal::drive_force && structure.drive == Drive::force_source;
+      const auto given = is_input ? std::nullopt : signals.optional(signal.name);
+      if (!given) continue;
+      ++named;
+      if (!has_signal(signal.signal, structure)) {
+        given->error(fmt::format("the drive of this axis has no {}: remove it", signal.name));
+        continue;
+      }
+      auto measurement = read_measurement(data, *given, signal, times, trim);
+      if (measurement) recording.measurements.push_back(std::move(*measurement));
+    }
+    return named;
+  }
+
+  static std::optional<Measurement> read_measurement(const RecordingFile& data,
+                                                     const ConfigNode& node,
+                                                     const SignalInfo& signal,
+                                                     const std::optional<Values>& times,
+                                                     const Trim& trim) {
+    ConfigMap map(node, measurement_keys(signal.name));
+    Measurement measurement;
+    measurement.signal = signal.signal;
+    const auto values = read_column(data, map, signal.unit);
+    map.read("fit", measurement.fitted);
+    if (const auto sigma = map.optional("sigma")) {
+      if (sigma->text() == "fit") {
+        measurement.noise = NoiseSource::fit;
+      } else if (sigma->text() == "rest") {
+        measurement.noise = NoiseSource::rest;
+      } else {
+        measurement.sigma = read_sigma(*sigma, signal.unit);
+        measurement.noise = NoiseSource::given;
+      }
+    }
+    map.finish();
+    if (!values || !times || !same_length(node, *values, *times)) return std::nullopt;
+    measurement.values = trimmed(*values, *times, trim);
+    if (measurement.noise != NoiseSource::given) {
+      measurement.sigma = noise_from_differences(measurement.values);
+      if (!(measurement.sigma >= kLeastSigma))
+        node.error(
+            fmt::format("the noise of {} cannot be estimated from these samples: give its "
+                        "sigma, for example 'sigma: {}'",
+                        signal.name, with_unit("0.01", signal.unit)));
+    }
+    return measurement;
+  }
+
+  /// Whether the recording has what its role and the options of the fit need.
+  void check_samples(const ConfigNode& signals_node, std::size_t named,
+                     const Recording& recording) const {
+    const bool held = recording.find(Signal::position) || recording.find(Signal::velocity);
+    if (named == 0) {
+      std::vector<std::string_view> names;
+      for (const SignalInfo& signal : kSignalTable) names.push_back(signal.name);
+      signals_node.error(
+          fmt::format("nothing to compare with: name at least one of {}", fmt::join(names, ", ")));
+    } else if (recording.role == Role::fit && recording.measurements.size() == named &&
+               std::ranges::none_of(recording.measurements, &Measurement::fitted)) {
+      signals_node.error(
+          "nothing to fit: every signal says fit: false; drop that from one, or give "
+          "the recording the role validate");
+    }
+    if (coupling_ == CouplingMode::fixed && !held)
+      signals_node.error("a fixed coupling needs a recorded position or velocity");
+    Model<double> model = rig_.model;
+    const auto member = members(model);
+    for (const auto& [quantity, value] : recording.overrides) *member[quantity] = value;
+    for (const QuantityEntry& entry : quantity_list())
+      if (const auto reason = ignored_by_coupling(entry, coupling_, recording);
+          !reason.empty() && *member[entry.index] != 0.0)
+        signals_node.error(reason);
+    if (recording.initial_state == InitialState::data && !held)
+      signals_node.error("initial_state: data needs a recorded position or velocity");
+  }
+
+  static void take_noise_from_rest(const ConfigNode& signals_node, Recording& recording) {
+    for (Measurement& m : recording.measurements) {
+      if (m.noise != NoiseSource::rest) continue;
+      if (const double noise = noise_at_rest(recording, m); noise >= kLeastSigma)
+        m.sigma = noise;
+      else
+        signals_node.error(fmt::format(
+            "the arm does not rest for 50 samples in this recording, or no velocity or position "
+            "shows it: give the sigma of {}, or leave it out",
+            info(m.signal).name));
+    }
+  }
+
+  static bool same_length(const ConfigNode& node, const std::vector<double>& values,
+                          const std::vector<double>& times) {
+    if (values.size() == times.size()) return true;
+    node.error(fmt::format("{} has {} values but the time has {}", node.name(), values.size(),
+                           times.size()));
+    return false;
+  }
+
+  const Rig& rig_;
+  const CouplingMode coupling_;
+  const std::string& data_directory_;
+};
+
+}  // namespace
+
+const Section& recording_keys() {
+  const Recording standard;
+  static const Section keys{
+      Key::required("file", Text{}, "CSV, or MATLAB if the name ends in `.mat`"),
+      Key::optional("name", Text{}, Otherwise{"file name without folder and ending"},
+                    "what reports call it; unique in the job"),
+      Key::optional("role",
+                    Choice{{{"fit", "its residuals are minimised"}, {"validate", "only judged"}}},
+                    standard.role, "what it is for"),
+      Key::required("time", Map{column_keys(), 0, false, "column"},
+                    "column of the times, in a unit of time; they must increase"),
+      Key::required("signals", Map{signal_keys()},
+                    "the columns of the input and of the measured signals"),
+      Key::optional("trim",
+                    Map{{Key::optional("from", Amount{"s"}, Otherwise{"the first sample"},
+                                       "start of what is kept, inclusive"),
+                         Key::optional("to", Amount{"s"}, Otherwise{"the last sample"},
+                                       "end of what is kept, inclusive")}},
+                    Otherwise{"all samples"}, "the part that is kept, in recorded time"),
+      Key::optional(
+          "initial_state",
+          Choice{{{"given", "that of the axis file"}, {"data", "from the first samples"}}},
+          standard.initial_state, "the state at the start"),
+      Key::optional("initial_samples", Whole{4, 1000000}, standard.initial_samples,
+                    "how many samples `initial_state: data` takes"),
+      Key::optional("score_initial_samples", Flag{}, standard.score_initial_samples,
+                    "`false`: leave the initial samples out of the reported errors"),
+      Key::optional("acceleration_at_rest",
+                    Choice{{{"leave_out", "it does not count"}, {"keep", "it does"}}},
+                    standard.acceleration_at_rest, "a recorded acceleration while the arm rests"),
+      Key::optional("set", Map{override_keys()}, Otherwise{"none"},
+                    "quantities that differ in this recording, such as "
+                    "`{M: 161 kg, initial.y0: 20 mm}`")};
+  return keys;
+}
+
+Recording read_recording(const ConfigNode& node, const Rig& rig, CouplingMode coupling,
+                         const std::string& data_directory) {
+  return RecordingReader(rig, coupling, data_directory).read(node);
+}
+
+std::string ignored_by_coupling(const QuantityEntry& entry, CouplingMode coupling,
+                                const Recording& recording) {
+  if (!is_ignored(entry, coupling) || !recording.find(*signal_by_name(entry.group))) return {};
+  return fmt::format(
+      "a fixed coupling holds the simulation to the recorded {} as if that had no {}: leave {} out "
+      "and {}use coupling: continuation",
+      entry.group, entry.quantity.symbol, entry.name,
+      entry.quantity.symbol == "delay" ? "fit T_d, which delays the whole motion, or " : "");
+}
+
+std::string resolved(const ConfigNode& node, const std::string& file, const std::string& base) {
+  const fs::path given(file);
+  if (given.is_absolute()) return file;
+  return (base.empty() ? node.directory() / given : fs::path(base) / given)
+      .lexically_normal()
+      .string();
+}
+
+Amount sigma_amount(std::string_view unit) {
+  return {std::string(unit), 0.0, kUnlimited,
+          is_dimensionless(unit) ? "number above 0" : "above 0, with its unit"};
+}
+
+double read_sigma(const ConfigNode& node, std::string_view unit) {
+  const auto sigma = node.as_amount(sigma_amount(unit));
+  if (sigma && *sigma < kLeastSigma)
+    node.error("sigma must be above zero: residuals are divided by it");
+  return sigma.value_or(1.0);
+}
+
+}  // namespace axisfit

@@ -1,0 +1,187 @@
+#include "io/config/key.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+
+#include "base/units.h"
+
+namespace axisfit {
+namespace {
+
+/// "1e-5", "0.02", "1000", "1e6"
+std::string short_number(double value) {
+  if (value == 0.0) return "0";
+  char buffer[32];
+  const char* end =
+      std::to_chars(std::begin(buffer), std::end(buffer), value, std::chars_format::scientific).ptr;
+  const char* e = std::find(static_cast<const char*>(buffer), end, 'e');
+  const int exponent = std::stoi(std::string(e + 1, end));
+  if (exponent >= -2 && exponent <= 3) return fmt::format("{}", value);
+  return fmt::format("{}e{}", std::string_view(buffer, static_cast<std::size_t>(e - buffer)),
+                     exponent);
+}
+
+/// "5 ms" for 0.005 s: with the thousandth of a unit where that is easier to read.
+std::string readable(double value, std::string_view unit) {
+  const bool takes_prefix = unit == "s" || unit == "m/s";
+  if (takes_prefix && value != 0.0 && std::abs(value) < 1.0)
+    return fmt::format("{} m{}", short_number(1000.0 * value), unit);
+  return with_unit(short_number(value), unit);
+}
+
+std::string range_text(double lower, double upper) {
+  if (lower == -kUnlimited && upper == kUnlimited) return "";
+  if (upper == kUnlimited) return ">= " + short_number(lower);
+  if (lower == -kUnlimited) return "<= " + short_number(upper);
+  if (lower == -upper) return "+-" + short_number(upper);
+  return fmt::format("{} .. {}", short_number(lower), short_number(upper));
+}
+
+/// How a table says which axes have a quantity.
+std::string used_by_text(UsedBy used_by) {
+  switch (used_by) {
+    case UsedBy::every_axis:
+      return "";
+    case UsedBy::velocity_loop:
+      return "`velocity_loop`";
+    case UsedBy::electric_drive:
+      return "`velocity_loop`, `current_source`";
+    case UsedBy::force_source:
+      return "`force_source`";
+    case UsedBy::backlash:
+      return "`backlash`";
+    case UsedBy::motor:
+      return "all but `force_source` with `rigid`";
+  }
+  return "";
+}
+
+/// value_text() of each form.
+struct ValueText {
+  std::string operator()(const Text&) const { return "text"; }
+  std::string operator()(const Flag&) const { return "`true` or `false`"; }
+  std::string operator()(const Whole& whole) const {
+    return whole.upper == Whole().upper
+               ? fmt::format("whole number from {}", whole.lower)
+               : fmt::format("whole number, {} .. {}", whole.lower, whole.upper);
+  }
+  std::string operator()(const Amount& amount) const {
+    if (!amount.words.empty()) return amount.words;
+    const std::string range = range_text(amount.lower, amount.upper);
+    const std::string unit = is_dimensionless(amount.unit) ? "number" : amount.unit;
+    return range.empty() ? unit : unit + ", " + range;
+  }
+  std::string operator()(const Bounds& bounds) const {
+    return fmt::format("[lower, upper], {}{}", bounds.of.words.empty() ? "" : "each ",
+                       (*this)(bounds.of));
+  }
+  std::string operator()(const Choice& choice) const {
+    std::vector<std::string> names = choice.names();
+    for (std::string& name : names) name = '`' + name + '`';
+    const std::string last = names.back();
+    names.pop_back();
+    return names.empty() ? last : fmt::format("{} or {}", fmt::join(names, ", "), last);
+  }
+  std::string operator()(const Map& map) const {
+    // A small map is told at once, a large one has a table of its own.
+    if (map.keys.size() > 2) return "map";
+    std::vector<std::string> entries;
+    for (const Key& key : map.keys)
+      entries.push_back(fmt::format("{}: {}", key.name, value_text(key.form)));
+    return fmt::format("{{{}}}", fmt::join(entries, ", "));
+  }
+  std::string operator()(const List& list) const {
+    const std::string of = value_text(list.of.front());
+    return of == "map" ? "list of maps" : "list, each " + of;
+  }
+  std::string operator()(const Either& either) const {
+    std::vector<std::string> texts;
+    for (const Form& form : either.forms) texts.push_back(value_text(form));
+    return fmt::format("{}", fmt::join(texts, "; or "));
+  }
+};
+
+}  // namespace
+
+std::vector<std::string> Choice::names() const {
+  std::vector<std::string> names;
+  for (const Option& option : options) names.push_back(option.name);
+  return names;
+}
+
+Key Key::required(std::string name, Form form, std::string meaning) {
+  return {std::move(name), std::move(form), std::move(meaning), true};
+}
+
+Key Key::optional(std::string name, Form form, Otherwise otherwise, std::string meaning) {
+  Key key{std::move(name), std::move(form), std::move(meaning)};
+  key.otherwise = std::move(otherwise.words);
+  return key;
+}
+
+Key Key::of(const Quantity& quantity) { return of(quantity, std::string(quantity.symbol)); }
+
+Key Key::of(const Quantity& quantity, std::string name) {
+  const Amount amount{std::string(quantity.unit), quantity.lower, quantity.upper};
+  std::string meaning(quantity.meaning);
+  Key key = std::isnan(quantity.standard)
+                ? required(std::move(name), amount, std::move(meaning))
+                : optional(std::move(name), amount, quantity.standard, std::move(meaning));
+  key.used = used_by_text(quantity.used_by);
+  return key;
+}
+
+std::string Key::written(double value) const {
+  if (const auto* amount = std::get_if<Amount>(&form)) return readable(value, amount->unit);
+  if (const auto* choice = std::get_if<Choice>(&form))
+    return choice->options.at(static_cast<std::size_t>(value)).name;
+  if (const auto* either = std::get_if<Either>(&form)) {
+    Key first{name, either->forms.front(), meaning};
+    return first.written(value);
+  }
+  if (std::holds_alternative<Flag>(form)) return value != 0.0 ? "true" : "false";
+  return fmt::format("{}", value);
+}
+
+const Key& find_key(const Section& section, std::string_view name) {
+  const auto found = std::ranges::find(section, name, &Key::name);
+  if (found == section.end())
+    throw std::logic_error(fmt::format("the key '{}' is not described", name));
+  return *found;
+}
+
+const Section& keys_below(const Section& section, std::string_view name) {
+  return std::get<Map>(find_key(section, name).form).keys;
+}
+
+std::string value_text(const Form& form) {
+  return std::visit(ValueText(), static_cast<const Form::variant&>(form));
+}
+
+std::string meaning_text(const Key& key) {
+  std::vector<std::string> options;
+  const auto tell = [&](const Form& form) {
+    if (const auto* choice = std::get_if<Choice>(&form))
+      for (const Option& option : choice->options)
+        if (!option.meaning.empty())
+          options.push_back(fmt::format("`{}`: {}", option.name, option.meaning));
+  };
+  tell(key.form);
+  if (const auto* either = std::get_if<Either>(&key.form))
+    std::ranges::for_each(either->forms, tell);
+  if (options.empty()) return key.meaning;
+  return fmt::format("{} ({})", key.meaning, fmt::join(options, "; "));
+}
+
+std::string standard_text(const Key& key) {
+  if (key.is_required) return "required";
+  return key.standard.empty() ? key.otherwise : key.standard;
+}
+
+}  // namespace axisfit

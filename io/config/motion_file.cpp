@@ -1,0 +1,284 @@
+#include "io/config/motion_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "base/units.h"
+#include "io/config/config.h"
+#include "io/recording/csv.h"
+#include "io/recording/recording_file.h"
+
+namespace axisfit {
+namespace {
+
+/// A voltage up to the controller's limit, which the keys do not know.
+Amount voltage_up_to(const std::string& limit) {
+  return {"V", -kUnlimited, kUnlimited, "V, +-" + limit};
+}
+
+Key offset_key(double standard) {
+  return Key::optional("offset", voltage_up_to("(limit - amplitude)"), standard,
+                       "voltage in the middle");
+}
+
+struct MotionType {
+  std::string name;
+  std::string meaning;
+  Section keys;
+};
+
+const std::vector<MotionType>& motion_types() {
+  const Amount limited = voltage_up_to("limit");
+  const Amount frequency{"Hz", 0.0, 1e4};
+  static const std::vector<MotionType> types{
+      {"step",
+       "one level from an instant on",
+       {Key::required("level", limited, "voltage"),
+        Key::optional("start", Amount{"s", 0.0, 1e6}, StepMotion().start,
+                      "instant from which on it holds")}},
+      {"levels",
+       "one level after the other",
+       {Key::required("levels", List{{limited}}, "voltages, the first from time zero"),
+        Key::required("hold", Amount{"s", 1e-4, 1e6}, "how long each is held")}},
+      {"sine",
+       "a sine of one frequency",
+       {Key::required("amplitude", limited, "largest voltage beside the offset"),
+        Key::required("frequency", Amount{"Hz", 1e-6, 1e4}, "frequency of the sine"),
+        offset_key(SineMotion().offset)}},
+      {"chirp",
+       "a sine whose frequency runs linearly",
+       {Key::required("amplitude", limited, "largest voltage beside the offset"),
+        Key::required("from", frequency, "frequency at time zero"),
+        Key::required("to", frequency, "frequency at the end of `duration`"),
+        offset_key(SineMotion().offset)}},
+      {"prbs",
+       "a pseudo-random binary sequence",
+       {Key::required("amplitude", limited, "voltage either way from the offset"),
+        Key::required("bit", Amount{"s", 1e-4, 1e6}, "how long each choice is held"),
+        offset_key(PrbsMotion().offset),
+        Key::optional("seed", Whole{}, PrbsMotion().seed,
+                      "the same one gives the same sequence on every machine")}},
+      {"move",
+       "a move of the position in a closed loop",
+       {Key::required("distance", Amount{"m", -1e3, 1e3}, "of the arm, from position zero"),
+        Key::required("speed", Amount{"m/s", 1e-6, 1e3}, "largest speed"),
+        Key::required("acceleration", Amount{"m/s^2", 1e-6, 1e5}, "also of the deceleration")}},
+      {"recorded",
+       "the command of a recording",
+       {Key::required("file", Text{},
+                      "CSV or `.mat`; a relative path starts at the folder of the motion file"),
+        Key::required("time", Map{column_keys()}, "column of the times, which must increase"),
+        Key::required("command", Map{column_keys()},
+                      "column of the command; no value beyond the limit")}}};
+  return types;
+}
+
+/// Reads the keys of one type of motion. Values that are wrong are reported.
+class MotionReader {
+ public:
+  MotionReader(const ConfigNode& root, const Rig& rig)
+      : root_(root), map_(root, motion_keys()), rig_(rig) {}
+
+  MotionFile read() {
+    MotionFile file;
+    std::optional<std::size_t> choice;
+    const auto type = map_.read("type", choice);
+    map_.read("duration", file.duration);
+    if (!choice) return file;
+    const auto& [name, meaning, keys] = motion_types()[*choice];
+    map_.describe(keys);
+    if (name == "step") {
+      StepMotion motion;
+      motion.level = voltage("level", limit());
+      map_.read("start", motion.start);
+      file.motion = motion;
+    } else if (name == "levels") {
+      LevelsMotion motion;
+      map_.read("hold", motion.hold);
+      if (const auto levels = map_.required("levels"))
+        if (const auto entries = levels->as_sequence()) {
+          if (entries->empty()) levels->error("levels must name at least one voltage");
+          for (const ConfigNode& level : *entries)
+            motion.levels.push_back(level.as_quantity("V", -limit(), limit()).value_or(0.0));
+        }
+      file.motion = std::move(motion);
+    } else if (name == "sine" || name == "chirp") {
+      SineMotion motion;
+      motion.amplitude = voltage("amplitude", limit());
+      if (name == "sine") {
+        map_.read("frequency", motion.from);
+        motion.to = motion.from;
+      } else {
+        map_.read("from", motion.from);
+        map_.read("to", motion.to);
+      }
+      motion.offset = voltage("offset", limit() - std::abs(motion.amplitude));
+      file.motion = motion;
+    } else if (name == "prbs") {
+      PrbsMotion motion;
+      motion.amplitude = voltage("amplitude", limit());
+      map_.read("bit", motion.bit);
+      motion.offset = voltage("offset", limit() - std::abs(motion.amplitude));
+      map_.read("seed", motion.seed);
+      file.motion = motion;
+    } else if (name == "move") {
+      MoveMotion motion;
+      map_.read("distance", motion.distance);
+      map_.read("speed", motion.speed);
+      map_.read("acceleration", motion.acceleration);
+      file.motion = motion;
+      if (rig_.model.structure.drive == Drive::force_source)
+        type->error(
+            "a move needs the slave control unit, which writes a set velocity; this axis is "
+            "driven by a force source, which has no set-velocity input");
+      else if (rig_.model.axis.T_d >= rig_.controller.period)
+        type->error("a move needs a command delay T_d below the controller's period");
+    } else {
+      file.motion = recorded();
+    }
+    map_.finish();
+    return file;
+  }
+
+ private:
+  double limit() const { return rig_.controller.limit; }
+
+  double voltage(const char* key, double most) {
+    const auto given = map_.given(key);
+    return given ? given->as_quantity("V", -most, most).value_or(0.0) : 0.0;
+  }
+
+  /// The command column of a recording.
+  RecordedMotion recorded() {
+    RecordedMotion motion;
+    const auto file = map_.required("file");
+    const auto path = file ? file->as_string() : std::nullopt;
+    const auto time = map_.required("time"), command = map_.required("command");
+    if (!path || !time || !command) return motion;
+    try {
+      const RecordingFile data((root_.directory() / *path).lexically_normal().string());
+      const auto times = read_times(data, *time), values = read_column(data, *command, "V");
+      if (!times || !values) return motion;
+      const double limit = rig_.controller.limit;
+      const auto beyond =
+          std::ranges::find_if(*values, [&](double v) { return std::abs(v) > limit; });
+      if (times->size() != values->size() || times->empty())
+        command->error("the time and the command must have the same number of values");
+      else if (beyond != values->end())
+        command->error(fmt::format(
+            "{}: a command of {:.12g} V is beyond the controller's limit of {:.12g} V",
+            data.where(static_cast<std::size_t>(beyond - values->begin())), *beyond, limit));
+      else
+        motion.schedule = schedule_from_samples(*times, *values);
+    } catch (const RecordingError& error) {
+      file->error(error.what());
+    }
+    return motion;
+  }
+
+  const ConfigNode& root_;
+  ConfigMap map_;
+  const Rig& rig_;
+};
+
+}  // namespace
+
+const Section& motion_keys() {
+  static const Section keys = [] {
+    Choice types;
+    for (const MotionType& type : motion_types())
+      types.options.push_back({type.name, type.meaning});
+    return Section{Key::required("type", types, "kind of motion, on which the other keys depend"),
+                   Key::required("duration", Amount{"s", 1e-3, 1e6}, "length of the recording")};
+  }();
+  return keys;
+}
+
+const Section& motion_keys(const std::string& type) {
+  return std::ranges::find(motion_types(), type, &MotionType::name)->keys;
+}
+
+MotionFile read_motion_file(const std::string& path, const Rig& rig) {
+  Diagnostics diagnostics;
+  MotionFile file;
+  if (const auto root = ConfigNode::load(path, diagnostics)) file = MotionReader(*root, rig).read();
+  diagnostics.throw_if_any();
+  return file;
+}
+
+namespace {
+
+/// Writes the keys of every type of motion.
+class MotionWriter {
+ public:
+  MotionWriter(YAML::Emitter& out, double duration) : out_(out), duration_(duration) {}
+
+  void operator()(const StepMotion& motion) {
+    begin("step");
+    set("level", motion.level);
+    set("start", motion.start);
+  }
+  void operator()(const LevelsMotion& motion) {
+    begin("levels");
+    out_ << YAML::Key << "levels" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+    for (const double level : motion.levels) out_ << with_unit(level, "V");
+    out_ << YAML::EndSeq;
+    set("hold", motion.hold);
+  }
+  void operator()(const SineMotion& motion) {
+    const bool chirp = motion.from != motion.to;
+    begin(chirp ? "chirp" : "sine");
+    set("amplitude", motion.amplitude);
+    set(chirp ? "from" : "frequency", motion.from);
+    if (chirp) set("to", motion.to);
+    set("offset", motion.offset);
+  }
+  void operator()(const PrbsMotion& motion) {
+    begin("prbs");
+    set("amplitude", motion.amplitude);
+    set("bit", motion.bit);
+    set("offset", motion.offset);
+    out_ << YAML::Key << "seed" << YAML::Value << motion.seed;
+  }
+  void operator()(const MoveMotion& motion) {
+    begin("move");
+    set("distance", motion.distance);
+    set("speed", motion.speed);
+    set("acceleration", motion.acceleration);
+  }
+  void operator()(const RecordedMotion&) {
+    throw std::logic_error("a recorded motion cannot be written as a motion file");
+  }
+
+ private:
+  void begin(const char* type) {
+    out_ << YAML::Key << "type" << YAML::Value << type;
+    keys_ = &motion_keys();
+    set("duration", duration_);
+    keys_ = &motion_keys(type);
+  }
+  void set(const char* key, double value) {
+    const std::string& unit = std::get<Amount>(find_key(*keys_, key).form).unit;
+    out_ << YAML::Key << key << YAML::Value << with_unit(value, unit);
+  }
+
+  YAML::Emitter& out_;
+  double duration_;
+  const Section* keys_ = nullptr;
+};
+
+}  // namespace
+
+std::string format_motion_file(const MotionFile& file, const std::string& comment) {
+  YAML::Emitter out;
+  out << YAML::BeginMap;
+  std::visit(MotionWriter(out, file.duration), file.motion);
+  out << YAML::EndMap;
+  return with_comment(comment, out.c_str());
+}
+
+}  // namespace axisfit

@@ -1,0 +1,229 @@
+#include "io/config/schema.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+
+#include "base/units.h"
+#include "io/config/axis_file.h"
+#include "io/config/job_file.h"
+#include "io/config/motion_file.h"
+
+namespace axisfit {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A number as the reader takes it: decimal, without a leading zero that may be meant as octal.
+constexpr std::string_view kNumber =
+    R"( *[+-]?(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)";
+// What follows is a unit, and neither the rest of a number nor part of another spelling of one.
+constexpr std::string_view kUnit = R"((?![eE][+-]?[0-9])(?: *[^ 0-9.,_']| +1 */).*)";
+
+/// An option as YAML reads it: 1 is a number, fit a text.
+Json scalar(const std::string& text) {
+  const Json number = Json::parse(text, nullptr, false);
+  return number.is_number() || number.is_boolean() ? number : Json(text);
+}
+
+/// Makes a schema of forms, and gathers what is shared between keys.
+class SchemaMaker {
+ public:
+  Json schema(const std::string& title, const Section& keys) {
+    Json top{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
+    top.update(map(keys));
+    return top;
+  }
+
+  /// Moves the properties of a map to the definitions, for references to "GROUP.NAME".
+  void share(const std::string& group, Json& map) {
+    for (const auto& [name, property] : map["properties"].items())
+      definitions_[group + "." + name] = property;
+    map.erase("properties");
+    map.erase("additionalProperties");
+    map.erase("required");
+  }
+
+  /// To be called last.
+  Json with_definitions(Json top) {
+    top["definitions"] = definitions_;
+    return top;
+  }
+
+  static Json reference(const std::string& name) { return {{"$ref", "#/definitions/" + name}}; }
+
+  Json map(const Section& keys) {
+    Json properties = Json::object(), required = Json::array();
+    for (const Key& key : keys) {
+      properties[key.name] = property(key);
+      // What not every axis has cannot be required of every axis.
+      if (key.is_required && key.used.empty()) required.push_back(key.name);
+    }
+    Json map{{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
+    if (!required.empty()) map["required"] = required;
+    return map;
+  }
+
+  Json operator()(const Text&) { return {{"type", Json::array({"string", "number"})}}; }
+  Json operator()(const Flag&) { return {{"type", "boolean"}}; }
+  Json operator()(const Whole& whole) {
+    Json number{{"type", "integer"}, {"minimum", whole.lower}};
+    if (whole.upper != Whole().upper) number["maximum"] = whole.upper;
+    return number;
+  }
+  Json operator()(const Amount& amount) {
+    if (!is_dimensionless(amount.unit)) return quantity();
+    Json number{{"type", "number"}};
+    if (amount.lower != -kUnlimited) number["minimum"] = amount.lower;
+    if (amount.upper != kUnlimited) number["maximum"] = amount.upper;
+    const Json percentage{{"type", "string"},
+                          {"pattern", fmt::format("^{} *%? *$", kNumber)},
+                          {"errorMessage", "must be a number or a percentage, such as 5 %"}};
+    return {{"anyOf", Json::array({number, percentage})}};
+  }
+  Json operator()(const Bounds& bounds) {
+    return {{"type", "array"}, {"items", (*this)(bounds.of)}, {"minItems", 2}, {"maxItems", 2}};
+  }
+  Json operator()(const Choice& choice) {
+    Json values = Json::array(), meanings = Json::array();
+    for (const Option& option : choice.options) {
+      values.push_back(scalar(option.name));
+      meanings.push_back(option.meaning);
+    }
+    Json made{{"enum", values}};
+    if (!choice.options.front().meaning.empty()) made["enumDescriptions"] = meanings;
+    return made;
+  }
+  Json operator()(const Map& of) {
+    if (!of.shared.empty() && definitions_.contains(of.shared)) return reference(of.shared);
+    Json made = map(of.keys);
+    if (of.least > 0) made["minProperties"] = of.least;
+    if (of.may_be_null) made["type"] = Json::array({"object", "null"});
+    if (of.shared.empty()) return made;
+    definitions_[of.shared] = made;
+    return reference(of.shared);
+  }
+  Json operator()(const List& list) {
+    return {{"type", "array"}, {"items", form(list.of.front())}, {"minItems", 1}};
+  }
+  Json operator()(const Either& either) {
+    Json forms = Json::array();
+    for (const Form& one : either.forms) forms.push_back(form(one));
+    return {{"anyOf", forms}};
+  }
+
+ private:
+  Json form(const Form& of) { return std::visit(*this, static_cast<const Form::variant&>(of)); }
+
+  Json quantity() {
+    definitions_["quantity"] = {{"type", "string"},
+                                {"pattern", fmt::format("^{}{}$", kNumber, kUnit)},
+                                {"errorMessage", "must be a number with its unit, such as 146 kg"}};
+    return reference("quantity");
+  }
+
+  Json property(const Key& key) {
+    Json of = form(key.form);
+    // In draft-07 nothing counts beside a reference. Type and message are for editors, which else
+    // do not know what to put behind the key, or have words of their own for what is wrong.
+    if (of.contains("$ref")) {
+      const Json& target = referred(of);
+      Json beside{{"type", target["type"]}};
+      if (target.contains("errorMessage")) beside["errorMessage"] = target["errorMessage"];
+      beside["allOf"] = Json::array({of});
+      of = beside;
+    }
+    Json property{{"description", description(key)}};
+    if (!key.standard.empty()) property["default"] = scalar(key.standard);
+    property.update(of);
+    return property;
+  }
+
+  const Json& referred(const Json& reference) const {
+    const std::string target = reference["$ref"];
+    return definitions_.at(target.substr(target.rfind('/') + 1));
+  }
+
+  /// Without Markdown, which editors show as it is.
+  static std::string description(const Key& key) {
+    std::string text = meaning_text(key) + ".";
+    if (const std::string value = value_text(key.form); value != "map")
+      text += fmt::format(" Value: {}.", value);
+    text += key.is_required ? " Required." : fmt::format(" Default: {}.", standard_text(key));
+    if (!key.used.empty()) text += fmt::format(" Used by {}.", key.used);
+    std::erase(text, '`');
+    return text;
+  }
+
+  Json definitions_ = Json::object();
+};
+
+Json when(const Json& constants, const Json& then) {
+  Json properties, required = Json::array();
+  for (const auto& [key, value] : constants.items()) {
+    properties[key] = {{"const", value}};
+    required.push_back(key);
+  }
+  return {{"if", {{"properties", properties}, {"required", required}}}, {"then", then}};
+}
+
+/// The maps of an axis file whose keys depend on the structure.
+constexpr std::array<const char*, 3> kPartsOfStructure{"parameters", "effects", "initial"};
+
+/// Which keys they have, and must have, in an axis of this structure.
+Json parts_of(Structure structure) {
+  structure.effects.set();
+  Json parts = Json::object();
+  for (const char* part : kPartsOfStructure)
+    parts[part] = {{"properties", Json::object()}, {"additionalProperties", false}};
+  const auto add = [&](const std::string& part, const std::string& name) {
+    parts[part]["properties"][name] = SchemaMaker::reference(part + "." + name);
+  };
+  for (const QuantityEntry& entry : quantity_list()) {
+    if (!is_used(entry, structure)) continue;
+    const std::string symbol(entry.quantity.symbol);
+    if (entry.group.empty()) {
+      add("parameters", symbol);
+      if (Key::of(entry.quantity).is_required) parts["parameters"]["required"].push_back(symbol);
+    } else if (entry.group == "initial") {
+      add("initial", symbol);
+    } else if (effect_named(entry.group)) {
+      add("effects", entry.group);
+    }
+  }
+  return {{"properties", parts}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json job_schema() {
+  SchemaMaker maker;
+  return maker.with_definitions(maker.schema("Job file of axisfit", job_keys()));
+}
+
+nlohmann::ordered_json axis_schema() {
+  SchemaMaker maker;
+  Json top = maker.schema("Axis file of axisfit", axis_keys());
+  for (const char* part : kPartsOfStructure) maker.share(part, top["properties"][part]);
+  for (std::size_t drive = 0; drive < drive_names().size(); ++drive)
+    for (std::size_t transmission = 0; transmission < transmission_names().size(); ++transmission)
+      top["allOf"].push_back(when(
+          {{"drive", drive_names()[drive]}, {"transmission", transmission_names()[transmission]}},
+          parts_of({static_cast<Drive>(drive), static_cast<Transmission>(transmission), {}})));
+  return maker.with_definitions(std::move(top));
+}
+
+nlohmann::ordered_json motion_schema() {
+  SchemaMaker maker;
+  Json top = maker.schema("Motion file of axisfit", motion_keys());
+  top.erase("additionalProperties");  // they depend on the type
+  for (const std::string& type : std::get<Choice>(find_key(motion_keys(), "type").form).names()) {
+    Json then = maker.map(motion_keys(type));
+    for (const Key& key : motion_keys()) then["properties"][key.name] = true;
+    top["allOf"].push_back(when({{"type", type}}, then));
+  }
+  return maker.with_definitions(std::move(top));
+}
+
+}  // namespace axisfit

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <iosfwd>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/column.h"
+
+namespace axisfit {
+
+// A recording cannot be used as it is. what() is meant for the person who made the recording: it
+// names the place and says what to do, as "file:line: message", or "file: message" without a line;
+// one line that every terminal shows (plain_text.h).
+class RecordingError : public std::runtime_error {
+ public:
+  // `line` counts from 1; 0 means that no line is known.
+  RecordingError(const std::string& file, std::size_t line, const std::string& message);
+};
+
+// Opens a recording to be read. Throws RecordingError where there is none, and where what is there
+// is no file: a pipe may never be written to, and a device have no end.
+std::ifstream open_recording(const std::string& path);
+
+// Named columns of equal length and where they came from. Units are those of the source; the names
+// carry no meaning here.
+struct Table {
+  std::string file;  // the source as it is named in messages
+  std::vector<Column> columns;
+  std::vector<std::size_t> lines;  // line of each row in `file`, from 1; empty: no lines
+
+  // Length of the columns, 0 without any.
+  std::size_t rows() const;
+
+  // The column of exactly this name (case matters), or nullptr. Valid until `columns` changes.
+  const Column* find(std::string_view name) const;
+
+  // The place of row `row` (from 0) for messages: "file:line", or "file: row N" with N from 1 when
+  // the source has no lines.
+  std::string where(std::size_t row) const;
+};
+
+// Reads a file of numbers separated by commas; by semicolons or tabs if the header has no comma.
+// The first line names the columns, the second may have their units (it does, if none of its
+// fields is a number), every further one holds one finite number per column. The locale does not
+// matter: numbers have a decimal point, or, where commas do not separate them, all of them that
+// are not whole a decimal comma; no thousands separators. Fields may be quoted and surrounded by
+// blanks; a UTF-8 byte-order mark, CRLF line ends, a separator at the end of every line, and blank
+// lines at the end of the file are accepted.
+//
+// Throws RecordingError naming line and column for anything else: no such file, no header (also:
+// only numbers in the first line), no rows, empty or repeated column names, a row with too few or
+// too many fields, fields that are empty, no number, not finite or beyond the range of a double,
+// decimal points and decimal commas in one file.
+Table read_csv(const std::string& path);
+
+// Writes the header and the rows with commas and LF. Each number takes the fewest digits that read
+// back as exactly the same double, or `significant_digits` (1 to 17) of them, trailing zeros left
+// out, when that is not 0. NaN stands for "no value here" and becomes an empty field, which
+// read_csv refuses, as it refuses the "inf" of infinite numbers.
+//
+// Throws std::logic_error if the columns differ in length or the number of digits is out of range.
+// Failures of the stream are left in its state for the caller to check.
+void write_csv(std::ostream& out, const std::vector<Column>& columns, int significant_digits = 0);
+
+}  // namespace axisfit

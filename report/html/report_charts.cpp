@@ -1,0 +1,476 @@
+#include "report/html/report_charts.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+#include "fit/data/standstill.h"
+#include "fit/residuals/spectrum.h"
+#include "sim/sampling.h"
+
+namespace axisfit {
+namespace {
+
+using Values = std::vector<double>;
+
+/// Of a value that noise of this size hides.
+double resolution(const Measurement& m) { return 0.01 * m.sigma; }
+
+std::string signal_name(const Measurement& m) { return std::string(info(m.signal).name); }
+
+/// "Velocity of step"
+std::string title_of(const Measurement& m, const Recording& recording) {
+  std::string name = signal_name(m);
+  name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+  return fmt::format("{} of {}", name, recording.name);
+}
+
+/// Whether values are told apart better by their logarithms.
+bool spans_a_decade(const std::vector<double>& values) {
+  const auto [least, most] = std::ranges::minmax(values);
+  return most > 10.0 * least;
+}
+std::string unit_of(const Measurement& m) { return std::string(info(m.signal).unit); }
+
+/// Stretches of time in which a condition holds, from what holds from each instant on. Those that
+/// nobody could see apart are joined.
+class Stretches {
+ public:
+  Stretches(std::string_view kind, std::string text, double smallest)
+      : kind_(kind), text_(std::move(text)), smallest_(smallest) {}
+
+  void tell(double time, bool holds) {
+    if (holds == holds_) return;
+    holds_ = holds;
+    if (!holds)
+      list_.back().to = time;
+    else if (list_.empty() || time - list_.back().to > smallest_)
+      list_.push_back({time, time, kind_, text_});
+  }
+  void end(double time, std::vector<ChartRange>& all) {
+    tell(time, false);
+    all.insert(all.end(), list_.begin(), list_.end());
+  }
+
+ private:
+  std::string_view kind_;
+  std::string text_;
+  double smallest_;
+  bool holds_ = false;
+  std::vector<ChartRange> list_;
+};
+
+std::vector<ChartRange> phases_of(const Recording& recording,
+                                  const std::vector<ModeChange>& modes) {
+  const double start = recording.times.front(), end = recording.times.back();
+  const double smallest = 5e-4 * (end - start);
+  Stretches rest("rest", "the arm rests", smallest);
+  Stretches preamplifier("limit", "preamplifier at its limit", smallest);
+  Stretches motor("limit", "motor voltage at its limit", smallest);
+  const std::vector<bool> resting = axisfit::resting(recording);
+  for (std::size_t i = 0; i < resting.size(); ++i) rest.tell(recording.times[i], resting[i]);
+  for (const ModeChange& change : modes) {
+    preamplifier.tell(change.time, change.mode.v_c != 0);
+    motor.tell(change.time, change.mode.v_m != 0);
+  }
+  std::vector<ChartRange> phases;
+  for (Stretches* stretches : {&rest, &preamplifier, &motor}) stretches->end(end, phases);
+  return phases;
+}
+
+struct EventTimes {
+  std::string_view kind;
+  const char* text;
+  Values times;
+};
+
+/// What happened between one mode and the next.
+std::vector<EventTimes> events_of(const std::vector<ModeChange>& modes) {
+  std::vector<EventTimes> list{{"contact", "teeth touch", {}},
+                               {"separation", "teeth part", {}},
+                               {"limit", "a limit is reached or left", {}},
+                               {"stick", "the arm sticks", {}},
+                               {"slip", "the arm breaks away", {}}};
+  for (std::size_t i = 1; i < modes.size(); ++i) {
+    const Mode &from = modes[i - 1].mode, &to = modes[i].mode;
+    const bool happened[] = {
+        from.contact != to.contact && to.contact != 0, from.contact != 0 && to.contact == 0,
+        from.v_c != to.v_c || from.v_m != to.v_m, from.sliding != 0 && to.sliding == 0,
+        from.sliding == 0 && to.sliding != 0};
+    for (std::size_t k = 0; k < list.size(); ++k)
+      if (happened[k]) list[k].times.push_back(modes[i].time);
+  }
+  std::erase_if(list, [](const EventTimes& e) { return e.times.empty(); });
+  return list;
+}
+
+/// Every so many, so that few enough are left for a picture.
+template <class T>
+std::vector<T> thinned(const std::vector<T>& values) {
+  constexpr std::size_t kMost = 2000;
+  const std::size_t every = (values.size() + kMost - 1) / kMost;
+  std::vector<T> kept;
+  for (std::size_t i = 0; i < values.size(); i += std::max<std::size_t>(1, every))
+    kept.push_back(values[i]);
+  return kept;
+}
+
+bool varies(const Values& values) {
+  const auto [low, high] = std::ranges::minmax(values);
+  return high - low > 1e-9 * std::max(std::abs(low), std::abs(high));
+}
+
+double turned(double angle) {
+  const double turn = 2.0 * std::numbers::pi;
+  return angle - turn * std::floor(angle / turn);
+}
+
+struct Variable {
+  const char* id;
+  ChartAxis axis;
+  double (*value)(const Sample&);
+};
+
+/// What a residual is shown against, besides time.
+const std::vector<Variable>& variables() {
+  static const std::vector<Variable> list{
+      {"velocity", {"velocity", "m/s"}, [](const Sample& s) { return s.velocity; }},
+      {"position", {"position", "m"}, [](const Sample& s) { return s.position; }},
+      {"angle", {"motor angle", "rad"}, [](const Sample& s) { return turned(s.motor_angle); }},
+      {"force", {"gear force", "N"}, [](const Sample& s) { return s.gear_force; }},
+      {"current", {"current", "A"}, [](const Sample& s) { return s.current; }}};
+  return list;
+}
+
+}  // namespace
+
+ReportCharts::ReportCharts(const Outcome& outcome) : outcome_(outcome) {
+  const Job& job = outcome.job();
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    const Recording& recording = job.recordings[r];
+    const Prediction& prediction = outcome.fit().recordings[r].prediction;
+    RecordingCharts charts;
+    charts.times = columns_.add_times(recording.times);
+    charts.phases = phases_of(recording, prediction.modes);
+    const double duration = recording.times.back() - recording.times.front();
+    for (EventTimes& e : events_of(prediction.modes))
+      charts.events.push_back(
+          {e.kind, e.text,
+           columns_.add(std::move(e.times), 1e-7 * duration, std::floor(recording.times.front()))});
+    for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
+      const Measurement& measurement = recording.measurements[m];
+      charts.measured.push_back(columns_.add(measurement.values, resolution(measurement)));
+      charts.simulated.push_back(columns_.add(prediction.simulated[m], resolution(measurement)));
+    }
+    recordings_.push_back(std::move(charts));
+  }
+}
+
+Html ReportCharts::add(Chart chart) {
+  charts_.push_back(std::move(chart));
+  return figure(charts_.back(), columns_);
+}
+
+Chart ReportCharts::over_time(std::size_t recording, std::string id, std::string title,
+                              ChartAxis y) const {
+  const RecordingCharts& r = recordings_[recording];
+  return {.id = fmt::format("{}-{}", id, recording + 1),
+          .title = std::move(title),
+          .x = {"time", "s"},
+          .y = std::move(y),
+          .series = {},
+          .recording = outcome_.job().recordings[recording].name,
+          .phases = r.phases,
+          .events = r.events};
+}
+
+Html ReportCharts::overview() {
+  if (!outcome_.diagnosis || outcome_.diagnosis->tests.empty()) return {};
+  // Of what the first model and the last one were judged by, where the first is worst.
+  SeriesKey worst = outcome_.diagnosis->tests.front().series;
+  double most = 0.0;
+  for (const SeriesTest& test : outcome_.diagnosis->tests) {
+    double excess = test.reduced_chi_square;
+    if (outcome_.loop)
+      if (const SignalScore* s = find_series(outcome_.scores.front().signals, test.series);
+          s != nullptr && s->judged())
+        excess = s->judged()->reduced_chi_square;
+    if (excess > most) {
+      most = excess;
+      worst = test.series;
+    }
+  }
+  const Recording& recording = outcome_.job().recordings[worst.recording];
+  const Measurement& m = recording.measurements[worst.measurement];
+  const RecordingCharts& r = recordings_[worst.recording];
+  const ChartAxis y{signal_name(m), unit_of(m)};
+  const auto measured = r.measured[worst.measurement];
+  if (outcome_.loop && outcome_.loop->models.size() > 1) {
+    const auto judged = [&](const FitResult& fit) {
+      return columns_.add(fit.recordings[worst.recording].judged().simulated[worst.measurement],
+                          resolution(m));
+    };
+    const bool held = outcome_.fit().recordings[worst.recording].held.has_value();
+    Chart chart =
+        over_time(worst.recording, "before-after",
+                  fmt::format("What was left of the {} of {}, before and after{}", y.label,
+                              recording.name, held ? ", of the simulation held to it" : ""),
+                  {"residual", y.unit});
+    chart.series = {{"before", "reference", r.times, measured, Drawn::line,
+                     judged(outcome_.loop->models.front().fit)},
+                    {"after", "residual", r.times, measured, Drawn::line, judged(outcome_.fit())}};
+    return add(std::move(chart));
+  }
+  Chart chart = over_time(worst.recording, "overview", title_of(m, recording), y);
+  chart.series = {{"measured", "measured", r.times, measured},
+                  {"simulated", "simulated", r.times, r.simulated[worst.measurement]}};
+  return add(std::move(chart));
+}
+
+Html ReportCharts::traces(std::size_t recording) {
+  const Recording& data = outcome_.job().recordings[recording];
+  const RecordingResult& result = outcome_.fit().recordings[recording];
+  const RecordingCharts& r = recordings_[recording];
+  Html all;
+  for (std::size_t m = 0; m < data.measurements.size(); ++m) {
+    const Measurement& measurement = data.measurements[m];
+    const std::string name = signal_name(measurement), unit = unit_of(measurement);
+    const std::string of = fmt::format("{} of {}", name, data.name);
+    Chart trace = over_time(recording, "trace-" + name, title_of(measurement, data), {name, unit});
+    trace.series = {{"measured", "measured", r.times, r.measured[m]},
+                    {"simulated", "simulated", r.times, r.simulated[m]}};
+    all += add(std::move(trace));
+    const auto residual = [&](std::string id, std::string title, ChartColumns::Index simulated) {
+      Chart chart = over_time(recording, id + name, std::move(title), {"residual", unit});
+      chart.series = {
+          {"measured - simulated", "residual", r.times, r.measured[m], Drawn::line, simulated}};
+      chart.bands = {{-2.0 * measurement.sigma, 2.0 * measurement.sigma, {}, "twice the noise"}};
+      all += add(std::move(chart));
+    };
+    residual("residual-", "Residual of the " + of, r.simulated[m]);
+    if (result.held)
+      residual("held-", fmt::format("Residual of the {}, of the simulation held to it", of),
+               columns_.add(result.held->simulated[m], resolution(measurement)));
+  }
+  return all;
+}
+
+ChartSeries ReportCharts::mean_line(std::string label, std::string_view role, const Values& x,
+                                    const Values& y) {
+  std::vector<std::size_t> order(x.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return x[i]; });
+  const std::size_t ranges = std::min<std::size_t>(40, std::max<std::size_t>(1, x.size() / 10));
+  Values mean_x, mean_y;
+  for (std::size_t k = 0; k < ranges; ++k) {
+    const std::size_t first = k * x.size() / ranges, end = (k + 1) * x.size() / ranges;
+    double sum_x = 0.0, sum_y = 0.0;
+    for (std::size_t i = first; i < end; ++i) {
+      sum_x += x[order[i]];
+      sum_y += y[order[i]];
+    }
+    const double n = static_cast<double>(end - first);
+    mean_x.push_back(sum_x / n);
+    mean_y.push_back(sum_y / n);
+  }
+  return {std::move(label), role, columns_.add_coarse(std::move(mean_x)),
+          columns_.add_coarse(std::move(mean_y))};
+}
+
+Html ReportCharts::views(const SeriesTest& test) {
+  const ResidualSeries& series = test.series;
+  const Recording& recording = outcome_.job().recordings[series.recording];
+  const Measurement& m = recording.measurements[series.measurement];
+  const Prediction& prediction = outcome_.fit().recordings[series.recording].judged();
+  const std::string id = fmt::format("{}-{}{}", series.recording + 1, info(m.signal).name,
+                                     series.fitted ? "" : "-judged");
+  const ChartAxis y{"residual", unit_of(m)};
+  Values residual = series.values;
+  for (double& v : residual) v *= m.sigma;
+  const auto dots = columns_.add_coarse(thinned(residual));
+
+  Html all;
+  const auto scatter = [&](const char* variable, const ChartAxis& axis, const Values& x) {
+    if (!varies(x)) return;
+    Chart chart{
+        .id = fmt::format("{}-over-{}", id, variable),
+        .title = "Over the " + axis.label,
+        .x = axis,
+        .y = y,
+        .series = {{"residual", "residual", columns_.add_coarse(thinned(x)), dots, Drawn::dots}}};
+    chart.series.push_back(mean_line("mean", "mean", x, residual));
+    all += add(std::move(chart));
+  };
+  for (const Variable& variable : variables()) {
+    Values x;
+    for (const std::size_t i : series.samples) x.push_back(variable.value(prediction.samples[i]));
+    scatter(variable.id, variable.axis, x);
+  }
+  Values times;
+  for (const std::size_t i : series.samples) times.push_back(recording.times[i]);
+  scatter("time", {"time", "s"}, times);
+
+  const double interval = mean_interval(recording.times);
+  const std::size_t n = series.values.size();
+  const auto wanted = static_cast<std::size_t>(std::max(40.0, 6.0 * test.autocorrelation_time));
+  Values correlation = autocorrelation(series.values, std::min(n - 1, std::min(n / 2, wanted)));
+  Values lags;
+  for (std::size_t lag = 0; lag < correlation.size(); ++lag)
+    lags.push_back(static_cast<double>(lag) * interval);
+  const double chance = 1.96 / std::sqrt(static_cast<double>(n));
+  all += add({.id = id + "-autocorrelation",
+              .title = "Autocorrelation",
+              .x = {"lag", "s"},
+              .y = {"autocorrelation"},
+              .series = {{"autocorrelation", "residual", columns_.add_times(std::move(lags)),
+                          columns_.add(std::move(correlation), 1e-3)}},
+              .bands = {{-chance, chance, {}, "95 % of white noise"}}});
+  Spectrum spectrum = power_spectrum(series.values, interval);
+  if (!spectrum.wave.empty())
+    all += add({.id = id + "-spectrum",
+                .title = "Spectrum over time, one for the stated noise",
+                .x = {"frequency", "Hz", true},
+                .y = {"power", "", true},
+                .series = {{"power", "residual", columns_.add_times(std::move(spectrum.wave)),
+                            columns_.add_for_log(std::move(spectrum.size))}}});
+  return all;
+}
+
+Html ReportCharts::missing_force(std::size_t recording) {
+  // The declared model's, and what is left of it.
+  const auto force_of = [&](const ModelScore& score) -> const MissingForce& {
+    return score.forces[recording];
+  };
+  const bool added = outcome_.loop && outcome_.loop->models.size() > 1;
+  const MissingForce& before =
+      outcome_.loop ? force_of(outcome_.scores.front()) : outcome_.diagnosis->forces[recording];
+  if (!before.found) return {};
+  const MissingForce* after = added ? &force_of(outcome_.scores.back()) : nullptr;
+  if (after != nullptr && !after->found) after = nullptr;
+  Values supplied;
+  for (std::size_t i = 0; after != nullptr && i < before.force.size(); ++i)
+    supplied.push_back(before.force[i] - after->force[i]);
+
+  const std::string name = outcome_.job().recordings[recording].name;
+  const ChartAxis y{"missing force", "N"};
+  const double resolution = 0.01 * std::max(before.noise, 1e-6 * before.rms) + 1e-12;
+  Html all;
+  Chart chart = over_time(recording, "force", "Missing force on the arm in " + name, y);
+  const auto times = recordings_[recording].times;
+  chart.series = {{after ? "of the declared model" : "missing force", "force", times,
+                   columns_.add(before.force, resolution)}};
+  if (after != nullptr) {
+    chart.series.push_back(
+        {"supplied by what was added", "accepted", times, columns_.add(supplied, resolution)});
+    chart.series.push_back({"left", "residual", times, columns_.add(after->force, resolution)});
+  }
+  all += add(std::move(chart));
+
+  const auto dots = columns_.add_coarse(thinned(before.force));
+  for (const Variable& variable : variables()) {
+    Values x;
+    for (const Sample& s : before.samples) x.push_back(variable.value(s));
+    if (!varies(x)) continue;
+    Chart over{
+        .id = fmt::format("force-{}-over-{}", recording + 1, variable.id),
+        .title = "Missing force over the " + variable.axis.label,
+        .x = variable.axis,
+        .y = y,
+        .series = {{"missing", "force", columns_.add_coarse(thinned(x)), dots, Drawn::dots}}};
+    over.series.push_back(after ? mean_line("supplied by what was added", "accepted", x, supplied)
+                                : mean_line("mean", "mean", x, before.force));
+    all += add(std::move(over));
+  }
+  Chart spectrum{.id = fmt::format("force-{}-in-space", recording + 1),
+                 .title = "Spectrum of the missing force along the stroke",
+                 .x = {"cycles per metre", "1/m"},
+                 .y = {"amplitude", "N"},
+                 .series = {}};
+  const auto line = [&](const char* label, const char* role, const MissingForce& force) {
+    Values positions;
+    for (const Sample& s : force.samples) positions.push_back(s.position);
+    Spectrum found = spatial_spectrum(thinned(force.force), thinned(positions));
+    if (!found.wave.empty())
+      spectrum.series.push_back({label, role, columns_.add_times(std::move(found.wave)),
+                                 columns_.add_coarse(std::move(found.size))});
+  };
+  line(after ? "of the declared model" : "missing force", "force", before);
+  if (after != nullptr) line("left", "residual", *after);
+  if (!spectrum.series.empty()) all += add(std::move(spectrum));
+  return all;
+}
+
+Html ReportCharts::profile(const Profile& profile) {
+  const ParameterResult& p = outcome_.fit().parameters[profile.parameter];
+  const FreeParameter& free = outcome_.job().free[profile.parameter];
+  const std::string unit(quantity_list()[free.quantity].quantity.unit);
+  Values x, deviance, parabola;
+  for (const ProfilePoint& point : profile.points) {
+    x.push_back(point.value);
+    deviance.push_back(point.deviance);
+    const double distance =
+        free.logarithmic ? p.value * std::log(point.value / p.value) : point.value - p.value;
+    parabola.push_back(std::pow(distance / p.uncertainty.standard_error, 2));
+  }
+  const auto at = columns_.add_coarse(std::move(x));
+  Chart chart{.id = fmt::format("profile-{}", profile.parameter + 1),
+              .title = "Profile of " + p.name,
+              .x = {p.name, unit},
+              .y = {"deviance"},
+              .series = {{"profile", "measured", at, columns_.add_coarse(std::move(deviance))}},
+              .bands = {{0.0, profile.threshold, {}, "95 % interval"}}};
+  if (p.uncertainty.determined)
+    chart.series.push_back(
+        {"by standard error", "reference", at, columns_.add_coarse(std::move(parabola))});
+  return add(std::move(chart));
+}
+
+Html ReportCharts::convergence() {
+  const FitResult& fit = outcome_.fit();
+  Html all;
+  Values iterations, cost, rate;
+  double so_far = 0.0;
+  for (const Stage& stage : fit.stages) {
+    so_far += stage.iterations;
+    iterations.push_back(so_far);
+    cost.push_back(stage.reduced_cost);
+    rate.push_back(stage.coupling_rate);
+  }
+  const ChartAxis over{"iterations"};
+  if (iterations.size() > 1) {
+    const auto at = columns_.add(std::move(iterations), 1.0);
+    all += add({.id = "cost",
+                .title = "Cost at the end of each stage",
+                .x = over,
+                .y = {"reduced cost", "", spans_a_decade(cost)},
+                .series = {{"cost", "measured", at, columns_.add_for_log(std::move(cost)),
+                            Drawn::steps}}});
+    if (std::ranges::any_of(rate, [](double r) { return r > 0.0; }))
+      all += add({.id = "coupling",
+                  .title = "How firmly the simulation is held to the data",
+                  .x = over,
+                  .y = {"coupling", "1/s"},
+                  .series = {{"coupling", "simulated", at, columns_.add_coarse(std::move(rate)),
+                              Drawn::steps}}});
+  }
+  Values ends;
+  for (const StartResult& start : outcome_.first.starts)
+    if (start.usable) ends.push_back(start.reduced_cost);
+  if (ends.size() > 1) {
+    std::ranges::sort(ends);
+    Values number(ends.size());
+    std::iota(number.begin(), number.end(), 1.0);
+    all += add({.id = "starts",
+                .title = "Where the starts ended, best first",
+                .x = {"start"},
+                .y = {"reduced cost", "", spans_a_decade(ends)},
+                .series = {{"reduced cost", "measured", columns_.add(std::move(number), 1.0),
+                            columns_.add_for_log(std::move(ends)), Drawn::dots}}});
+  }
+  return all;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,440 @@
+#include "report/html/report_page.h"
+
+#include <ceres/version.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/plain_text.h"
+#include "base/text_table.h"
+#include "base/version.h"
+#include "report/html/assets/assets.h"
+#include "report/html/report_charts.h"
+#include "report/text/report_text.h"
+
+namespace axisfit {
+namespace {
+
+std::string number(double x) { return fmt::format("{:.4g}", x); }
+
+Html section(const char* id, const char* title, const Html& content) {
+  if (content.empty()) return {};
+  return html(R"(<section id="{0}" aria-labelledby="{0}-title"><h2 id="{0}-title">{1}</h2>{2})"
+              "</section>",
+              id, title, content);
+}
+
+Html paragraph_of(const std::string& text) {
+  return text.empty() ? Html() : html("<p>{}</p>", text);
+}
+
+Html figures(const Html& content) {
+  return content.empty() ? Html() : html(R"(<div class="figures">{}</div>)", content);
+}
+
+/// A table: names of the columns, and rows that are ready. Columns of which the name begins with
+/// '#' hold numbers.
+Html table(const std::vector<std::string>& columns, const Html& rows) {
+  return html(
+      R"(<div class="scroll" tabindex="0"><table><thead><tr>{}</tr></thead><tbody>{}</tbody></table></div>)",
+      each(columns,
+           [](const std::string& c) {
+             return c.starts_with('#')
+                        ? html(R"(<th scope="col" class="number">{}</th>)", c.substr(1))
+                        : html(R"(<th scope="col">{}</th>)", c);
+           }),
+      rows);
+}
+
+Html cell(const std::string& text) { return html("<td>{}</td>", text); }
+Html cell(const Html& content) { return html("<td>{}</td>", content); }
+Html number_cell(const std::string& text) { return html(R"(<td class="number">{}</td>)", text); }
+Html head_cell(const std::string& text) { return html(R"(<th scope="row">{}</th>)", text); }
+Html row(const Html& cells) { return html("<tr>{}</tr>", cells); }
+
+class Page {
+ public:
+  Page(const Outcome& outcome, const RunRecord& run)
+      : outcome_(outcome), run_(run), job_(outcome.job()), fit_(outcome.fit()), charts_(outcome) {
+    // What was typed may be any bytes; a page is UTF-8.
+    for (std::string* typed : {&run_.command, &run_.job_file, &run_.axis_file})
+      *typed = harmless(*typed);
+  }
+
+  std::string text() {
+    Html main = section("verdict", "Verdict", verdict());
+    main += section("recordings", "Measured and simulated", recordings());
+    main += section("parameters", "Parameters", parameters());
+    main += section("residual", "Residual", residual());
+    main += section("loop", "Closing the loop", loop());
+    main += section("convergence", "Convergence", convergence());
+    main += section("repeat", "To repeat it", repeat());
+    const ReportAssets& assets = report_assets();
+    std::string data = charts_.data().dump();
+    for (std::size_t at = 0; (at = data.find('<', at)) != std::string::npos;)
+      data.replace(at, 1, "\\u003c");
+    const Html script =
+        assets.script.empty()
+            ? Html()
+            : html(R"(<script type="application/json" id="charts">{}</script><script>{}</script>)",
+                   Html::raw(data), Html::raw(assets.script));
+    const auto link = [&](const char* id, const char* name) {
+      return main.text().find(fmt::format("<section id=\"{}\"", id)) == std::string::npos
+                 ? Html()
+                 : html(R"(<a href="#{}">{}</a>)", id, name);
+    };
+    return html(R"(<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><title>{0}</title>
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:">
+<style>{1}</style></head>
+<body><a class="skip" href="#main">To the content</a>
+<header><h1>{0}</h1><nav aria-label="Sections">{2}</nav></header>
+<main id="main">{3}</main>
+<footer>axisfit {4}</footer>{5}
+</body></html>
+)",
+                title(), Html::raw(assets.css),
+                link("verdict", "Verdict") + link("recordings", "Recordings") +
+                    link("parameters", "Parameters") + link("residual", "Residual") +
+                    link("loop", "Loop") + link("convergence", "Convergence") +
+                    link("repeat", "Repeat"),
+                main, version(), script)
+        .text();
+  }
+
+ private:
+  std::string title() const {
+    const std::string& axis = outcome_.baseline.axis;
+    return axis.empty() ? "Fit of " + run_.job_file : "Fit of " + axis;
+  }
+
+  const char* judgement() const {
+    if (!fit_.usable) return "bad";
+    return outcome_.diagnosis && outcome_.diagnosis->explained ? "good" : "warn";
+  }
+
+  static Html fact(const std::string& name, const Html& value) {
+    return html("<div><dt>{}</dt><dd>{}</dd></div>", name, value);
+  }
+
+  Html verdict() {
+    Html words = paragraph_of(verdict_of(outcome_));
+    if (!outcome_.loop && outcome_.diagnosis)
+      words += paragraph_of(residual_verdict(job_, *outcome_.diagnosis));
+    Html all = html(R"(<div class="verdict {}">{}</div>)", judgement(), words);
+    for (const Separation& s : outcome_.separations) all += paragraph_of(s.words);
+    if (outcome_.interrupted)
+      all += paragraph_of(fmt::format("Stopped{} before all that was asked for was finished.",
+                                      stop_reason(outcome_)));
+    const auto determined = std::ranges::count_if(
+        fit_.parameters, [](const ParameterResult& p) { return p.uncertainty.determined; });
+    const bool closed = outcome_.loop && outcome_.loop->models.size() > 1;
+    Html facts =
+        fact("Reduced chi-square",
+             closed ? html("{} <span class=\"arrow\">to</span> {}",
+                           number(outcome_.loop->models.front().fit.reduced_chi_square),
+                           number(fit_.reduced_chi_square))
+                    : html("{}", number(fit_.reduced_chi_square))) +
+        fact("Parameters determined", html("{} of {}", determined, fit_.parameters.size()));
+    if (closed) {
+      std::string added;
+      for (const LoopModel& model : outcome_.loop->models)
+        if (!model.added.empty()) added += (added.empty() ? "" : ", ") + model.added;
+      facts += fact("Added", html("{}", added));
+    }
+    all += html(R"(<dl class="numbers">{}</dl>)", facts);
+    return all + charts_.overview() + errors();
+  }
+
+  /// Of every signal, by the declared model and by the last.
+  Html errors() {
+    if (outcome_.loop) return loop_errors();
+    Html rows;
+    for (std::size_t r = 0; r < job_.recordings.size(); ++r)
+      for (const SignalError& e : fit_.recordings[r].signals) {
+        const bool finished = fit_.recordings[r].prediction.finished;
+        const auto told = [&](double value) { return finished ? number(value) : "-"; };
+        rows += row(head_cell(job_.recordings[r].name) + cell(role_name(job_.recordings[r], e)) +
+                    cell(std::string(info(e.signal).name)) + number_cell(told(e.rmse)) +
+                    cell(std::string(info(e.signal).unit)) +
+                    number_cell(finished ? fmt::format("{:.3g} %", e.nrmse_percent) : "-") +
+                    number_cell(number(e.sigma)) + number_cell(told(e.reduced_chi_square)) +
+                    number_cell(e.prediction_rmse ? number(*e.prediction_rmse) : ""));
+      }
+    return html("<h3>Errors of the free-running simulation</h3>{}",
+                table({"Recording", "Role", "Signal", "#rmse", "Unit", "#of range", "#noise",
+                       "#reduced chi-square", "#held to the data"},
+                      rows));
+  }
+
+  Html loop_errors() {
+    Html rows;
+    for (const SignalScore& head : outcome_.scores.front().signals) {
+      const Recording& recording = job_.recordings[head.recording];
+      const Measurement& m = recording.measurements[head.measurement];
+      for (std::size_t i = 0; i < outcome_.loop->models.size(); ++i) {
+        const SignalScore* score = find_series(outcome_.scores[i].signals, head);
+        if (score == nullptr || !score->judged()) continue;
+        const SignalErrors& e = *score->judged();
+        rows += row(head_cell(recording.name) + cell(role_name(recording, head.fitted)) +
+                    cell(std::string(info(m.signal).name)) +
+                    cell(i == 0 ? "declared" : "+ " + outcome_.loop->models[i].added) +
+                    number_cell(number(e.rmse)) + cell(std::string(info(m.signal).unit)) +
+                    number_cell(fmt::format("{:.3g} %", e.nrmse_percent)) +
+                    number_cell(number(e.reduced_chi_square)));
+      }
+    }
+    return html("<h3>Errors before and after</h3>{}",
+                table({"Recording", "Role", "Signal", "Model", "#rmse", "Unit", "#of range",
+                       "#reduced chi-square"},
+                      rows));
+  }
+
+  Html recordings() {
+    Html all;
+    for (std::size_t r = 0; r < job_.recordings.size(); ++r) {
+      const Recording& recording = job_.recordings[r];
+      all += html("<h3>{} <small>{}, {}, {} samples, {} s to {} s, {} events</small></h3>",
+                  recording.name, role_name(recording, true), recording.file,
+                  recording.times.size(), number(recording.times.front()),
+                  number(recording.times.back()), fit_.recordings[r].prediction.events);
+      for (const std::string& concern :
+           concerns_of(outcome_.baseline, recording, outcome_.checks[r]))
+        all += html("<p>! {}</p>", concern);
+      all += charts_.traces(r);
+    }
+    return all;
+  }
+
+  /// The interval and the initial value between the bounds, on the parameter's scale.
+  Html interval_bar(std::size_t i) const {
+    const FreeParameter& free = as_declared(outcome_, i);
+    const ParameterResult& p = fit_.parameters[i];
+    const auto on_scale = [&](double v) { return free.logarithmic ? std::log(v) : v; };
+    const double low = on_scale(free.lower), high = on_scale(free.upper);
+    constexpr double kFrom = 4.0, kTo = 156.0;
+    const auto place = [&](double v) {
+      return kFrom + (kTo - kFrom) * std::clamp((on_scale(v) - low) / (high - low), 0.0, 1.0);
+    };
+    Html drawing = html(R"(<line class="bound" x1="{}" x2="{}" y1="9" y2="9"/>)", kFrom, kTo);
+    if (p.uncertainty.has_interval())
+      drawing += html(R"(<line class="range" x1="{:.1f}" x2="{:.1f}" y1="9" y2="9"/>)",
+                      place(p.uncertainty.lower), place(p.uncertainty.upper));
+    drawing += html(R"(<line class="initial" x1="{0:.1f}" x2="{0:.1f}" y1="3" y2="15"/>)"
+                    R"(<circle class="estimate" cx="{1:.1f}" cy="9" r="3"/>)",
+                    place(free.initial), place(p.value));
+    return html(R"(<svg class="interval" viewBox="0 0 160 18" role="img" aria-label="{}">{}</svg>)",
+                fmt::format("between the bounds {} and {}, started at {}", number(free.lower),
+                            number(free.upper), number(free.initial)),
+                drawing);
+  }
+
+  static Html badge(const ParameterUncertainty& u) {
+    const char* kind = u.at_bound      ? "bound"
+                       : !u.determined ? "open"
+                       : u.weak        ? "weak"
+                                       : "determined";
+    return html(R"(<span class="badge {}">{}</span>)", kind, std::string(verdict_name(u)));
+  }
+
+  Html parameters() {
+    Html rows;
+    for (std::size_t i = 0; i < fit_.parameters.size(); ++i) {
+      const ParameterResult& p = fit_.parameters[i];
+      const ParameterUncertainty& u = p.uncertainty;
+      const Quantity& quantity = quantity_list()[job_.free[i].quantity].quantity;
+      const double error = u.determined ? u.standard_error : 0.0;
+      rows += row(html(R"(<th scope="row">{} <small>{}</small></th>)", p.name,
+                       std::string(quantity.meaning)) +
+                  number_cell(u.determined || u.at_bound ? with_digits_of(p.value, error)
+                                                         : fmt::format("~{:.1g}", p.value)) +
+                  number_cell(u.determined ? fmt::format("{:.2g}", error) : "-") +
+                  number_cell(u.has_interval() ? with_digits_of(u.lower, error) + " to " +
+                                                     with_digits_of(u.upper, error)
+                                               : "-") +
+                  html(R"(<td class="unit">{}</td>)", std::string(quantity.unit)) +
+                  number_cell(number(as_declared(outcome_, i).initial)) + cell(interval_bar(i)) +
+                  cell(badge(u)));
+    }
+    Html all = table({"Parameter", "#value", "#standard error", "#95 % interval", "Unit",
+                      "#initial", "Between the bounds", "Verdict"},
+                     rows) +
+               paragraph_of(knowledge_text(fit_)) + correlation();
+    if (!outcome_.profiles.empty())
+      all += html(
+          "<h3>Likelihood profiles</h3>{}",
+          figures(each(outcome_.profiles, [&](const Profile& p) { return charts_.profile(p); })));
+    if (outcome_.wishes.experiment)
+      all += html("<h3>Next experiment</h3><pre>{}</pre>", suggestion_text(outcome_));
+    return all;
+  }
+
+  Html correlation() const {
+    const auto n = fit_.correlation.rows();
+    if (n < 2) return {};
+    Html head = Html::raw("<td></td>"), rows;
+    for (const ParameterResult& p : fit_.parameters)
+      head += html(R"(<th scope="col">{}</th>)", p.name);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      Html cells = head_cell(fit_.parameters[static_cast<std::size_t>(i)].name);
+      for (Eigen::Index k = 0; k < n; ++k) {
+        const double c = fit_.correlation(i, k);
+        cells += std::isfinite(c) ? html(R"(<td style="--r:{:.3f}">{:.2f}</td>)", c, c)
+                                  : Html::raw("<td>-</td>");
+      }
+      rows += row(cells);
+    }
+    return html(
+        R"(<h3>Correlation of the estimates</h3><div class="scroll" tabindex="0"><table class="heat"><thead><tr>{}</tr></thead><tbody>{}</tbody></table></div>)",
+        head, rows);
+  }
+
+  Html residual() {
+    if (!outcome_.diagnosis) return {};
+    const Diagnosis& diagnosis = *outcome_.diagnosis;
+    Html all = outcome_.loop ? Html() : paragraph_of(residual_verdict(job_, diagnosis));
+    all += tests(diagnosis);
+    if (const std::string faults = instruments_text(job_, diagnosis); !faults.empty())
+      all += html("<h3>Instruments</h3>{}", paragraph_of(faults));
+    Html forces;
+    for (std::size_t r = 0; r < job_.recordings.size(); ++r)
+      if (const Html force = charts_.missing_force(r); !force.empty())
+        forces += html("<h4>{}</h4>{}", job_.recordings[r].name, figures(force));
+    if (!forces.empty()) all += html("<h3>Missing force on the arm</h3>{}", forces);
+    const auto worst =
+        std::ranges::max_element(diagnosis.tests, {}, &SeriesTest::reduced_chi_square);
+    for (auto test = diagnosis.tests.begin(); test != diagnosis.tests.end(); ++test)
+      all += html(R"(<details class="series"{}><summary>{}</summary>{}</details>)",
+                  Html::raw(test == worst ? " open" : ""), name_of(*test),
+                  figures(charts_.views(*test)));
+    return all;
+  }
+
+  std::string name_of(const SeriesTest& test) const {
+    const Recording& recording = job_.recordings[test.series.recording];
+    return fmt::format("{} of {} ({})",
+                       info(recording.measurements[test.series.measurement].signal).name,
+                       recording.name, role_name(recording, test.series.fitted));
+  }
+
+  Html tests(const Diagnosis& diagnosis) const {
+    Html rows = each(diagnosis.tests, [&](const SeriesTest& test) {
+      std::string on;
+      for (const Dependence& d : test.dependences)
+        on += fmt::format("{}{} {:.2g} %", on.empty() ? "" : ", ", d.on, 100.0 * d.share);
+      return row(head_cell(name_of(test)) + number_cell(number(test.reduced_chi_square)) +
+                 number_cell(test.explained ? "noise"
+                                            : fmt::format("{:.3g} %", test.unexplained_percent)) +
+                 cell(on.empty() ? "nothing" : on));
+    });
+    Html all = table({"Series", "#reduced chi-square", "#unexplained", "Depends on"}, rows);
+    if (outcome_.loop || diagnosis.suspects.empty()) return all;
+    rows = each(diagnosis.suspects, [](const Suspect& s) {
+      return row(head_cell(s.candidate.name) + cell(s.candidate.meaning) + cell(s.candidate.slot) +
+                 number_cell(fmt::format("{:.2g} %", 100.0 * s.share)));
+    });
+    return all + html("<h3>Suspects</h3>{}",
+                      table({"Effect", "What it is", "Acts on", "#explains"}, rows));
+  }
+
+  Html loop() {
+    if (!outcome_.loop) return {};
+    const ClosedLoop& loop = *outcome_.loop;
+    Html rounds;
+    int last = 0;
+    for (const EffectTrial& t : loop.effects) last = std::max(last, t.round);
+    for (int round = 1; round <= last; ++round) {
+      std::vector<const EffectTrial*> trials;
+      for (const EffectTrial& t : loop.effects)
+        if (t.round == round) trials.push_back(&t);
+      if (trials.empty()) continue;
+      std::ranges::stable_sort(trials, std::greater{},
+                               [](const EffectTrial* t) { return t->score; });
+      rounds +=
+          html(R"(<li class="round"><h3>Round {}</h3>{}{}</li>)", round,
+               table({"Effect", "#score", "Decision", "Why", "#error not fitted", "#p of chance"},
+                     each(trials, [&](const EffectTrial* t) { return trial(*t); })),
+               after_round(trials));
+    }
+    Html all = paragraph_of(loop.verdict);
+    if (loop.held_out_blocks)
+      all += paragraph_of(
+          "No recording has the role validate: every second tenth of each recording was held out "
+          "to judge the effects by.");
+    return all + html(R"(<ol class="rounds">{}</ol>)", rounds);
+  }
+
+  static Html trial(const EffectTrial& t) {
+    const char* decision = decision_name(t.decision);
+    const bool judged = t.improvement.comparable;
+    return row(
+        html(R"(<th scope="row">{} <small>{}</small></th>)", t.candidate.name,
+             t.candidate.meaning) +
+        number_cell(number(t.score)) +
+        cell(html(R"(<span class="badge {0}">{0}</span>)", decision)) + cell(t.reason) +
+        number_cell(judged ? fmt::format("{:+.3g} %", -t.improvement.validate_percent) : "-") +
+        number_cell(judged ? fmt::format("{:.1g}", t.improvement.p_value) : "-"));
+  }
+
+  /// What became of the error when the round's effect was added.
+  Html after_round(const std::vector<const EffectTrial*>& trials) const {
+    const auto& models = outcome_.loop->models;
+    for (std::size_t i = 1; i < models.size(); ++i)
+      for (const EffectTrial* t : trials)
+        if (t->candidate.name == models[i].added)
+          return html("<p>With {}: reduced chi-square {} instead of {}.</p>", models[i].added,
+                      number(models[i].fit.reduced_chi_square),
+                      number(models[i - 1].fit.reduced_chi_square));
+    return {};
+  }
+
+  Html convergence() {
+    Html all = figures(charts_.convergence());
+    const std::vector<Minimum> minima = distinct_minima(outcome_.first.starts);
+    if (outcome_.first.starts.size() < 2 || minima.empty()) return all;
+    std::vector<std::string> columns{"#reduced cost", "#starts"};
+    for (std::size_t i = 0; i < minima.front().values.size(); ++i)
+      columns.push_back("#" + outcome_.first.parameters[i].name);
+    const Html rows = each(minima, [](const Minimum& m) {
+      return row(number_cell(number(m.reduced_cost)) + number_cell(fmt::format("{}", m.starts)) +
+                 each(m.values, [](double v) { return number_cell(number(v)); }));
+    });
+    return all + html("<h3>Minima that {} starts reached</h3>{}", outcome_.first.starts.size(),
+                      table(columns, rows));
+  }
+
+  Html repeat() const {
+    const FitOptions& options = outcome_.baseline.options;
+    const Html facts =
+        fact("Command", html("<code>{}</code>", run_.command)) +
+        fact("Job", html("{}", run_.job_file)) + fact("Axis", html("{}", run_.axis_file)) +
+        fact("Seed", html("{}", options.seed)) +
+        fact("Starts", html("{}", std::max(1, options.starts))) +
+        fact("Time taken", html("{} s", number(outcome_.wall_time))) +
+        fact("axisfit", html("{}", version())) +
+        fact("Built with",
+             html("Ceres {}, Eigen {}.{}.{}, GCC {}", CERES_VERSION_STRING, EIGEN_WORLD_VERSION,
+                  EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, __VERSION__));
+    const auto source = [](const std::string& file, const std::string& text) {
+      return html(R"(<details><summary>{}</summary><pre class="source">{}</pre></details>)", file,
+                  text);
+    };
+    return html(R"(<dl class="facts">{}</dl>)", facts) + source(run_.job_file, run_.job_text) +
+           source(run_.axis_file, run_.axis_text);
+  }
+
+  const Outcome& outcome_;
+  RunRecord run_;
+  const Job& job_;
+  const FitResult& fit_;
+  ReportCharts charts_;
+};
+
+}  // namespace
+
+std::string report_page(const Outcome& outcome, const RunRecord& run) {
+  return Page(outcome, run).text();
+}
+
+}  // namespace axisfit

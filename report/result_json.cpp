@@ -1,0 +1,465 @@
+#include "report/result_json.h"
+
+#include <cmath>
+
+#include "base/version.h"
+#include "report/text/report_text.h"
+
+namespace axisfit {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Of the documents: grows when a key changes its meaning or goes, not when one is added.
+constexpr int kSchemaVersion = 1;
+
+const char* text(Status status) {
+  switch (status) {
+    case Status::converged:
+      return "converged";
+    case Status::not_converged:
+      return "not_converged";
+    case Status::failed:
+      return "failed";
+  }
+  return "";
+}
+
+const char* noise_name(NoiseSource noise) {
+  switch (noise) {
+    case NoiseSource::given:
+      return "given";
+    case NoiseSource::differences:
+      return "differences";
+    case NoiseSource::rest:
+      return "rest";
+    case NoiseSource::fit:
+      return "fit";
+  }
+  return "";
+}
+
+/// A number, or null where there is none.
+Json optional(bool present, double value) { return present ? Json(value) : Json(nullptr); }
+Json finite(double value) { return optional(std::isfinite(value), value); }
+
+/// A list with one entry for each of the values.
+template <class Values, class Entry>
+Json list(const Values& values, Entry&& entry) {
+  Json array = Json::array();
+  for (const auto& value : values) array.push_back(entry(value));
+  return array;
+}
+
+Json signal_json(const Measurement& measurement, const SignalError& e, bool finished) {
+  Json signal{{"name", info(e.signal).name},
+              {"unit", info(e.signal).unit},
+              {"fitted", e.fitted},
+              {"rmse", optional(finished, e.rmse)},
+              {"nrmse_percent", optional(finished, e.nrmse_percent)},
+              {"sigma", e.sigma},
+              {"sigma_source", noise_name(e.noise)},
+              {"reduced_chi_square", optional(finished, e.reduced_chi_square)}};
+  if (e.prediction_rmse) {
+    signal["prediction_rmse"] = *e.prediction_rmse;
+    signal["prediction_reduced_chi_square"] = e.prediction_reduced_chi_square.value();
+  }
+  if (const auto rest = left_out(measurement)) {
+    signal["left_out"] = rest->samples;
+    signal["mean_left_out"] = rest->mean;
+  }
+  return signal;
+}
+
+Json recording_json(const Recording& recording, const RecordingResult& result,
+                    const std::vector<std::string>& concerns) {
+  Json signals = Json::array();
+  for (std::size_t m = 0; m < recording.measurements.size(); ++m)
+    signals.push_back(
+        signal_json(recording.measurements[m], result.signals[m], result.prediction.finished));
+  return {{"name", recording.name},
+          {"file", recording.file},
+          {"role", role_name(recording, true)},
+          {"samples", recording.times.size()},
+          {"start_s", recording.times.front()},
+          {"end_s", recording.times.back()},
+          {"events", result.prediction.events},
+          {"concerns", concerns},
+          {"signals", std::move(signals)}};
+}
+
+Json interval_json(const ParameterUncertainty& u) {
+  return u.has_interval() ? Json{u.lower, u.upper} : Json(nullptr);
+}
+
+/// What is said of an estimate wherever it stands.
+Json estimate_json(const ParameterResult& p) {
+  const Quantity& quantity = find_quantity(p.name.substr(0, p.name.find('@')))->quantity;
+  const ParameterUncertainty& u = p.uncertainty;
+  return {{"name", p.name},
+          {"unit", quantity.unit},
+          {"meaning", quantity.meaning},
+          {"value", p.value},
+          {"verdict", verdict_name(u)},
+          {"standard_error", optional(u.determined, u.standard_error)},
+          {"confidence_interval", interval_json(u)}};
+}
+
+Json parameter_json(const ParameterResult& p, const FreeParameter& free) {
+  Json parameter = estimate_json(p);
+  parameter.update(Json{{"initial", free.initial},
+                        {"lower", free.lower},
+                        {"upper", free.upper},
+                        {"scale", free.logarithmic ? "log" : "linear"}});
+  return parameter;
+}
+
+/// What is known of the parameters together.
+Json together_json(const ParameterSpace& space, const Eigen::MatrixXd& correlation,
+                   const Identifiability& known) {
+  const auto name = [&](std::size_t i) { return space.name(i); };
+  Json rows = Json::array();
+  for (const auto& row : correlation.rowwise()) rows.push_back(list(row, finite));
+  return {
+      {"correlation", std::move(rows)},
+      {"singular_values", known.singular_values},
+      {"without_influence", list(known.without_influence, name)},
+      {"weak_directions", list(known.weak,
+                               [&](const WeakDirection& weak) {
+                                 Json parts = Json::object();
+                                 for (const WeakDirection::Part& part : weak.parts)
+                                   parts[name(part.parameter)] = part.change;
+                                 return Json{{"singular_value", weak.singular_value},
+                                             {"direction", std::move(parts)},
+                                             {"words", weak.words}};
+                               })},
+      {"combinations", list(known.combinations, [](const Combination& c) {
+         return Json{{"name", c.name}, {"value", c.value}, {"standard_error", c.standard_error}};
+       })}};
+}
+
+/// What the intervals rest on.
+Json assumptions_json(const FitResult& fit) {
+  return {{"residuals",
+           "stationary, with the variance and autocorrelation found in each signal, "
+           "no less than the stated noise"},
+          {"model", "linear over the intervals"},
+          {"samples_per_independent_sample", fit.colour},
+          {"degrees_of_freedom", fit.freedom}};
+}
+
+Json profile_json(const Profile& profile, const FitResult& fit) {
+  const auto end = [](const ProfileEnd& e) {
+    return Json{{"value", optional(!e.open, e.value)}, {"open", e.open}};
+  };
+  Json json{{"name", fit.parameters[profile.parameter].name},
+            {"lower", end(profile.lower)},
+            {"upper", end(profile.upper)},
+            {"threshold", profile.threshold},
+            {"points", list(profile.points, [](const ProfilePoint& p) {
+               return Json{{"value", p.value}, {"deviance", p.deviance}};
+             })}};
+  if (profile.better)
+    json["better"] = {{"reduced_cost", profile.better->reduced_cost},
+                      {"values", profile.better->to}};
+  return json;
+}
+
+Json suggestion_json(const Suggestion& s, const FitResult& fit) {
+  Json predicted = Json::array();
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    const ParameterUncertainty& u = s.predicted.parameters[i];
+    predicted.push_back({{"name", fit.parameters[i].name},
+                         {"standard_error", optional(u.determined, u.standard_error)},
+                         {"confidence_interval", interval_json(u)}});
+  }
+  return {{"motion", s.experiment.words},
+          {"duration_s", s.experiment.duration},
+          {"for", fit.parameters[s.parameter].name},
+          {"predicted", std::move(predicted)},
+          {"limits",
+           {{"travel_m", {*s.limits.lowest, *s.limits.highest}},
+            {"speed_mps", *s.limits.speed},
+            {"voltage_v", *s.limits.voltage}}},
+          {"tried", s.tried},
+          {"allowed", s.allowed}};
+}
+
+Json force_json(const MissingForce& force) {
+  if (!force.found) return nullptr;
+  return {{"rms_n", force.rms},
+          {"noise_n", force.noise},
+          {"cutoff_hz", force.cutoff},
+          {"drive_rms_n", force.drive_rms}};
+}
+
+Json test_json(const Job& job, const SeriesTest& test) {
+  const Recording& recording = job.recordings[test.series.recording];
+  return {
+      {"recording", recording.name},
+      {"signal", info(recording.measurements[test.series.measurement].signal).name},
+      {"role", role_name(recording, test.series.fitted)},
+      {"reduced_chi_square", test.reduced_chi_square},
+      {"autocorrelation_time", test.autocorrelation_time},
+      {"unexplained_percent", test.unexplained_percent},
+      {"explained", test.explained},
+      {"dependences", list(test.dependences,
+                           [](const Dependence& d) {
+                             return Json{{"on", d.on}, {"share", d.share}, {"p_value", d.p_value}};
+                           })},
+      {"outliers", list(test.outliers,
+                        [&](std::size_t i) {
+                          return Json{{"time_s", recording.times[test.series.samples[i]]},
+                                      {"residual_over_sigma", test.series.values[i]}};
+                        })},
+      {"drift",
+       {{"over_sigma_per_second", test.drift.per_second},
+        {"standard_error", finite(test.drift.standard_error)},
+        {"p_value", test.drift.p_value}}},
+      {"grid", test.grid}};
+}
+
+Json quantities_json(const std::vector<std::size_t>& quantities,
+                     const std::vector<double>& values) {
+  Json array = Json::array();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const QuantityEntry& entry = quantity_list()[quantities[i]];
+    array.push_back({{"name", entry.name}, {"unit", entry.quantity.unit}, {"value", values[i]}});
+  }
+  return array;
+}
+
+Json suspect_json(const Suspect& s) {
+  return {{"name", s.candidate.name},
+          {"slot", s.candidate.slot},
+          {"meaning", s.candidate.meaning},
+          {"share", s.share},
+          {"strengths", quantities_json(s.candidate.strengths, s.strengths)},
+          {"shapes", quantities_json(s.candidate.shapes, s.shapes)}};
+}
+
+Json residual_json(const Job& job, const Diagnosis& diagnosis) {
+  Json forces = Json::array();
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    Json force{{"recording", job.recordings[r].name}};
+    const Json found = force_json(diagnosis.forces[r]);
+    if (!found.is_null()) force.update(found);
+    if (!found.is_null()) forces.push_back(std::move(force));
+  }
+  return {{"explained", diagnosis.explained},
+          {"tests", list(diagnosis.tests, [&](const SeriesTest& t) { return test_json(job, t); })},
+          {"suspects", list(diagnosis.suspects, suspect_json)},
+          {"missing_force", std::move(forces)}};
+}
+
+Json effect_json(const EffectTrial& t) {
+  const bool judged = t.improvement.comparable;
+  return {{"name", t.candidate.name},
+          {"slot", t.candidate.slot},
+          {"meaning", t.candidate.meaning},
+          {"decision", decision_name(t.decision)},
+          {"accepted", t.decision == Decision::accepted},
+          {"reason", t.reason},
+          {"round", t.round},
+          {"score", t.score},
+          {"parameters", list(t.parameters, estimate_json)},
+          {"p_value", optional(judged, t.improvement.p_value)},
+          {"validate_improvement_percent", optional(judged, t.improvement.validate_percent)}};
+}
+
+Json score_json(const Job& job, const SignalScore& score) {
+  const Recording& recording = job.recordings[score.recording];
+  const SignalInfo& signal = info(recording.measurements[score.measurement].signal);
+  const bool finished = score.free_running.has_value();
+  const SignalErrors errors = score.free_running.value_or(SignalErrors());
+  Json json{{"name", signal.name},
+            {"unit", signal.unit},
+            {"role", role_name(recording, score.fitted)},
+            {"rmse", optional(finished, errors.rmse)},
+            {"nrmse_percent", optional(finished, errors.nrmse_percent)},
+            {"reduced_chi_square", optional(finished, errors.reduced_chi_square)}};
+  if (score.held) {
+    json["prediction_rmse"] = score.held->rmse;
+    json["prediction_reduced_chi_square"] = score.held->reduced_chi_square;
+  }
+  return json;
+}
+
+Json model_json(const LoopModel& model, const ModelScore& score) {
+  Json recordings = Json::array();
+  for (std::size_t r = 0; r < model.job.recordings.size(); ++r) {
+    const Recording& recording = model.job.recordings[r];
+    Json signals = Json::array();
+    for (const SignalScore& s : score.signals)
+      if (s.recording == r) signals.push_back(score_json(model.job, s));
+    recordings.push_back({{"name", recording.name},
+                          {"role", role_name(recording, true)},
+                          {"signals", std::move(signals)},
+                          {"missing_force", force_json(score.forces[r])}});
+  }
+  return {{"added", model.added},
+          {"reduced_chi_square", finite(model.fit.reduced_chi_square)},
+          {"recordings", std::move(recordings)},
+          {"parameters", list(model.fit.parameters, estimate_json)}};
+}
+
+/// What only a closed loop has.
+Json loop_json(const Outcome& outcome) {
+  const ClosedLoop& loop = *outcome.loop;
+  const std::vector<ModelScore>& scores = outcome.scores;
+  Json models = Json::array();
+  for (std::size_t i = 0; i < loop.models.size(); ++i)
+    models.push_back(model_json(loop.models[i], scores[i]));
+  Json json{{"effects", list(loop.effects, effect_json)},
+            {"before", models.front()},
+            {"after", models.back()}};
+  models.erase(0);
+  json["models"] = std::move(models);
+  json["closed_loop"] = {
+      {"verdict", loop.verdict},
+      {"explained", loop.explained},
+      {"held_out_blocks", loop.held_out_blocks},
+      {"hints", list(outcome.separations, [](const Separation& s) { return s.words; })}};
+  return json;
+}
+
+Json recording_check_json(const Job& job, const Recording& recording, const RecordingCheck& check) {
+  const Sampling& sampling = check.sampling;
+  Json signals = Json::array();
+  for (std::size_t m = 0; m < check.measurements.size(); ++m) {
+    const ValueCheck& values = check.measurements[m];
+    const Measurement& measurement = recording.measurements[m];
+    signals.push_back({{"name", info(measurement.signal).name},
+                       {"unit", info(measurement.signal).unit},
+                       {"lowest", values.low},
+                       {"highest", values.high},
+                       {"sigma", measurement.sigma},
+                       {"sigma_source", noise_name(measurement.noise)},
+                       {"noise", values.noise},
+                       {"grid", values.grid},
+                       {"frozen_samples", values.frozen},
+                       {"frozen_at_s", optional(values.frozen > 0, values.frozen_at)},
+                       {"clipped_samples", values.clipped},
+                       {"clipped_at", optional(values.clipped > 0, values.clipped_at)}});
+  }
+  return {{"name", recording.name},
+          {"role", role_name(recording, true)},
+          {"samples", sampling.samples},
+          {"start_s", recording.times.front()},
+          {"end_s", recording.times.back()},
+          {"interval_s", sampling.interval},
+          {"jitter", sampling.jitter},
+          {"gaps", sampling.gaps},
+          {"largest_gap_s", optional(sampling.gaps > 0, sampling.largest_gap)},
+          {"largest_gap_at_s", optional(sampling.gaps > 0, sampling.gap_at)},
+          {"command",
+           {{"lowest", check.command.low},
+            {"highest", check.command.high},
+            {"switches", check.switches},
+            {"share_of_time_at_largest", check.at_largest}}},
+          {"signals", std::move(signals)},
+          {"rates", list(check.rates,
+                         [](const RateCheck& rate) {
+                           return Json{{"signal", info(rate.rate).name},
+                                       {"of", info(rate.of).name},
+                                       {"ratio", rate.found.ratio},
+                                       {"correlation", rate.found.correlation}};
+                         })},
+          {"concerns", concerns_of(job, recording, check)}};
+}
+
+}  // namespace
+
+Json result_json(const Outcome& outcome) {
+  const Job& job = outcome.job();
+  const FitResult& fit = outcome.fit();
+  Json recordings = Json::array(), parameters = Json::array();
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    recordings.push_back(
+        recording_json(job.recordings[r], fit.recordings[r],
+                       concerns_of(outcome.baseline, job.recordings[r], outcome.checks[r])));
+  for (std::size_t i = 0; i < job.free.size(); ++i)
+    parameters.push_back(parameter_json(fit.parameters[i], as_declared(outcome, i)));
+  Json json{
+      {"schema_version", kSchemaVersion},
+      {"version", version()},
+      {"status", text(fit.status)},
+      {"usable", fit.usable},
+      {"interrupted", outcome.interrupted},
+      {"out_of_time", outcome.out_of_time},
+      {"verdict", fit.verdict},
+      {"message", fit.message},
+      {"axis", outcome.baseline.axis},
+      {"recordings", std::move(recordings)},
+      {"parameters", std::move(parameters)},
+      {"reduced_chi_square", finite(fit.reduced_chi_square)},
+      {"residual", outcome.diagnosis ? residual_json(job, *outcome.diagnosis) : Json(nullptr)}};
+  json.update(together_json(ParameterSpace(job), fit.correlation, fit.identifiability));
+  json["assumptions"] = assumptions_json(fit);
+  if (!outcome.profiles.empty())
+    json["profile"] =
+        list(outcome.profiles, [&](const Profile& p) { return profile_json(p, fit); });
+  if (outcome.wishes.experiment)
+    json["next_experiment"] =
+        outcome.suggestion ? suggestion_json(*outcome.suggestion, fit) : Json(nullptr);
+  if (outcome.loop) json.update(loop_json(outcome));
+  json.update(Json{{"coupling_rate", fit.coupling_rate},
+                   {"stages", list(fit.stages,
+                                   [](const Stage& s) {
+                                     return Json{{"coupling_rate", s.coupling_rate},
+                                                 {"reduced_cost", finite(s.reduced_cost)},
+                                                 {"iterations", s.iterations},
+                                                 {"accepted", s.accepted}};
+                                   })},
+                   {"starts", list(outcome.first.starts,
+                                   [](const StartResult& s) {
+                                     return Json{{"from", s.from},
+                                                 {"to", s.to},
+                                                 {"usable", s.usable},
+                                                 {"reduced_cost", finite(s.reduced_cost)}};
+                                   })},
+                   {"minima", list(distinct_minima(outcome.first.starts),
+                                   [](const Minimum& m) {
+                                     return Json{{"reduced_cost", m.reduced_cost},
+                                                 {"starts", m.starts},
+                                                 {"values", m.values}};
+                                   })},
+                   {"iterations", fit.iterations},
+                   {"seed", outcome.baseline.options.seed},
+                   {"wall_time_s", outcome.wall_time}});
+  return json;
+}
+
+Json check_json(const Job& job, const std::vector<RecordingCheck>& checks, const Forecast& forecast,
+                const Effort& effort) {
+  Json recordings = Json::array();
+  for (std::size_t r = 0; r < checks.size(); ++r)
+    recordings.push_back(recording_check_json(job, job.recordings[r], checks[r]));
+  const ParameterSpace space(job);
+  Json parameters = Json::array();
+  for (std::size_t i = 0; i < space.size() && forecast.finite; ++i) {
+    const ParameterUncertainty& u = forecast.uncertainty.parameters[i];
+    Json shown = Json::array();
+    for (std::size_t s = 0; s < forecast.series.size(); ++s) {
+      const Recording& recording = job.recordings[forecast.series[s].recording];
+      const Measurement& m = recording.measurements[forecast.series[s].measurement];
+      shown.push_back({{"recording", recording.name},
+                       {"signal", info(m.signal).name},
+                       {"rms_over_noise", forecast.shown(static_cast<Eigen::Index>(i),
+                                                         static_cast<Eigen::Index>(s))}});
+    }
+    parameters.push_back({{"name", space.name(i)},
+                          {"initial", space[i].initial},
+                          {"verdict", verdict_name(u)},
+                          {"standard_error", optional(u.determined, u.standard_error)},
+                          {"shown", std::move(shown)}});
+  }
+  Json json{{"schema_version", kSchemaVersion},    {"version", version()},
+            {"recordings", std::move(recordings)}, {"evaluation_time_s", effort.evaluation},
+            {"expected_time_s", effort.expected},  {"finite", forecast.finite},
+            {"parameters", std::move(parameters)}};
+  json.update(together_json(space, forecast.uncertainty.correlation, forecast.together));
+  return json;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,19 @@
+// What was found as a JSON document. docs/result.md names every key.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "fit/data/recording_check.h"
+#include "fit/design/forecast.h"
+#include "fit/design/run_time_estimate.h"
+#include "fit/run.h"
+
+namespace axisfit {
+
+nlohmann::ordered_json result_json(const Outcome& outcome);
+
+/// What the recordings show and can tell of the parameters, before the fit.
+nlohmann::ordered_json check_json(const Job& job, const std::vector<RecordingCheck>& checks,
+                                  const Forecast& forecast, const Effort& effort);
+
+}  // namespace axisfit

@@ -1,0 +1,257 @@
+#include "report/text/report_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "base/text_table.h"
+#include "io/recording/csv.h"
+
+namespace axisfit {
+namespace {
+
+/// What an accelerometer shows at rest, where it has nothing to show and is left out.
+std::string rest_text(const Recording& recording) {
+  std::string text;
+  for (const Measurement& m : recording.measurements) {
+    const auto rest = left_out(m);
+    if (!rest) continue;
+    const std::string unit(info(m.signal).unit);
+    text += paragraph(
+        fmt::format("{}: {} samples of the {} at rest are left out, {:.3g} {} on average{}.",
+                    recording.name, rest->samples, info(m.signal).name, rest->mean, unit,
+                    rest->is_noise ? "" : ": a bias or an artefact of the instrument"),
+        2);
+  }
+  return text;
+}
+
+std::string recordings_text(const Outcome& outcome) {
+  const Job& job = outcome.job();
+  std::vector<std::vector<std::string>> rows;
+  for (const Recording& r : job.recordings) {
+    std::string signals;
+    for (const Measurement& m : r.measurements)
+      signals += (signals.empty() ? "" : ", ") + std::string(info(m.signal).name);
+    rows.push_back({r.name, r.role == Role::fit ? "fit" : "validate",
+                    fmt::format("{} samples", r.times.size()),
+                    fmt::format("{:.4g} s to {:.4g} s", r.times.front(), r.times.back()), signals});
+  }
+  std::string text =
+      "Recordings\n" + aligned(rows, {Set::left, Set::left, Set::right, Set::left, Set::wrapped});
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    text += rest_text(job.recordings[r]);
+    for (const std::string& concern :
+         concerns_of(outcome.baseline, job.recordings[r], outcome.checks[r]))
+      text += paragraph(fmt::format("! {}: {}", job.recordings[r].name, concern), 2);
+  }
+  return text;
+}
+
+/// What stands beside the numbers, which have no room for it.
+std::string legend_text(const Job& job, const FitResult& result) {
+  std::vector<ParameterUncertainty> known;
+  for (const ParameterResult& p : result.parameters) known.push_back(p.uncertainty);
+  return meanings_text(job, known);
+}
+
+/// With a closed loop, the declared model's estimates stand where the initial values would.
+std::string parameters_text(const Outcome& outcome) {
+  const Job& job = outcome.job();
+  const FitResult& result = outcome.fit();
+  std::vector<std::vector<std::string>> rows{
+      {"", "value", "std. error", "95 % interval", outcome.loop ? "declared" : "initial", "unit"}};
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    const ParameterResult& p = result.parameters[i];
+    const ParameterUncertainty& u = p.uncertainty;
+    const Quantity& quantity = quantity_list()[job.free[i].quantity].quantity;
+    const double error = u.determined ? u.standard_error : 0.0;
+    const bool open = !u.determined && !u.at_bound;
+    std::string other = fmt::format("{:.4g}", job.free[i].initial);
+    if (outcome.loop) {
+      const auto& declared = outcome.loop->models.front().fit.parameters;
+      other = i < declared.size() ? fmt::format("{:.4g}", declared[i].value) : "-";
+    }
+    rows.push_back({p.name, open ? fmt::format("~{:.1g}", p.value) : with_digits_of(p.value, error),
+                    u.determined ? fmt::format("{:.2g}", error) : "-",
+                    u.has_interval() ? fmt::format("{} .. {}", with_digits_of(u.lower, error),
+                                                   with_digits_of(u.upper, error))
+                                     : "-",
+                    other, std::string(quantity.unit)});
+  }
+  return "Parameters\n" +
+         aligned(rows, {Set::left, Set::right, Set::right, Set::right, Set::right, Set::left});
+}
+
+/// How many of several starts ended in the same place, and where the others did.
+std::string starts_text(const FitResult& first) {
+  const std::size_t starts = first.starts.size();
+  if (starts < 2) return "";
+  const std::vector<Minimum> minima = distinct_minima(first.starts);
+  if (minima.empty()) return "";
+  std::string text = fmt::format("{} of {} starts reach this minimum", minima[0].starts, starts);
+  constexpr std::size_t kNamed = 4;
+  std::size_t told = static_cast<std::size_t>(minima[0].starts);
+  for (std::size_t i = 1; i < std::min(minima.size(), kNamed); ++i) {
+    text += fmt::format(", {} one of reduced chi-square {:.4g}", minima[i].starts,
+                        minima[i].reduced_cost);
+    told += static_cast<std::size_t>(minima[i].starts);
+  }
+  if (told < starts) text += fmt::format(", {} end elsewhere or fail", starts - told);
+  return paragraph(text + ".", 2);
+}
+
+const char* mark_of(NoiseSource noise) {
+  switch (noise) {
+    case NoiseSource::given:
+      return "";
+    case NoiseSource::differences:
+      return "*";
+    case NoiseSource::fit:
+      return "**";
+    case NoiseSource::rest:
+      return "***";
+  }
+  return "";
+}
+
+std::string errors_text(const Job& job, const FitResult& result) {
+  const bool prediction = job.options.coupling == CouplingMode::fixed;
+  std::vector<std::vector<std::string>> rows{
+      {"", "rmse", "of range", "noise", "red. chi2", "unit", ""}};
+  if (prediction) rows.front().back() = "predicted rmse";
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    const Recording& recording = job.recordings[r];
+    for (const SignalError& e : result.recordings[r].signals) {
+      const bool finished = result.recordings[r].prediction.finished;
+      rows.push_back({series_name(recording, role_name(recording, e), e.signal),
+                      finished ? fmt::format("{:.4g}", e.rmse) : "-",
+                      finished ? fmt::format("{:.3g} %", e.nrmse_percent) : "-",
+                      fmt::format("{:.3g}{}", e.sigma, mark_of(e.noise)),
+                      finished ? fmt::format("{:.4g}", e.reduced_chi_square) : "-",
+                      std::string(info(e.signal).unit),
+                      e.prediction_rmse ? fmt::format("{:.4g}", *e.prediction_rmse) : ""});
+    }
+  }
+  std::string text = "Errors of the free-running simulation\n" +
+                     aligned(rows, {Set::left, Set::right, Set::right, Set::right, Set::right,
+                                    Set::left, Set::right});
+  if (has_noise_from(job, NoiseSource::differences))
+    text += "  * estimated from differences of the samples\n";
+  if (has_noise_from(job, NoiseSource::rest)) text += "  *** what the instrument shows at rest\n";
+  if (has_noise_from(job, NoiseSource::fit))
+    text += paragraph(
+        "** estimated together with the parameters: the reduced chi-square judges nothing", 2);
+  return text;
+}
+
+}  // namespace
+
+std::string series_name(const Recording& recording, const char* role, Signal signal) {
+  return fmt::format("{}, {}: {}", recording.name, role, info(signal).name);
+}
+
+std::string report_text(const Outcome& outcome) {
+  const Job& job = outcome.job();
+  const FitResult& result = outcome.fit();
+  std::string text =
+      fmt::format("{}\n{}{}\n{}\n{}\n", recordings_text(outcome), parameters_text(outcome),
+                  knowledge_text(result) + starts_text(outcome.first), legend_text(job, result),
+                  outcome.loop ? loop_text(outcome) : errors_text(job, result));
+  if (const std::string profiles = profiles_text(outcome); !profiles.empty())
+    text += profiles + "\n";
+  if (outcome.diagnosis && !outcome.diagnosis->explained) {
+    text += residual_text(job, *outcome.diagnosis) + "\n";
+    // A loop has told of the force, and has put the suspects to the test.
+    const std::string suspects = outcome.loop ? "" : suspects_text(job, *outcome.diagnosis);
+    if (!suspects.empty()) text += suspects + "\n";
+  }
+  if (outcome.diagnosis)
+    if (const std::string faults = instruments_text(job, *outcome.diagnosis); !faults.empty())
+      text += "Instruments\n" + faults + "\n";
+  text += paragraph(verdict_of(outcome));
+  for (const Separation& s : outcome.separations) text += paragraph(s.words);
+  if (!outcome.loop && outcome.diagnosis) text += residual_verdict(job, *outcome.diagnosis);
+  if (outcome.interrupted) {
+    const int starts = std::max(1, job.options.starts);
+    return text + "\n" +
+           paragraph(fmt::format(
+               "Stopped{} before all was finished: this is the result of {}{}.",
+               stop_reason(outcome),
+               starts > 1 ? fmt::format("{} of {} starts", outcome.first.starts.size(), starts)
+                          : "the fit",
+               outcome.loop ? ", and of the effects accepted so far" : ""));
+  }
+  if (outcome.wishes.experiment) text += "\n" + suggestion_text(outcome);
+  return text;
+}
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// The missing force of all recordings, one after the other, and what it may depend on.
+std::vector<Column> force_columns(const Job& job, const Diagnosis& diagnosis) {
+  constexpr std::pair<const char*, double Sample::*> kCourse[]{
+      {"command_v", &Sample::command},         {"arm_position_m", &Sample::position},
+      {"arm_velocity_mps", &Sample::velocity}, {"motor_angle_rad", &Sample::motor_angle},
+      {"motor_current_a", &Sample::current},   {"drive_force_n", &Sample::drive_force},
+      {"gear_force_n", &Sample::gear_force}};
+  std::vector<Column> columns{{"missing_force_n", {}}};
+  for (const auto& [name, member] : kCourse) columns.push_back({name, {}});
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    const MissingForce& force = diagnosis.forces[r];
+    for (std::size_t i = 0; i < job.recordings[r].times.size(); ++i) {
+      columns.front().values.push_back(force.found ? force.force[i] : kNone);
+      for (std::size_t c = 0; c < std::size(kCourse); ++c)
+        columns[c + 1].values.push_back(force.found ? force.samples[i].*kCourse[c].second : kNone);
+    }
+  }
+  return columns;
+}
+
+}  // namespace
+
+std::string residuals_csv(const Job& job, const FitResult& result,
+                          const std::optional<Diagnosis>& diagnosis) {
+  std::vector<double> number, time;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    for (const double t : job.recordings[r].times) {
+      number.push_back(static_cast<double>(r + 1));
+      time.push_back(t);
+    }
+  std::vector<Column> columns{{"recording", number}, {"time_s", time}};
+  for (const SignalInfo& signal : kSignalTable) {
+    Column measured{std::string(signal.name) + "_measured", {}},
+        simulated{std::string(signal.name) + "_simulated", {}},
+        residual{std::string(signal.name) + "_residual", {}};
+    bool recorded = false;
+    for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+      const Recording& recording = job.recordings[r];
+      const auto m = std::ranges::find(recording.measurements, signal.signal, &Measurement::signal);
+      const bool present = m != recording.measurements.end();
+      recorded = recorded || present;
+      const auto index = static_cast<std::size_t>(m - recording.measurements.begin());
+      for (std::size_t i = 0; i < recording.times.size(); ++i) {
+        const double y = present ? m->values[i] : kNone;
+        const bool reached = present && i < result.recordings[r].prediction.simulated[index].size();
+        const double s = reached ? result.recordings[r].prediction.simulated[index][i] : kNone;
+        measured.values.push_back(y);
+        simulated.values.push_back(s);
+        residual.values.push_back(y - s);
+      }
+    }
+    if (!recorded) continue;
+    for (Column* c : {&measured, &simulated, &residual}) columns.push_back(std::move(*c));
+  }
+  if (diagnosis)
+    for (Column& column : force_columns(job, *diagnosis)) columns.push_back(std::move(column));
+  std::ostringstream out;
+  write_csv(out, columns, 9);
+  return out.str();
+}
+
+}  // namespace axisfit

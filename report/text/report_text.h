@@ -1,0 +1,74 @@
+// What was found as text for a terminal. Lines end with '\n' and have no more than 80 characters.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fit/data/recording_check.h"
+#include "fit/design/forecast.h"
+#include "fit/design/run_time_estimate.h"
+#include "fit/run.h"
+
+namespace axisfit {
+
+/// Recordings, table of parameters, errors per signal or the models of the loop, and the verdicts.
+std::string report_text(const Outcome& outcome);
+
+/// Its part on a residual that is not explained: how much that is, and what it depends on.
+std::string residual_text(const Job& job, const Diagnosis& diagnosis);
+
+/// Faults of the instruments that the residual shows; empty where there are none.
+std::string instruments_text(const Job& job, const Diagnosis& diagnosis);
+
+/// What the residual may come from: the missing force and the suspects.
+std::string suspects_text(const Job& job, const Diagnosis& diagnosis);
+
+/// The verdict on the residual, one paragraph.
+std::string residual_verdict(const Job& job, const Diagnosis& diagnosis);
+
+/// Its part on the closed loop: effects that were tried, and the errors before and after.
+std::string loop_text(const Outcome& outcome);
+
+/// "step, fit: velocity"
+std::string series_name(const Recording& recording, const char* role, Signal signal);
+
+/// What each parameter of a job is and, unless it is determined, its verdict.
+std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty>& known);
+
+/// What the intervals rest on, and what is known instead of parameters that are not determined.
+std::string knowledge_text(const FitResult& result);
+
+/// What is known of the parameters together: weak directions, and the combinations that are
+/// determined.
+std::string together_text(const Identifiability& known);
+
+/// Intervals by profile beside those by standard error; empty where there are no profiles.
+std::string profiles_text(const Outcome& outcome);
+
+/// The next experiment, and what it is expected to bring.
+std::string suggestion_text(const Outcome& outcome);
+
+/// What the recordings of a job can tell of its parameters, before the fit.
+std::string forecast_text(const Job& job, const Forecast& forecast);
+
+/// What the recordings show by themselves: sampling, ranges, noise, and what looks wrong.
+std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& checks);
+
+/// What looks wrong with a recording, and what to do about it: a sentence or two each.
+std::vector<std::string> concerns_of(const Job& job, const Recording& recording,
+                                     const RecordingCheck& check);
+
+/// How long the fit will take.
+std::string effort_text(const Job& job, const Effort& effort);
+
+/// Cells of one row about a missing force: name, rms, noise, per cent of the drive force, cutoff.
+std::vector<std::string> force_cells(const std::string& name, const MissingForce& force);
+
+/// residuals.csv: recording (its number in the job), time_s, and measured, simulated and residual
+/// of every signal, of the free-running simulation. With a diagnosis also the missing force and
+/// what it may depend on, of the simulation that is held to the recording. Empty where a recording
+/// lacks a signal.
+std::string residuals_csv(const Job& job, const FitResult& result,
+                          const std::optional<Diagnosis>& diagnosis = {});
+
+}  // namespace axisfit

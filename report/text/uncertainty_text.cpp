@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/text_table.h"
+#include "base/units.h"
+#include "report/text/report_text.h"
+
+namespace axisfit {
+namespace {
+
+std::string_view unit_of(const Job& job, std::size_t parameter) {
+  return quantity_list()[job.free[parameter].quantity].quantity.unit;
+}
+
+/// "12.3 .. 14.2", or what stands for an interval that there is not.
+std::string interval_text(const ParameterUncertainty& u) {
+  if (!u.has_interval()) return "-";
+  const double digits = u.determined ? u.standard_error : 0.0;
+  return with_digits_of(u.lower, digits) + " .. " + with_digits_of(u.upper, digits);
+}
+
+/// Estimates that hang together: neither is known without the other.
+std::string correlation_text(const FitResult& result) {
+  constexpr double kStrong = 0.95;
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::pair<double, std::string>> pairs;
+  for (Eigen::Index i = 0; i < result.correlation.rows(); ++i)
+    for (Eigen::Index k = 0; k < i; ++k)
+      if (const double c = result.correlation(i, k); std::abs(c) > kStrong)
+        pairs.emplace_back(
+            std::abs(c),
+            fmt::format("{} and {} by {:.3g}", result.parameters[static_cast<std::size_t>(k)].name,
+                        result.parameters[static_cast<std::size_t>(i)].name, c));
+  if (pairs.empty()) return "";
+  std::ranges::stable_sort(pairs, std::greater{}, [](const auto& pair) { return pair.first; });
+  const std::size_t named = std::min(kNamed, pairs.size());
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < named; ++i) names.push_back(pairs[i].second);
+  const std::string more =
+      pairs.size() > named ? fmt::format(", and {} more pairs", pairs.size() - named) : "";
+  return paragraph(fmt::format("Strongly correlated: {}{}.", fmt::join(names, ", "), more), 2);
+}
+
+}  // namespace
+
+std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty>& known) {
+  const ParameterSpace space(job);
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    std::string words(quantity_list()[space[i].quantity].quantity.meaning);
+    if (const std::string_view verdict = verdict_name(known[i]); verdict != "determined")
+      words += fmt::format(": {}", verdict);
+    rows.push_back({space.name(i), words});
+  }
+  return aligned(rows, {Set::left, Set::wrapped});
+}
+
+std::string knowledge_text(const FitResult& result) {
+  const double excess = std::sqrt(result.reduced_chi_square);
+  std::string noise = excess > 1.0
+                          ? fmt::format("residuals as found, {:.3g} times the noise", excess)
+                          : "noise of the size stated below";
+  constexpr double kWhite = 1.2;
+  noise += result.colour > kWhite
+               ? fmt::format(", in which up to {:.3g} samples tell no more than one", result.colour)
+               : ", white";
+  return paragraph("Standard errors and intervals: for " + noise + ".", 2) +
+         correlation_text(result) + together_text(result.identifiability);
+}
+
+std::string together_text(const Identifiability& known) {
+  std::string text;
+  for (const WeakDirection& weak : known.weak) text += paragraph(weak.words, 2);
+  for (const Combination& c : known.combinations)
+    text += paragraph(fmt::format("{} = {} +- {:.2g}", c.name,
+                                  with_digits_of(c.value, c.standard_error), c.standard_error),
+                      2);
+  return text;
+}
+
+std::string profiles_text(const Outcome& outcome) {
+  if (outcome.profiles.empty()) return "";
+  const FitResult& fit = outcome.fit();
+  std::vector<std::vector<std::string>> rows{
+      {"", "value", "by profile", "by standard error", "unit"}};
+  std::string better;
+  for (const Profile& profile : outcome.profiles) {
+    const ParameterResult& p = fit.parameters[profile.parameter];
+    const ParameterUncertainty& u = p.uncertainty;
+    const double digits = u.determined ? u.standard_error : 0.0;
+    const auto end = [&](const ProfileEnd& e) {
+      return e.open ? std::string("open") : with_digits_of(e.value, digits);
+    };
+    rows.push_back({p.name, with_digits_of(p.value, digits),
+                    end(profile.lower) + " .. " + end(profile.upper), interval_text(u),
+                    std::string(unit_of(outcome.job(), profile.parameter))});
+    if (profile.better)
+      better += paragraph(
+          fmt::format(
+              "The profile of {} met a better fit, of reduced chi-square {:.4g}: the result "
+              "is not the best minimum. Try --starts 20.",
+              p.name, profile.better->reduced_cost),
+          2);
+  }
+  return "95 % intervals\n" +
+         aligned(rows, {Set::left, Set::right, Set::right, Set::right, Set::left}) + better;
+}
+
+std::string suggestion_text(const Outcome& outcome) {
+  for (const Separation& separation : outcome.separations)
+    if (separation.experiment)
+      return "Next experiment\n" +
+             paragraph(fmt::format("Record {}, for {:.3g} s, with the {}: it tells the undecided "
+                                   "effects apart.",
+                                   separation.experiment->words, separation.experiment->duration,
+                                   info(*separation.signal).name),
+                       2);
+  if (!outcome.suggestion)
+    return paragraph("Next experiment: none of the motions that were tried keeps to the limits.");
+  const Suggestion& s = *outcome.suggestion;
+  const FitResult& fit = outcome.fit();
+  const std::string& name = fit.parameters[s.parameter].name;
+  std::string text = fmt::format(
+      "Record {}, for {:.3g} s: it does most for {}, which is known least. Of {} "
+      "motions, {} stay within {:.4g} .. {:.4g} m, {:.3g} m/s and {:.3g} V.",
+      s.experiment.words, s.experiment.duration, name, s.tried, s.allowed, *s.limits.lowest,
+      *s.limits.highest, *s.limits.speed, *s.limits.voltage);
+  const MachineLimits& given = outcome.baseline.limits;
+  if (!given.lowest || !given.speed)
+    text += " So far the recordings went; 'limits' in the job says how far the machine may go.";
+  if (!s.predicted.parameters[s.parameter].determined) {
+    const std::size_t quantity = outcome.job().free[s.parameter].quantity;
+    const std::string_view need = excitation_needed(quantity_list()[quantity].name);
+    text +=
+        fmt::format(" Even then {} stays open{}{}.", name, need.empty() ? "" : ": it needs ", need);
+  }
+  text = "Next experiment\n" + paragraph(text, 2);
+  std::vector<std::vector<std::string>> rows{{"", "95 % interval now", "predicted", "unit"}};
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i)
+    rows.push_back({fit.parameters[i].name, interval_text(s.now.parameters[i]),
+                    interval_text(s.predicted.parameters[i]),
+                    std::string(unit_of(outcome.job(), i))});
+  return text + aligned(rows, {Set::left, Set::right, Set::right, Set::left});
+}
+
+std::string forecast_text(const Job& job, const Forecast& forecast) {
+  if (!forecast.finite)
+    return paragraph(
+        "What can be determined is not known: with the initial values the simulation does not get "
+        "through the recordings.");
+  std::vector<std::vector<std::string>> rows{{"", "expected error", "seen best in"}};
+  const ParameterSpace space(job);
+  std::string needs;
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    const ParameterUncertainty& u = forecast.uncertainty.parameters[i];
+    const std::string_view unit = unit_of(job, i);
+    Eigen::Index best = 0;
+    const double most = forecast.shown.row(static_cast<Eigen::Index>(i)).maxCoeff(&best);
+    const SeriesRows& series = forecast.series[static_cast<std::size_t>(best)];
+    const Recording& recording = job.recordings[series.recording];
+    rows.push_back(
+        {space.name(i),
+         u.determined ? with_unit(fmt::format("{:.2g}", u.standard_error), unit) : "-",
+         most > 0.0
+             ? fmt::format("{} of {}", info(recording.measurements[series.measurement].signal).name,
+                           recording.name)
+             : "no signal"});
+    const std::string_view need = excitation_needed(quantity_list()[space[i].quantity].name);
+    if ((!u.determined || u.weak) && !u.at_bound && !need.empty())
+      needs += paragraph(fmt::format("{} needs {}.", space.name(i), need), 2);
+  }
+  return "What these recordings can tell, if the initial values are about right\n" +
+         aligned(rows, {Set::left, Set::right, Set::wrapped}) + together_text(forecast.together) +
+         needs + "\n" + meanings_text(job, forecast.uncertainty.parameters);
+}
+
+}  // namespace axisfit

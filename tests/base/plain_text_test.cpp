@@ -1,0 +1,44 @@
+#include "base/plain_text.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace axisfit {
+namespace {
+
+TEST(PlainText, WhatIsNoTextBecomesAQuestionMark) {
+  for (const char* text : {"", "plain", "Größe µm", "\U0001F600", "a\u00A0b"}) {
+    EXPECT_EQ(harmless(text), text);
+    EXPECT_TRUE(is_harmless(text));
+  }
+  EXPECT_EQ(harmless("a\tb\nc\x1B[2J\x7F"), "a?b?c?[2J?");
+  EXPECT_EQ(harmless("\u0085\u009B1m\u2028\u2029\u202A"), "??1m??\u202A");
+  EXPECT_EQ(harmless("gr\xF6\xDF"
+                     "er"),
+            "gr??er");
+  EXPECT_EQ(harmless("\xC3"), "?");
+  EXPECT_EQ(harmless("\xE2\x80"), "??");
+  EXPECT_EQ(harmless(std::string("\0", 1)), "?");
+  EXPECT_FALSE(is_harmless("\xFF"));
+}
+
+TEST(PlainText, IsLinearInTheText) {
+  // A second of work at the square of this.
+  const std::string wrong(1 << 20, '\xFF'), control = "\u0085";
+  EXPECT_EQ(harmless(wrong), std::string(wrong.size(), '?'));
+  std::string many;
+  for (int i = 0; i < 1 << 19; ++i) many += control;
+  EXPECT_EQ(harmless(many), std::string(1 << 19, '?'));
+}
+
+TEST(PlainText, IsCutBetweenCharacters) {
+  EXPECT_EQ(shortened("abc", 3), "abc");
+  EXPECT_EQ(shortened("abcd", 3), "abc...");
+  EXPECT_EQ(shortened("äöü", 3), "ä...");
+  EXPECT_EQ(shortened("äöü", 6), "äöü");
+  EXPECT_EQ(shortened("\x80\x80\x80", 1), "...");
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,71 @@
+#include "fit/data/noise.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace axisfit {
+namespace {
+
+std::vector<double> smooth_signal(std::size_t n) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = 1e-3 * static_cast<double>(i);
+    values.push_back(std::sin(12.0 * t) + 0.05 * std::sin(480.0 * t));  // a gear ringing at 76 Hz
+  }
+  return values;
+}
+
+TEST(Noise, IsFoundUnderAMovingSignal) {
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal(0.0, 2e-3);
+  std::vector<double> values = smooth_signal(4000);
+  for (double& x : values) x += normal(generator);
+  EXPECT_NEAR(noise_from_differences(values), 2e-3, 0.05 * 2e-3);
+}
+
+TEST(Noise, IgnoresASmoothSignal) {
+  // The sixth difference of the ringing, (480e-3)^6 * 0.05 / sqrt(924), is all that is left.
+  EXPECT_LT(noise_from_differences(smooth_signal(4000)), 2e-5);
+}
+
+TEST(Noise, SurvivesJumps) {
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal(0.0, 2e-3);
+  std::vector<double> values(4000);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = normal(generator) + (i / 200 % 2 == 0 ? 0.0 : 5.0);
+  EXPECT_NEAR(noise_from_differences(values), 2e-3, 0.1 * 2e-3);
+}
+
+TEST(Noise, OfAnEncoderIsItsRounding) {
+  std::vector<double> values = smooth_signal(4000);
+  const double count = 5e-4;
+  for (double& x : values) x = count * std::floor(x / count);
+  EXPECT_NEAR(quantum(values), count, 1e-9);
+  const double rounding = count / std::sqrt(12.0);
+  EXPECT_GE(noise_from_differences(values), rounding * (1.0 - 1e-9));
+  EXPECT_LE(noise_from_differences(values), 1.25 * rounding);
+  // So slow that most differences are zero.
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = count * std::floor(0.02 * static_cast<double>(i));
+  EXPECT_NEAR(noise_from_differences(values), rounding, 1e-9 * rounding);
+}
+
+TEST(Noise, HasNoGridInRealNumbers) {
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  std::vector<double> values(1000);
+  for (double& x : values) x = normal(generator);
+  EXPECT_EQ(quantum(values), 0.0);
+}
+
+TEST(Noise, OfAConstantIsZero) {
+  EXPECT_EQ(noise_from_differences(std::vector<double>(100, 3.0)), 0.0);
+  EXPECT_EQ(noise_from_differences(std::vector<double>{1.0, 2.0, 1.0}), 0.0);
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,152 @@
+// What recordings show by themselves, on motions whose every number is known.
+#include "fit/data/recording_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <tuple>
+
+namespace axisfit {
+namespace {
+
+constexpr std::size_t kSamples = 2000;
+constexpr double kInterval = 1e-3;
+constexpr double kRate = 2.0 * std::numbers::pi * 1.3;  // rad/s of the motion
+
+/// A sine of 0.1 m with noise in the velocity and a bias in the acceleration.
+Recording moving() {
+  Recording recording;
+  recording.name = "sine";
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> noise;
+  Measurement position, velocity, acceleration;
+  position.signal = Signal::position;
+  velocity.signal = Signal::velocity;
+  acceleration.signal = Signal::acceleration;
+  std::tie(position.sigma, velocity.sigma, acceleration.sigma) = std::tuple(1e-5, 2e-3, 0.05);
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double t = kInterval * static_cast<double>(i), phase = kRate * t;
+    recording.times.push_back(t);
+    position.values.push_back(0.1 * std::sin(phase) + 1e-5 * noise(generator));
+    velocity.values.push_back(0.1 * kRate * std::cos(phase) + 2e-3 * noise(generator));
+    acceleration.values.push_back(-0.1 * kRate * kRate * std::sin(phase) + 9.81 +
+                                  0.05 * noise(generator));
+  }
+  recording.command = {{0.0, 0.5, 1.0}, {2.0, -3.0, 1.0}};
+  recording.measurements = {position, velocity, acceleration};
+  return recording;
+}
+
+TEST(SamplingTest, TellsGapsFromJitter) {
+  std::vector<double> times;
+  for (std::size_t i = 0; i < 1000; ++i)
+    times.push_back(1e-3 * static_cast<double>(i) + (i % 2 == 0 ? 0.0 : 5e-5) +
+                    (i >= 300 ? 4e-3 : 0.0) + (i >= 700 ? 9e-3 : 0.0));
+  const Sampling found = sampling(times);
+  EXPECT_EQ(found.samples, 1000u);
+  EXPECT_NEAR(found.interval, 1e-3, 1.1e-4);
+  EXPECT_EQ(found.gaps, 2u);
+  EXPECT_NEAR(found.largest_gap, 1e-2 - 5e-5, 1e-9);
+  EXPECT_EQ(found.gap_at, times[699]);
+  EXPECT_GT(found.jitter, 0.04);
+  EXPECT_LT(found.jitter, 0.15);
+  EXPECT_EQ(sampling(moving().times).gaps, 0u);
+  EXPECT_LT(sampling(moving().times).jitter, 1e-9);
+}
+
+TEST(TellingCouplingTest, ShowsAHundredthOfTheAccelerationAboveTheNoise) {
+  const Recording recording = moving();
+  const auto &position = recording.measurements[0].values,
+             &velocity = recording.measurements[1].values;
+  // An acceleration of 0.1 kRate^2 / sqrt(2), noise of 1e-5 m and 2e-3 m/s.
+  const double missing = 0.01 * 0.1 * kRate * kRate / std::sqrt(2.0);
+  EXPECT_NEAR(telling_coupling(recording.times, position, {}), std::sqrt(missing / 1e-4), 1.0);
+  // The loosest: ten times in two seconds.
+  EXPECT_NEAR(missing / 2e-2, 2.4, 0.1);
+  EXPECT_NEAR(telling_coupling(recording.times, {}, velocity), 10.0 / 2.0, 0.1);
+  // The firmest: with next to no noise all shows.
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> noise(0.0, 4e-8);
+  std::vector<double> clean;
+  for (const double t : recording.times)
+    clean.push_back(0.1 * std::sin(kRate * t) + noise(generator));
+  EXPECT_NEAR(telling_coupling(recording.times, clean, {}), 0.3 / kInterval, 1e-6);
+}
+
+TEST(RateRatioTest, FindsFactorAndSignThroughNoiseAndBias) {
+  const Recording recording = moving();
+  for (const double factor : {1.0, 1000.0, -1.0 / 9.80665}) {
+    std::vector<double> rate = recording.find(Signal::acceleration)->values;
+    for (double& x : rate) x *= factor;
+    const auto found = rate_ratio(recording.times, recording.find(Signal::velocity)->values, rate);
+    ASSERT_TRUE(found);
+    EXPECT_TRUE(found->related());
+    EXPECT_NEAR(found->ratio / factor, 1.0, 0.01);
+  }
+}
+
+TEST(RateRatioTest, KnowsWhatHasNothingToDoWithIt) {
+  const Recording recording = moving();
+  const std::vector<double>& position = recording.find(Signal::position)->values;
+  // A position is no rate of itself: a quarter of a period off.
+  const auto none = rate_ratio(recording.times, position, position);
+  ASSERT_TRUE(none);
+  EXPECT_FALSE(none->related());
+  const std::vector<double> constant(kSamples, 0.0);
+  EXPECT_FALSE(rate_ratio(recording.times, position, constant));
+  EXPECT_FALSE(rate_ratio(recording.times, constant, position));
+}
+
+TEST(RecordingCheckTest, ASoundRecordingHasNothingWrong) {
+  const RecordingCheck check = check_recording(moving());
+  ASSERT_EQ(check.measurements.size(), 3u);
+  for (const ValueCheck& values : check.measurements) {
+    EXPECT_EQ(values.frozen, 0u);
+    EXPECT_EQ(values.clipped, 0u);
+    EXPECT_EQ(values.grid, 0.0);
+  }
+  EXPECT_NEAR(check.measurements[1].noise, 2e-3, 2e-4);
+  EXPECT_NEAR(check.measurements[0].high, 0.1, 1e-4);
+  ASSERT_EQ(check.rates.size(), 2u);
+  EXPECT_NEAR(check.rates[0].found.ratio, 1.0, 0.01);
+  EXPECT_NEAR(check.rates[1].found.ratio, 1.0, 0.01);
+  EXPECT_EQ(check.switches, 2u);
+  EXPECT_EQ(check.command.low, -3.0);
+  EXPECT_EQ(check.command.high, 2.0);
+  EXPECT_NEAR(check.at_largest, 0.25, 1e-3);  // 0.5 s of 2 s at -3 V
+  EXPECT_NEAR(check.speed, 0.1 * kRate, 0.02);
+}
+
+TEST(RecordingCheckTest, FindsASensorThatHangs) {
+  Recording recording = moving();
+  std::vector<double>& velocity = recording.measurements[1].values;
+  for (std::size_t i = 1100; i < 1160; ++i) velocity[i] = velocity[1100];
+  const ValueCheck check = check_recording(recording).measurements[1];
+  EXPECT_EQ(check.frozen, 60u);
+  EXPECT_EQ(check.frozen_at, recording.times[1100]);
+  EXPECT_EQ(check.clipped, 0u);
+}
+
+TEST(RecordingCheckTest, FindsASensorOutOfItsRange) {
+  Recording recording = moving();
+  for (double& a : recording.measurements[2].values) a = std::min(a, 15.0);
+  const ValueCheck check = check_recording(recording).measurements[2];
+  EXPECT_GT(check.clipped, 100u);
+  EXPECT_EQ(check.clipped_at, 15.0);
+}
+
+TEST(RecordingCheckTest, ARestIsNeitherHangingNorClipped) {
+  Recording recording = moving();
+  for (std::size_t i = 1500; i < kSamples; ++i)
+    for (Measurement& m : recording.measurements)
+      m.values[i] = m.signal == Signal::position ? recording.measurements[0].values[1499] : 0.0;
+  for (const ValueCheck& values : check_recording(recording).measurements) {
+    EXPECT_EQ(values.frozen, 0u);
+    EXPECT_EQ(values.clipped, 0u);
+  }
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,129 @@
+#include "fit/design/experiment.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fit/design/forecast.h"
+#include "tests/fit/example.h"
+
+namespace axisfit {
+namespace {
+
+TEST(Forecast, IsWhatTheFitFinds) {
+  Job job = two_recordings(slide(), slide(), {"M", "B_a"});
+  const Forecast expected = forecast(job, draw_start(job, 0));
+  const FitResult fit = estimate(job);
+  ASSERT_TRUE(expected.finite && fit.usable);
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    const double error = fit.parameters[i].uncertainty.standard_error;
+    EXPECT_NEAR(expected.uncertainty.parameters[i].standard_error, error, 0.05 * error);
+  }
+  // What is to be validated shows nothing to a fit.
+  EXPECT_EQ(expected.series.size(), 2u);
+}
+
+TEST(Forecast, KnowsWhatIsNotSeenAndWhatThatNeeds) {
+  const Model<double> truth = motor_axis();
+  Job job = two_recordings(truth, truth, {"V_L", "T_p"});
+  job.recordings = {recorded(truth, SineMotion{0.4, 2.0, 2.0}, 1.0, 3)};
+  const Forecast expected = forecast(job, draw_start(job, 0));
+  EXPECT_FALSE(expected.uncertainty.parameters[0].determined);
+  EXPECT_TRUE(expected.uncertainty.parameters[1].determined);
+  EXPECT_EQ(expected.together.without_influence, std::vector<std::size_t>{0});
+  EXPECT_TRUE(expected.shown.row(0).isZero());
+  EXPECT_NE(excitation_needed("V_L").find("larger step"), std::string_view::npos);
+}
+
+/// Somebody has recorded only a slow motion of a slide, which hardly shows its mass.
+Job slow_job(std::uint64_t seed) {
+  Job job;
+  job.model = slide();
+  job.options.threads = 2;
+  job.free = {free_parameter("M", 20.0), free_parameter("B_a", 30.0)};
+  job.recordings = {recorded(slide(), SineMotion{0.3, 0.5, 0.5}, 2.0, seed)};
+  return job;
+}
+
+constexpr MachineLimits kLimits{-0.2, 0.6, 0.8, 10.0};
+
+TEST(SuggestExperiment, IsFollowedWithTheSuccessPredicted) {
+  Job job = slow_job(5);
+  const FitResult before = estimate(job);
+  ASSERT_TRUE(before.usable);
+  const auto suggestion = suggest_experiment(job, before, ControllerSettings(), kLimits);
+  ASSERT_TRUE(suggestion);
+  const auto relative = [&](const Uncertainty& u, std::size_t i) {
+    return u.parameters[i].standard_error / before.parameters[i].value;
+  };
+  const std::size_t worst = suggestion->parameter;
+  EXPECT_GT(relative(suggestion->now, worst), relative(suggestion->now, 1 - worst));
+  EXPECT_LT(relative(suggestion->predicted, worst), 0.5 * relative(suggestion->now, worst));
+
+  job.recordings.push_back(
+      recorded(slide(), suggestion->experiment.motion, suggestion->experiment.duration, 6));
+  job.recordings.back().name = "next";
+  const FitResult after = estimate(job);
+  ASSERT_TRUE(after.usable);
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    const double predicted = suggestion->predicted.parameters[i].standard_error;
+    EXPECT_NEAR(after.parameters[i].uncertainty.standard_error, predicted, 0.15 * predicted);
+  }
+  // And the machine stayed within its limits.
+  for (const Sample& s : after.recordings.back().prediction.samples) {
+    EXPECT_GE(s.position, *kLimits.lowest - 1e-3);
+    EXPECT_LE(s.position, *kLimits.highest + 1e-3);
+    EXPECT_LE(std::abs(s.velocity), *kLimits.speed + 1e-3);
+    EXPECT_LE(std::abs(s.command), *kLimits.voltage);
+  }
+}
+
+TEST(SuggestExperiment, KeepsToWhatTheRecordingsCovered) {
+  const Job job = slow_job(7);
+  const FitResult fit = estimate(job);
+  const auto suggestion = suggest_experiment(job, fit, ControllerSettings(), {});
+  ASSERT_TRUE(suggestion);
+  EXPECT_GT(suggestion->tried, 200);
+  EXPECT_LT(suggestion->allowed, suggestion->tried);
+  double highest = 0.0;
+  for (const Sample& s : fit.recordings[0].prediction.samples)
+    highest = std::max(highest, s.position);
+  EXPECT_DOUBLE_EQ(*suggestion->limits.highest, highest);
+}
+
+TEST(SuggestExperiment, HasNoneWhereNothingIsAllowed) {
+  const Job job = slow_job(7);
+  EXPECT_FALSE(suggest_experiment(job, estimate(job), ControllerSettings(), {0.0, 0.0, 1e-9, 1.0}));
+}
+
+// Residuals are expected to be of the size that the fit has left: who states a third of the true
+// noise is not promised more than who states it as it is.
+TEST(SuggestExperiment, PromisesNoMoreWhereTheNoiseIsUnderstated) {
+  Job job = slow_job(5);
+  const auto expected = suggest_experiment(job, estimate(job), ControllerSettings(), kLimits);
+  for (Measurement& m : job.recordings[0].measurements) m.sigma /= 3.0;
+  const FitResult hopeful = estimate(job);
+  EXPECT_NEAR(hopeful.reduced_chi_square, 9.0, 0.5);
+  const auto found = suggest_experiment(job, hopeful, ControllerSettings(), kLimits);
+  ASSERT_TRUE(expected && found);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double now = expected->now.parameters[i].standard_error;
+    EXPECT_NEAR(found->now.parameters[i].standard_error, now, 0.05 * now);
+    EXPECT_GT(found->predicted.parameters[i].standard_error,
+              0.95 * expected->predicted.parameters[i].standard_error);
+  }
+}
+
+TEST(MachineLimits, HoldEitherWay) {
+  const MachineLimits limits{-0.2, 0.6, 0.8, 10.0};
+  EXPECT_TRUE(is_within(limits, 0.0, 0.0));
+  EXPECT_TRUE(is_within(limits, 0.6, 0.8));
+  EXPECT_TRUE(is_within(limits, -0.2, -0.8));
+  EXPECT_FALSE(is_within(limits, 0.0, 0.81));
+  EXPECT_FALSE(is_within(limits, 0.0, -0.81));
+  EXPECT_FALSE(is_within(limits, 0.61, 0.0));
+  EXPECT_FALSE(is_within(limits, -0.21, 0.0));
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,358 @@
+#include "fit/selection/acceptance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/fit/example.h"
+
+namespace axisfit {
+namespace {
+
+constexpr std::size_t kSamples = 2000;
+
+/// Residuals of one signal: white noise, and a part that follows what the model lacks.
+ResidualSeries series(bool fitted, std::vector<double> values) {
+  ResidualSeries s;
+  s.recording = fitted ? 0 : 1;
+  s.fitted = fitted;
+  for (std::size_t i = 0; i < values.size(); ++i) s.samples.push_back(i);
+  s.values = std::move(values);
+  return s;
+}
+
+std::vector<double> noise(std::uint64_t seed) { return Normal(seed).values(kSamples); }
+
+/// The noise of a seed with `size` times a wave added: what an effect of that size leaves.
+std::vector<double> with_wave(std::vector<double> values, double size) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] += size * std::sin(0.02 * static_cast<double>(i));
+  return values;
+}
+
+/// Neighbours alike: what carries the information of a fifth of its samples.
+std::vector<double> held_for_five(std::vector<double> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = values[i - i % 5];
+  return values;
+}
+
+/// A pair of series, fitted and judged.
+std::vector<ResidualSeries> pair(std::vector<double> fitted, std::vector<double> judged) {
+  return {series(true, std::move(fitted)), series(false, std::move(judged))};
+}
+
+Candidate candidate(std::size_t strengths = 1, std::size_t shapes = 0) {
+  Candidate c;
+  c.name = "effect";
+  c.strengths.assign(strengths, find_quantity("coulomb_friction.F_c")->index);
+  c.shapes.assign(shapes, find_quantity("stribeck_friction.v_st")->index);
+  return c;
+}
+
+/// One whose strength stands far from zero and that nothing else imitates.
+Determination determined() { return {400.0, 11.0, 0.5, "", ""}; }
+
+TEST(ImprovementTest, CountsInUnitsOfTheNoiseThatIsLeft) {
+  const auto before = pair(with_wave(noise(1), 1.0), with_wave(noise(2), 1.0));
+  const Improvement gain = improvement(before, pair(noise(1), noise(2)));
+  EXPECT_TRUE(gain.comparable);
+  // The mean square of the wave is a half; n / 2, give or take the product with the noise.
+  EXPECT_NEAR(gain.fit_gain, 0.5 * kSamples, 0.15 * kSamples);
+  EXPECT_NEAR(gain.samples, kSamples, 0.15 * kSamples);
+  // 2000 / 2 over the standard deviation sqrt(4 * 1000)
+  EXPECT_NEAR(gain.z, 1000.0 / std::sqrt(4000.0), 3.0);
+  EXPECT_LT(gain.p_value, 1e-12);
+  EXPECT_NEAR(gain.validate_percent, 100.0 * (1.0 - std::sqrt(1.0 / 1.5)), 2.0);
+}
+
+// The same residual in other units of noise gains the same.
+TEST(ImprovementTest, DoesNotDependOnTheStatedNoise) {
+  const auto scale = [](std::vector<ResidualSeries> list) {
+    for (ResidualSeries& s : list)
+      for (double& x : s.values) x *= 30.0;
+    return list;
+  };
+  const auto before = pair(with_wave(noise(1), 1.0), with_wave(noise(2), 1.0));
+  const auto after = pair(noise(1), noise(2));
+  const Improvement a = improvement(before, after), b = improvement(scale(before), scale(after));
+  EXPECT_NEAR(a.fit_gain, b.fit_gain, 1e-9 * a.fit_gain);
+  EXPECT_NEAR(a.z, b.z, 1e-9 * a.z);
+  EXPECT_NEAR(a.validate_percent, b.validate_percent, 1e-9);
+}
+
+TEST(ImprovementTest, CorrelatedResidualsCountLess) {
+  // The wave is slow against five samples, so that it hardly notices.
+  const auto fitted = held_for_five(noise(1)), judged = held_for_five(noise(2));
+  const Improvement gain =
+      improvement(pair(with_wave(fitted, 1.0), with_wave(judged, 1.0)), pair(fitted, judged));
+  EXPECT_NEAR(gain.samples, kSamples / 5.0, 0.25 * kSamples / 5.0);
+  EXPECT_LT(gain.fit_gain, 0.3 * kSamples / 2.0);
+  EXPECT_GT(gain.fit_gain, 0.08 * kSamples / 2.0);
+  EXPECT_NEAR(gain.z, 1000.0 / std::sqrt(4000.0 * 5.0), 2.0);
+}
+
+TEST(ImprovementTest, NeedsTheSameSeries) {
+  const auto both = pair(noise(1), noise(2));
+  EXPECT_FALSE(improvement(both, {series(true, noise(1))}).comparable);
+  // A series that only the extended model has takes nothing away.
+  EXPECT_TRUE(improvement({series(true, noise(1))}, both).comparable);
+}
+
+TEST(ImprovementTest, OfNothingIsNone) {
+  const auto same = pair(noise(1), noise(2));
+  const Improvement gain = improvement(same, same);
+  EXPECT_TRUE(gain.comparable);
+  EXPECT_EQ(gain.fit_gain, 0.0);
+  EXPECT_EQ(gain.z, 0.0);
+  EXPECT_EQ(gain.p_value, 0.5);
+  EXPECT_EQ(gain.validate_percent, 0.0);
+}
+
+// An effect that a fit to other noise has found changes the prediction without knowledge of this
+// noise: it makes things worse on average, and better by chance in at most as many cases as said.
+TEST(ImprovementTest, PValueOfChanceIsHonest) {
+  constexpr int kTrials = 2000;
+  int below = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Normal normal(static_cast<std::uint64_t>(trial) + 1);
+    const double size = 0.1 * normal();
+    const auto before = normal.values(200);
+    const auto after = with_wave(before, size);
+    below += improvement({series(false, before)}, {series(false, after)}).p_value < 0.05 ? 1 : 0;
+  }
+  EXPECT_LE(below, kTrials / 20);
+}
+
+TEST(DisadvantageTest, IsWhatTheOtherExplainsLess) {
+  const auto best = pair(noise(1), noise(2));
+  const auto other = pair(with_wave(noise(1), 0.5), with_wave(noise(2), 0.5));
+  // Two series with a mean square of 1 / 8 each.
+  EXPECT_NEAR(disadvantage(best, 3, other, 3), 2.0 * kSamples / 8.0, 0.1 * kSamples);
+  // The other way round. NOLINTNEXTLINE(readability-suspicious-call-argument)
+  EXPECT_LT(disadvantage(other, 3, best, 3), 0.0);
+  EXPECT_EQ(disadvantage(best, 3, best, 3), 0.0);
+}
+
+TEST(DisadvantageTest, PricesParametersByTheNumberOfSamples) {
+  const auto same = pair(noise(1), noise(2));
+  const double price = std::log(2.0 * kSamples);
+  EXPECT_NEAR(disadvantage(same, 3, same, 5), 2.0 * price, 0.02 * price);
+  EXPECT_NEAR(disadvantage(same, 5, same, 3), -2.0 * price, 0.02 * price);
+}
+
+TEST(DisadvantageTest, OfAModelThatFailsIsInfinite) {
+  const auto both = pair(noise(1), noise(2));
+  EXPECT_EQ(disadvantage(both, 3, {series(true, noise(1))}, 3), INFINITY);
+}
+
+TEST(DisadvantageTest, CorrelatedResidualsCountLess) {
+  const auto best = pair(held_for_five(noise(1)), held_for_five(noise(2)));
+  const auto other = pair(with_wave(best[0].values, 0.5), with_wave(best[1].values, 0.5));
+  EXPECT_NEAR(disadvantage(best, 3, other, 3), 2.0 * kSamples / 8.0 / 5.0, 0.03 * kSamples);
+}
+
+TEST(RefusalTest, OfAnImprovementThatIsRealIsNone) {
+  const Improvement gain = improvement(pair(with_wave(noise(1), 1.0), with_wave(noise(2), 1.0)),
+                                       pair(noise(1), noise(2)));
+  EXPECT_EQ(refusal(candidate(), gain, determined(), 100), "");
+  EXPECT_EQ(refusal(candidate(2, 1), gain, determined(), 100), "");
+}
+
+// A parameter that was fitted to the noise gains about one of the sum of squares, and the best of a
+// hundred about nine.
+TEST(RefusalTest, OfChance) {
+  int refused = 0;
+  constexpr int kTrials = 200;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Normal normal(static_cast<std::uint64_t>(trial) + 1);
+    const auto fitted = normal.values(kSamples), judged = normal.values(kSamples);
+    double best = 0.0;
+    std::vector<double> after_fitted = fitted, after_judged = judged;
+    for (int tried = 0; tried < 100; ++tried) {
+      std::vector<double> wave(kSamples);
+      const double frequency = 0.01 + 0.03 * tried;
+      double dot = 0.0, square = 0.0;
+      for (std::size_t i = 0; i < kSamples; ++i) {
+        wave[i] = std::sin(frequency * static_cast<double>(i));
+        dot += wave[i] * fitted[i];
+        square += wave[i] * wave[i];
+      }
+      if (dot * dot / square < best) continue;
+      best = dot * dot / square;
+      for (std::size_t i = 0; i < kSamples; ++i) {
+        after_fitted[i] = fitted[i] - dot / square * wave[i];
+        after_judged[i] = judged[i] - dot / square * wave[i];
+      }
+    }
+    const Improvement gain = improvement(pair(fitted, judged), pair(after_fitted, after_judged));
+    refused += refusal(candidate(), gain, determined(), 100).empty() ? 0 : 1;
+  }
+  EXPECT_EQ(refused, kTrials);
+}
+
+TEST(RefusalTest, OfWhatOnlyFits) {
+  const Improvement gain = improvement(pair(with_wave(noise(1), 1.0), noise(2)),
+                                       pair(noise(1), with_wave(noise(2), 1.0)));
+  EXPECT_GT(gain.fit_gain, 500.0);
+  EXPECT_LT(gain.validate_percent, 0.0);
+  EXPECT_GT(gain.p_value, 0.9);
+  EXPECT_NE(refusal(candidate(), gain, determined(), 100).find("not fitted"), std::string::npos);
+}
+
+TEST(RefusalTest, OfWhatHardlyHelps) {
+  Improvement gain;
+  gain.comparable = true;
+  gain.fit_gain = 100.0;
+  gain.samples = 1e6;
+  gain.z = 6.0;
+  gain.p_value = 1e-9;
+  gain.validate_percent = 0.3;
+  EXPECT_NE(refusal(candidate(), gain, determined(), 100).find("hardly"), std::string::npos);
+  gain.validate_percent = 0.6;
+  EXPECT_EQ(refusal(candidate(), gain, determined(), 100), "");
+}
+
+TEST(RefusalTest, OfWhatHelpsByChanceMoreOftenThanOnceInAThousand) {
+  Improvement gain;
+  gain.comparable = true;
+  gain.fit_gain = 100.0;
+  gain.samples = 2000.0;
+  gain.validate_percent = 5.0;
+  gain.p_value = 1.1e-3;
+  EXPECT_NE(refusal(candidate(), gain, determined(), 100).find("p = 0.0011"), std::string::npos);
+  EXPECT_EQ(refusal(candidate(), gain, determined(), 100, 1.2e-3), "");
+  gain.p_value = 0.9e-3;
+  EXPECT_EQ(refusal(candidate(), gain, determined(), 100), "");
+}
+
+TEST(RefusalTest, PricesParametersAndTheChoice) {
+  Improvement gain = improvement(pair(with_wave(noise(1), 1.0), with_wave(noise(2), 1.0)),
+                                 pair(noise(1), noise(2)));
+  gain.samples = 2000.0;  // log 7.6
+  gain.fit_gain = 8.0;
+  EXPECT_EQ(refusal(candidate(), gain, determined(), 1), "");
+  EXPECT_NE(refusal(candidate(), gain, determined(), 100), "");
+  EXPECT_NE(refusal(candidate(1, 1), gain, determined(), 1), "");
+  gain.fit_gain = 17.0;
+  EXPECT_EQ(refusal(candidate(), gain, determined(), 100), "");
+}
+
+TEST(RefusalTest, OfWhatIsNotDetermined) {
+  const Improvement gain = improvement(pair(with_wave(noise(1), 1.0), with_wave(noise(2), 1.0)),
+                                       pair(noise(1), noise(2)));
+  const auto reason = [&](const Determination& d) { return refusal(candidate(), gain, d, 100); };
+  Determination d = determined();
+  d.wald = 9.0;
+  EXPECT_NE(reason(d).find("3 standard errors"), std::string::npos) << reason(d);
+  d = determined();
+  d.distinct = 1e-12;
+  EXPECT_NE(reason(d).find("imitate"), std::string::npos);
+  d = determined();
+  d.at_bound = "F_c";
+  EXPECT_NE(reason(d).find("F_c ends at its bound"), std::string::npos);
+  d = determined();
+  d.open = "v_st";
+  EXPECT_NE(reason(d).find("do not determine v_st"), std::string::npos);
+}
+
+TEST(RefusalTest, OfWhatCannotBeSimulated) { EXPECT_NE(refusal(candidate(), {}, {}, 1), ""); }
+
+/// The slide with dry friction, fitted with it.
+class DeterminationTest : public testing::Test {
+ protected:
+  void fit(double friction, const std::vector<const char*>& free) {
+    Model<double> truth = slide();
+    add_effect<CoulombFriction>(truth).F_c = friction;
+    job_ = two_recordings(truth, slide(), free);
+    candidate_.name = "coulomb_friction";
+    candidate_.strengths = {find_quantity("coulomb_friction.F_c")->index};
+    std::vector<double> values;
+    for (const FreeParameter& p : job_.free) values.push_back(p.initial);
+    const std::vector<double> strengths{friction};
+    job_ = with_candidate(job_, candidate_, values, strengths, {});
+    job_.options.coupling = CouplingMode::none;
+    result_ = estimate(job_);
+  }
+  Determination determination_now() {
+    return determination(job_, result_, candidate_, residual_series(job_, result_));
+  }
+  Job job_;
+  Candidate candidate_;
+  FitResult result_;
+};
+
+TEST_F(DeterminationTest, IsTheSquareOfValueOverStandardError) {
+  fit(5.0, {"M", "B_a"});
+  const ParameterResult& p = result_.parameters.back();
+  ASSERT_TRUE(p.uncertainty.determined);
+  const Determination d = determination_now();
+  const double ratio = p.value / p.uncertainty.standard_error;
+  // Standard errors count every sample, this only independent ones.
+  EXPECT_LT(d.wald, 1.1 * ratio * ratio);
+  EXPECT_GT(d.wald, 0.7 * ratio * ratio);
+  EXPECT_NEAR(d.required, 3.62 * 3.62, 1.0);  // three in ten thousand, either side
+  EXPECT_GT(d.distinct, 0.01);
+  EXPECT_LE(d.distinct, 1.0);
+  EXPECT_EQ(d.at_bound, "");
+  EXPECT_EQ(d.open, "");
+}
+
+TEST_F(DeterminationTest, CorrelatedResidualsCountLess) {
+  fit(5.0, {"M", "B_a"});
+  auto residuals = residual_series(job_, result_);
+  const auto wald_with = [&](const std::vector<double>& values) {
+    for (ResidualSeries& s : residuals) s.values = values;
+    return determination(job_, result_, candidate_, residuals).wald;
+  };
+  const auto white = noise(1), held = held_for_five(white);
+  const auto worth = [](const std::vector<double>& values) {
+    return mean_square(values) * autocorrelation_time(values);
+  };
+  const double ratio = worth(white) / worth(held);
+  EXPECT_NEAR(ratio, 0.2, 0.05);
+  EXPECT_NEAR(wald_with(held), ratio * wald_with(white), 1e-9 * wald_with(white));
+}
+
+TEST_F(DeterminationTest, OfAWeakEffectIsBelowWhatIsRequired) {
+  fit(0.01, {"M", "B_a"});
+  const Determination d = determination_now();
+  EXPECT_TRUE(d.wald < d.required || !d.at_bound.empty()) << d.wald;
+}
+
+TEST_F(DeterminationTest, SaysThatAStrengthIsAtItsBound) {
+  fit(0.0, {"M", "B_a"});
+  result_.parameters.back().uncertainty.at_bound = true;
+  EXPECT_EQ(determination_now().at_bound, "coulomb_friction.F_c");
+}
+
+// A constant force and an offset of the command are the same for a drive that is a force.
+TEST_F(DeterminationTest, SeesThatAnotherParameterDoesTheSame) {
+  Model<double> truth = slide();
+  add_effect<CommandOffset>(truth).U_0 = 0.2;
+  Job job = two_recordings(truth, truth, {"B_a", "command_offset.U_0"});
+  candidate_.strengths = {find_quantity("constant_force.F_0")->index};
+  const std::vector<double> values{30.0, 0.1}, strengths{4.0};
+  job_ = with_candidate(job, candidate_, values, strengths, {});
+  result_ = result_at_start(job_);
+  EXPECT_LT(determination_now().distinct, 1e-9);
+}
+
+// The neutral value of a gain is one: the strength is what differs from it.
+TEST_F(DeterminationTest, CountsAGainFromOne) {
+  Model<double> truth = slide();
+  Job job = two_recordings(truth, truth, {"B_a"});
+  candidate_.strengths = {find_quantity("velocity.gain")->index};
+  const std::vector<double> values{30.0};
+  const auto wald = [&](double gain) {
+    const std::vector<double> strengths{gain};
+    job_ = with_candidate(job, candidate_, values, strengths, {});
+    result_ = result_at_start(job_);
+    return determination_now().wald;
+  };
+  EXPECT_NEAR(wald(1.0), 0.0, 1e-9);
+  // The residual grows with the gain as well, which takes a little of it.
+  EXPECT_NEAR(wald(1.0002) / wald(1.0001), 4.0, 0.5);
+}
+
+}  // namespace
+}  // namespace axisfit

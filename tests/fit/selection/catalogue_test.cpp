@@ -1,0 +1,327 @@
+#include "fit/selection/catalogue.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tests/fit/example.h"
+
+namespace axisfit {
+namespace {
+
+Scales scales() {
+  Scales s;
+  s.position_low = -0.1;
+  s.position_high = 0.5;
+  s.speed = 1.2;
+  s.velocity_low = -1.2;
+  s.velocity_high = 1.0;
+  s.start = 0.0;
+  s.end = 1.2;
+  s.interval = 1e-3;
+  s.periods = {0.05, 0.02};
+  return s;
+}
+
+/// The paper's axis, of which these signals were recorded; nothing was simulated.
+Job job_with(const std::vector<Signal>& signals) {
+  Job job;
+  job.model = paper_axis();
+  Recording& r = job.recordings.emplace_back();
+  r.times = {0.0, 1e-3};
+  for (const Signal signal : signals) {
+    r.measurements.emplace_back().signal = signal;
+    r.measurements.back().sigma = 1.0;
+  }
+  return job;
+}
+
+const Candidate* find(const std::vector<Candidate>& list, std::string_view name) {
+  const auto found = std::ranges::find(list, name, &Candidate::name);
+  return found == list.end() ? nullptr : &*found;
+}
+
+/// Whether a quantity is among the strengths of any candidate.
+bool offers(const std::vector<Candidate>& list, const char* quantity) {
+  return std::ranges::any_of(list, [&](const Candidate& c) {
+    return std::ranges::find(c.strengths, find_quantity(quantity)->index) != c.strengths.end();
+  });
+}
+
+TEST(Catalogue, HasEveryEffectOfTheList) {
+  const auto list = catalogue(job_with({Signal::velocity}), scales());
+  const Effects<double> effects{};
+  visit_effects(effects, [&](std::size_t, const auto& effect) {
+    EXPECT_NE(find(list, effect.name), nullptr)
+        << effect.name << " has no entry in fit/selection/catalogue.cpp";
+  });
+}
+
+// Or the loop leaves both undecided, and can accept neither.
+TEST(Catalogue, HasOneConstantForceOfAForceSource) {
+  Job job = job_with({Signal::velocity});
+  EXPECT_NE(find(catalogue(job, scales()), "command_offset"), nullptr);
+  job.model = slide();
+  EXPECT_NE(find(catalogue(job, scales()), "constant_force"), nullptr);
+  EXPECT_EQ(find(catalogue(job, scales()), "command_offset"), nullptr);
+}
+
+TEST(Catalogue, EntriesAreComplete) {
+  const auto list = catalogue(job_with({Signal::velocity, Signal::position}), scales());
+  const auto& quantities = quantity_list();
+  std::set<std::vector<std::size_t>> seen;
+  for (const Candidate& c : list) {
+    SCOPED_TRACE(c.name);
+    EXPECT_FALSE(c.meaning.empty());
+    EXPECT_FALSE(c.slot.empty());
+    ASSERT_FALSE(c.strengths.empty());
+    EXPECT_TRUE(seen.insert(c.strengths).second) << "twice in the catalogue";
+    ASSERT_FALSE(c.settings.empty());
+    for (const auto& setting : c.settings) {
+      ASSERT_EQ(setting.size(), c.shapes.size());
+      for (std::size_t i = 0; i < setting.size(); ++i) {
+        EXPECT_GE(setting[i], quantities[c.shapes[i]].quantity.lower);
+        EXPECT_LE(setting[i], quantities[c.shapes[i]].quantity.upper);
+      }
+    }
+    for (const std::size_t q : c.strengths) EXPECT_FALSE(quantities[q].quantity.shape);
+    for (const std::size_t q : c.shapes) EXPECT_TRUE(quantities[q].quantity.shape);
+    // Every shape of an effect that is offered is set: it has no other value.
+    for (const QuantityEntry& entry : quantities) {
+      if (!entry.quantity.shape || entry.group != quantities[c.strengths[0]].group) continue;
+      EXPECT_NE(std::ranges::find(c.shapes, entry.index), c.shapes.end()) << entry.name;
+    }
+    EXPECT_EQ(c.unnamed, c.name.starts_with("force_over_"));
+  }
+}
+
+TEST(Catalogue, SeeksPeriodsWhereTheSpectrumShowsThem) {
+  const Job job = job_with({Signal::velocity});
+  Scales s = scales();
+  s.drive_periods = {0.01};
+  const auto list = catalogue(job, s);
+  EXPECT_EQ(find(list, "periodic_force")->settings,
+            (std::vector<std::vector<double>>{{0.05}, {0.02}}));
+  const auto has_order = [&](const char* name, double period) {
+    const double order = 2.0 * std::numbers::pi * job.model.axis.r_g / period;
+    return std::ranges::any_of(find(list, name)->settings, [&](const auto& setting) {
+      return std::abs(setting[0] - order) < 1e-12;
+    });
+  };
+  EXPECT_TRUE(has_order("cogging_torque", 0.05));
+  EXPECT_TRUE(has_order("cogging_torque", 0.02));
+  EXPECT_TRUE(has_order("torque_ripple", 0.01));
+  Scales none = scales();
+  none.periods.clear();
+  EXPECT_EQ(find(catalogue(job, none), "periodic_force"), nullptr);
+}
+
+TEST(Catalogue, CurvesSpanTheMotion) {
+  const auto list = catalogue(job_with({Signal::velocity}), scales());
+  EXPECT_EQ(find(list, "force_over_velocity")->settings,
+            (std::vector<std::vector<double>>{{-1.2, 1.0}}));
+  EXPECT_EQ(find(list, "force_over_position")->settings,
+            (std::vector<std::vector<double>>{{-0.1, 0.5}}));
+  EXPECT_EQ(find(list, "force_over_time")->settings,
+            (std::vector<std::vector<double>>{{0.0, 1.2}}));
+  EXPECT_TRUE(find(list, "force_over_motor_angle")->shapes.empty());
+}
+
+TEST(Catalogue, OffersNothingThatIsFree) {
+  Job job = job_with({Signal::velocity});
+  ASSERT_TRUE(offers(catalogue(job, scales()), "T_d"));
+  ASSERT_TRUE(offers(catalogue(job, scales()), "velocity.bias"));
+  add_effect<CoulombFriction>(job.model);
+  job.free = {free_parameter("T_d", 1e-3), free_parameter("velocity.bias", 1e-3),
+              free_parameter("coulomb_friction.F_c", 5.0)};
+  const auto list = catalogue(job, scales());
+  for (const char* name : {"T_d", "velocity.bias", "coulomb_friction.F_c"})
+    EXPECT_FALSE(offers(list, name)) << name;
+  EXPECT_TRUE(offers(list, "velocity.lag"));
+}
+
+// One value for all recordings would fight with that of one of them.
+TEST(Catalogue, OffersNothingThatIsFreeInOneRecording) {
+  Job job = job_with({Signal::velocity});
+  job.free = {free_parameter("velocity.bias", 1e-3)};
+  job.free[0].recording = 0;
+  EXPECT_FALSE(offers(catalogue(job, scales()), "velocity.bias"));
+}
+
+TEST(Catalogue, OffersNothingThatARecordingHasAValueOf) {
+  Job job = job_with({Signal::velocity});
+  job.recordings[0].overrides.emplace_back(find_quantity("velocity.bias")->index, 0.1);
+  EXPECT_FALSE(offers(catalogue(job, scales()), "velocity.bias"));
+}
+
+TEST(Catalogue, OffersNothingThatHasAValue) {
+  Job job = job_with({Signal::velocity});
+  job.model.axis.T_d = 1e-3;
+  job.model.instruments[index_of(Signal::velocity)].gain = 1.01;
+  add_effect<ConstantForce>(job.model).F_0 = 10.0;
+  add_effect<StrokeSpring>(job.model).k_s = 0.0;  // written, but as good as absent
+  const auto list = catalogue(job, scales());
+  for (const char* name : {"T_d", "velocity.gain", "constant_force.F_0"})
+    EXPECT_FALSE(offers(list, name)) << name;
+  EXPECT_TRUE(offers(list, "stroke_spring.k_s"));
+}
+
+// What is left in the members of an effect that is not there says nothing.
+TEST(Catalogue, OffersAnAbsentEffectWhateverItsMembersHold) {
+  Job job = job_with({Signal::velocity});
+  std::get<ConstantForce<double>>(job.model.effects).F_0 = 10.0;
+  EXPECT_TRUE(offers(catalogue(job, scales()), "constant_force.F_0"));
+}
+
+TEST(Catalogue, OffersASecondHarmonicOnlyBesideTheFirst) {
+  Job job = job_with({Signal::velocity});
+  EXPECT_FALSE(offers(catalogue(job, scales()), "periodic_force.F_s2"));
+  auto& force = add_effect<PeriodicForce>(job.model);
+  force.F_s1 = 5.0;
+  force.period = 0.05;
+  const auto list = catalogue(job, scales());
+  EXPECT_TRUE(offers(list, "periodic_force.F_s2"));
+  EXPECT_FALSE(offers(list, "periodic_force.F_s1"));
+}
+
+TEST(Catalogue, OffersNothingThatTheStructureDoesNotUse) {
+  Job job = job_with({Signal::velocity});
+  job.model = slide();
+  const auto list = catalogue(job, scales());
+  for (const char* name :
+       {"cogging_torque", "torque_ripple", "torque_droop", "force_over_motor_angle"})
+    EXPECT_EQ(find(list, name), nullptr) << name;
+  for (const char* name : {"torque_fade", "drive_lag", "dead_time"})
+    EXPECT_NE(find(list, name), nullptr) << name;
+  for (const Candidate& c : list) {
+    Structure structure = job.model.structure;
+    structure.effects.set();
+    for (const std::size_t q : c.strengths)
+      EXPECT_TRUE(is_used(quantity_list()[q], structure)) << c.name;
+  }
+}
+
+TEST(Catalogue, OffersOnlyInstrumentsThatTheFitReads) {
+  Job job = job_with({Signal::velocity, Signal::motor_current});
+  job.recordings[0].measurements[1].fitted = false;  // compared only
+  Recording validate = job_with({Signal::tachometer}).recordings[0];
+  validate.role = Role::validate;
+  job.recordings.push_back(validate);
+  const auto list = catalogue(job, scales());
+  for (const char* part : {"bias", "gain", "lag", "delay"}) {
+    const auto of = [&](const char* signal) { return std::string(signal) + "." + part; };
+    EXPECT_NE(find(list, of("velocity")), nullptr);
+    for (const char* signal : {"motor_current", "tachometer", "acceleration", "position"})
+      EXPECT_EQ(find(list, of(signal)), nullptr) << of(signal);
+  }
+}
+
+class WithCandidate : public testing::Test {
+ protected:
+  WithCandidate() {
+    job_ = two_recordings(paper_axis(), paper_axis(), {"B_a", "V_L"}, 8.0,
+                          {Signal::velocity, Signal::acceleration});
+    candidates_ = catalogue(job_, scales());
+  }
+  Job job_;
+  std::vector<Candidate> candidates_;
+};
+
+TEST_F(WithCandidate, AddsItsStrengthsAndShapesAndNothingElse) {
+  const std::vector<double> values{150.0, 3.0};
+  for (const Candidate& c : candidates_) {
+    SCOPED_TRACE(c.name);
+    std::vector<double> strengths;
+    for (std::size_t i = 0; i < c.strengths.size(); ++i)
+      strengths.push_back(1e-3 * static_cast<double>(i + 1));
+    const Job job = with_candidate(job_, c, values, strengths, c.settings.back());
+    ASSERT_EQ(job.free.size(), 2 + c.parameters());
+    EXPECT_EQ(job.free[0].initial, 150.0);
+    EXPECT_EQ(job.free[1].initial, 3.0);
+    EXPECT_EQ(job.free[0].lower, job_.free[0].lower);
+    for (std::size_t i = 0; i < strengths.size(); ++i) {
+      const FreeParameter& p = job.free[2 + i];
+      EXPECT_EQ(p.quantity, c.strengths[i]);
+      EXPECT_EQ(p.initial, strengths[i]);
+      EXPECT_FALSE(p.logarithmic);
+      EXPECT_FALSE(p.recording.has_value());
+      EXPECT_LE(p.lower, p.initial);
+      EXPECT_GE(p.upper, p.initial);
+    }
+    Model<double> before = job_.model, after = job.model;
+    for (std::size_t i = 0; i < c.shapes.size(); ++i) {
+      EXPECT_EQ(*members(after)[c.shapes[i]], c.settings.back()[i]);
+      if (!c.shapes_are_free) continue;
+      const FreeParameter& p = job.free[2 + strengths.size() + i];
+      EXPECT_EQ(p.quantity, c.shapes[i]);
+      EXPECT_EQ(p.initial, c.settings.back()[i]);
+      EXPECT_TRUE(p.logarithmic);
+      EXPECT_GT(p.lower, 0.0);
+    }
+    // The rest of the model is as it was.
+    const std::string& group = quantity_list()[c.strengths[0]].group;
+    const bool is_effect = after.structure.effects != before.structure.effects;
+    for (const QuantityEntry& entry : quantity_list()) {
+      if (is_effect && entry.group == group) continue;
+      EXPECT_EQ(*members(after)[entry.index], *members(before)[entry.index]) << entry.name;
+    }
+    EXPECT_LE((after.structure.effects ^ before.structure.effects).count(), 1u);
+    EXPECT_EQ(job.recordings.size(), job_.recordings.size());
+    EXPECT_EQ(refusal(job.model), "");
+  }
+}
+
+// What other values an absent effect had is forgotten: nothing but the candidate acts.
+TEST_F(WithCandidate, BringsInNothingElseOfItsEffect) {
+  std::get<DirectionalFriction<double>>(job_.model.effects).dF_c = 7.0;
+  const Candidate& c = *find(candidates_, "directional_friction");
+  const std::vector<double> values{200.0, 2.7}, strengths{1.0};
+  Job job = with_candidate(job_, c, values, strengths, {});
+  EXPECT_EQ(*members(job.model)[find_quantity("directional_friction.dF_c")->index], 0.0);
+}
+
+// But the values of an effect that is there already stay.
+TEST_F(WithCandidate, KeepsTheOtherPartsOfAnEffect) {
+  add_effect<PositionFriction>(job_.model).G_c = 7.0;
+  const auto list = catalogue(job_, scales());
+  const auto viscous = std::ranges::find_if(list, [](const Candidate& c) {
+    return c.strengths == std::vector{find_quantity("position_friction.G_b")->index};
+  });
+  ASSERT_NE(viscous, list.end());
+  const std::vector<double> values{200.0, 2.7}, strengths{1.0};
+  Job job = with_candidate(job_, *viscous, values, strengths, {});
+  EXPECT_EQ(*members(job.model)[find_quantity("position_friction.G_c")->index], 7.0);
+}
+
+TEST_F(WithCandidate, KeepsWithinTheBounds) {
+  const Candidate& c = *find(candidates_, "coulomb_friction");
+  const std::vector<double> values{1e9, 1e-9}, strengths{-5.0};
+  const Job job = with_candidate(job_, c, values, strengths, {});
+  EXPECT_EQ(job.free[0].initial, job_.free[0].upper);
+  EXPECT_EQ(job.free[1].initial, job_.free[1].lower);
+  EXPECT_EQ(job.free[2].initial, 0.0);
+}
+
+TEST_F(WithCandidate, OfNeutralStrengthPredictsTheSameBitForBit) {
+  const std::vector<double> values{200.0, 2.7};
+  const FitResult without = result_at_start(job_);
+  for (const Candidate& c : candidates_) {
+    SCOPED_TRACE(c.name);
+    std::vector<double> neutral;
+    for (const std::size_t q : c.strengths) {
+      const double standard = quantity_list()[q].quantity.standard;
+      neutral.push_back(std::isnan(standard) ? 0.0 : standard);
+    }
+    for (const auto& setting : c.settings) {
+      const FitResult with = result_at_start(with_candidate(job_, c, values, neutral, setting));
+      for (std::size_t r = 0; r < 2; ++r)
+        ASSERT_EQ(with.recordings[r].prediction.simulated,
+                  without.recordings[r].prediction.simulated);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace axisfit

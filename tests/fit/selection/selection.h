@@ -1,0 +1,58 @@
+// What the tests of closing the loop share.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <set>
+#include <string>
+
+#include "fit/selection/select_effects.h"
+#include "tests/fit/selection/hidden_effects.h"
+
+namespace axisfit {
+
+inline std::set<std::string> names(const ClosedLoop& loop, Decision decision) {
+  std::set<std::string> list;
+  for (const EffectTrial& trial : loop.effects)
+    if (trial.decision == decision) list.insert(trial.candidate.name);
+  return list;
+}
+inline std::set<std::string> accepted(const ClosedLoop& loop) {
+  return names(loop, Decision::accepted);
+}
+inline std::set<std::string> undecided(const ClosedLoop& loop) {
+  return names(loop, Decision::undecided);
+}
+
+/// Fits, closes the loop, and tells the outcome on the way.
+inline ClosedLoop close(const Job& job) {
+  const FitResult fit = estimate(job);
+  EXPECT_TRUE(fit.usable) << fit.verdict;
+  ClosedLoop loop = close_loop(job, fit);
+  std::cout << "reduced chi-square " << fit.reduced_chi_square << "; " << loop.verdict << "\n";
+  for (const EffectTrial& t : loop.effects)
+    std::cout << "  " << t.candidate.name << ": " << t.reason << "\n";
+  return loop;
+}
+
+/// Expects a parameter of the result within three standard errors of the truth, and these small.
+inline void expect_found(const ClosedLoop& loop, const std::string& name, double truth) {
+  const auto& list = loop.result.fit.parameters;
+  const auto found = std::ranges::find(list, name, &ParameterResult::name);
+  ASSERT_NE(found, list.end()) << name;
+  const double error = found->uncertainty.standard_error;
+  std::cout << "  " << name << " = " << found->value << " +- " << error << "\n";
+  EXPECT_TRUE(found->uncertainty.determined) << name;
+  EXPECT_NEAR(found->value, truth, 3.0 * error) << name;
+  EXPECT_NEAR(found->value, truth, 0.05 * std::abs(truth)) << name;
+}
+
+inline Secret secret_named(std::string_view name) {
+  const auto list = secrets();
+  return *std::ranges::find(list, name, &Secret::name);
+}
+
+}  // namespace axisfit

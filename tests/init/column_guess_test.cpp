@@ -1,0 +1,113 @@
+// Names of columns as rigs, drives and people write them.
+#include "init/column_guess.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/units.h"
+
+namespace axisfit {
+namespace {
+
+TEST(ColumnGuessTest, UnderstandsTheNamesOfTheTrade) {
+  struct Case {
+    std::string name;
+    Kind kind;
+    std::string unit = {};
+    bool wanted = false;
+  };
+  using enum Kind;
+  for (const Case& c : std::vector<Case>{
+           {"time_s", time, "s"},
+           {"t", time},
+           {"Time [ms]", time, "ms"},
+           {"timestamp (s)", time, "s"},
+           {"t_us", time, "us"},
+           {"Zeit / ms", time, "ms"},
+           {"qm", position},
+           {"pos_mm", position, "mm"},
+           {"position [mm]", position, "mm"},
+           {"x", position},
+           {"Weg", position},
+           {"Istposition", position},
+           {"actualPosition_um", position, "um"},
+           {"motor angle [deg]", position, "deg"},
+           {"axis.x.pos", position},
+           {"Sollposition", position, "", true},
+           {"reference_position_m", position, "m", true},
+           {"qg", position, "", true},
+           {"vel", velocity},
+           {"v (mm/s)", velocity, "mm/s"},
+           {"velocity_mps", velocity, "m/s"},
+           {"vel_mm_s", velocity, "mm/s"},
+           {"actual velocity", velocity},
+           {"Geschwindigkeit", velocity},
+           {"speed [rpm]", velocity, "rpm"},
+           {"velocity setpoint (mm/s)", velocity, "mm/s", true},
+           {"acc_g", acceleration, "g"},
+           {"acceleration_mps2", acceleration, "m/s^2"},
+           {"a (m/s\u00B2)", acceleration, "m/s^2"},
+           {"iq", current},
+           {"current_A", current, "A"},
+           {"motor_current_a", current, "A"},
+           {"Motorstrom [mA]", current, "mA"},
+           {"iq_ref", current, "", true},
+           {"tachometer_v", tachometer, "V"},
+           {"V_c_v", preamplifier_voltage, "V"},
+           {"V_m", motor_voltage},
+           {"v [V]", motor_voltage, "V"},
+           {"force_N", force, "N"},
+           {"torque_Nm", force, "N m"},
+           {"Kraft", force},
+           {"set_velocity_v", set_velocity, "V", true},
+           {"command_v", command, "V", true},
+           {"cmd", command, "", true},
+           {"u", command},
+           {"vir", command},
+       }) {
+    SCOPED_TRACE(c.name);
+    const auto guess = guess_column(c.name);
+    ASSERT_TRUE(guess);
+    EXPECT_EQ(static_cast<int>(guess->kind), static_cast<int>(c.kind));
+    EXPECT_EQ(guess->unit, c.unit);
+    EXPECT_EQ(guess->wanted, c.wanted);
+  }
+}
+
+TEST(ColumnGuessTest, SaysNothingOfOtherNames) {
+  for (const std::string name : {"Temperatur", "status", "position error [mm]", "Schleppabweichung",
+                                 "sample", "data(:,2)", "pulses_N", "", "\n", "[mm]", "____"})
+    EXPECT_FALSE(guess_column(name)) << name;
+}
+
+TEST(ColumnGuessTest, MeasuredComesBeforeUnsaid) {
+  EXPECT_GT(guess_column("actual position [mm]")->rank, guess_column("position [mm]")->rank);
+  EXPECT_GT(guess_column("position [mm]")->rank, guess_column("position")->rank);
+}
+
+TEST(ColumnGuessTest, JobsCanWriteEveryUnitWithItsSize) {
+  for (int k = 0; k <= static_cast<int>(Kind::force); ++k) {
+    const Kind kind = static_cast<Kind>(k);
+    for (const StoredUnit& unit : stored_units(kind)) {
+      SCOPED_TRACE(unit.text);
+      const auto factor = unit_factor(unit.written, si_unit(kind));
+      ASSERT_TRUE(std::holds_alternative<double>(factor));
+      EXPECT_NEAR(std::get<double>(factor) * unit.factor / unit.size, 1.0, 1e-9);
+      EXPECT_EQ(stored_unit(kind, unit.text), &unit);
+    }
+  }
+}
+
+TEST(ColumnGuessTest, SizesNeedNotBeExact) {
+  ASSERT_NE(unit_of_size(Kind::velocity, 0.00103), nullptr);
+  EXPECT_EQ(unit_of_size(Kind::velocity, 0.00103)->text, "mm/s");
+  EXPECT_EQ(unit_of_size(Kind::acceleration, 9.7)->text, "g");
+  EXPECT_EQ(unit_of_size(Kind::position, 0.4), nullptr);
+  EXPECT_EQ(unit_of_size(Kind::position, -1.0), nullptr);
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,66 @@
+// The first guess of a mass with friction, against one that is integrated in small steps.
+#include "init/force_balance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace axisfit {
+namespace {
+
+struct DrivenMass {
+  std::vector<double> times, position, velocity, force;
+};
+
+/// M = 12 kg, B = 40 N s/m, F_c = 15 N and -4 N besides, driven both ways and never at rest.
+DrivenMass driven() {
+  DrivenMass run;
+  constexpr double kStep = 1e-5, kSample = 1e-3;
+  double x = 0.2, v = 0.0, next = 0.0;
+  for (double t = 0.0; t < 4.0; t += kStep) {
+    const double force = 70.0 * std::sin(9.0 * t) + 40.0 * std::sin(23.0 * t);
+    if (t >= next - 0.5 * kStep) {
+      run.times.push_back(t);
+      run.position.push_back(x);
+      run.velocity.push_back(v);
+      run.force.push_back(force);
+      next += kSample;
+    }
+    v += kStep * (force - 40.0 * v - (v > 0.0 ? 15.0 : -15.0) + 4.0) / 12.0;
+    x += kStep * v;
+  }
+  return run;
+}
+
+TEST(ForceBalanceTest, FindsTheOrderOfEveryTerm) {
+  const DrivenMass run = driven();
+  for (const bool by_velocity : {false, true}) {
+    const auto found = force_balance(run.times, by_velocity ? std::vector<double>() : run.position,
+                                     by_velocity ? run.velocity : std::vector<double>(), run.force);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->mass, 12.0, 1.2);
+    EXPECT_NEAR(found->viscous, 40.0, 8.0);
+    EXPECT_NEAR(found->coulomb, 15.0, 4.0);
+    EXPECT_NEAR(found->constant, -4.0, 1.0);
+    EXPECT_GT(found->correlation, 0.95);
+  }
+}
+
+TEST(ForceBalanceTest, ADriveThatActsAgainstTheMotionHasANegativeMass) {
+  DrivenMass run = driven();
+  for (double& f : run.force) f = -f;
+  const auto found = force_balance(run.times, run.position, run.velocity, run.force);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->mass, -12.0, 1.2);
+  EXPECT_LT(found->correlation, -0.95);
+}
+
+TEST(ForceBalanceTest, OneSpeedTellsNothing) {
+  DrivenMass run = driven();
+  for (std::size_t i = 0; i < run.times.size(); ++i) run.position[i] = 0.3 * run.times[i];
+  EXPECT_FALSE(force_balance(run.times, run.position, {}, run.force));
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,824 @@
+#include "io/config/job_file.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <matio.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fit/data/noise.h"
+#include "io/config/config.h"
+#include "io/recording/csv.h"
+#include "tests/apps/files.h"
+
+namespace axisfit {
+namespace {
+
+using Values = std::vector<double>;
+
+// A mass with friction that a recorded signal drives.
+constexpr const char* kMass = R"(name: mass
+drive: force_source
+transmission: rigid
+parameters:
+  K_f: 2 N/V
+  M: 4 kg
+  B_a: 8 N s/m
+effects:
+  coulomb_friction: {F_c: 1 N}
+)";
+
+// The same behind an electric drive.
+constexpr const char* kDriven = R"(name: driven
+drive: current_source
+transmission: rigid
+parameters:
+  {K_m: 1 N m/A, J_m: 0 kg m^2, B_m: 0 N m s/rad, K_t: 1 V s/rad, r_g: 1 m, M: 4 kg, T_z: 0 s,
+   T_p: 1 s, T_r: 1 ms, K_1: 1, K_2: 1, K_i: 1 A/V, V_L: 1 V, B_a: 8 N s/m}
+)";
+
+// Lines count: the messages below name them.
+constexpr const char* kJob = R"(axis: mass.yaml
+recordings:
+  - file: data.csv
+    time: {column: t_ms, unit: ms}
+    signals:
+      command: {column: u, unit: V}
+      velocity: {column: v, unit: m/s, sigma: 1 mm/s}
+free:
+  M: {}
+)";
+
+constexpr std::size_t kRows = 14;
+
+// Columns with numbers that are exact; the samples are not evenly spaced.
+struct Data {
+  Values t_ms, u, v, x, f;
+  Data() {
+    double t = -8.0;
+    for (std::size_t i = 0; i < kRows; ++i) {
+      const double s = static_cast<double>(i);
+      t_ms.push_back(t);
+      t += i % 3 == 0 ? 8.0 : 4.0;
+      u.push_back(i < 2 ? 0.5 : i < 9 ? -3.0 : 2.0);
+      v.push_back(1.0 + 0.25 * s - 0.5 * s * s);
+      x.push_back(0.125 * s);
+      f.push_back(7.0 + s);
+    }
+  }
+  std::vector<Column> columns() const {
+    return {{"t_ms", t_ms}, {"u", u}, {"v", v}, {"x", x}, {"f", f}};
+  }
+};
+
+Values times_s() {
+  Values times = Data().t_ms;
+  for (double& t : times) t *= 1e-3;
+  return times;
+}
+
+// Writes vectors, which may differ in length, as a MAT-file.
+void write_mat(const std::string& path, const std::vector<Column>& columns) {
+  mat_t* mat = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
+  ASSERT_NE(mat, nullptr);
+  for (const Column& c : columns) {
+    Values values = c.values;
+    std::array<std::size_t, 2> size{values.size(), 1};
+    matvar_t* variable =
+        Mat_VarCreate(c.name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size.data(), values.data(), 0);
+    EXPECT_EQ(Mat_VarWrite(mat, variable, MAT_COMPRESSION_NONE), 0);
+    Mat_VarFree(variable);
+  }
+  Mat_Close(mat);
+}
+
+class JobFileTest : public ::testing::Test {
+ protected:
+  JobFileTest() {
+    folder_.write("mass.yaml", kMass);
+    folder_.write("driven.yaml", kDriven);
+    write_data("data.csv", Data().columns());
+  }
+
+  void write_data(const std::string& name, std::vector<Column> columns) {
+    Table table;
+    table.columns = std::move(columns);
+    folder_.write(name, table);
+  }
+
+  JobFile read(const std::string& text, const std::string& data_directory = {}) {
+    return read_job_file(folder_.write("job.yaml", text), data_directory);
+  }
+
+  std::string errors(const std::string& text, const std::string& data_directory = {}) {
+    try {
+      read(text, data_directory);
+    } catch (const ConfigError& error) {
+      return folder_.without_path(error.what());
+    }
+    return "";
+  }
+
+  /// The errors when one piece of the job is another.
+  std::string errors_with(const std::string& from, const std::string& to) {
+    return errors(replaced(kJob, from, to));
+  }
+
+  /// The job with more lines for its recording.
+  static std::string with_lines(const std::string& lines) {
+    return replaced(kJob, "  - file: data.csv\n", "  - file: data.csv\n" + lines);
+  }
+
+  TempFolder folder_;
+};
+
+std::size_t index(const char* name) { return find_quantity(name)->index; }
+
+using Overrides = std::vector<std::pair<std::size_t, double>>;
+
+TEST_F(JobFileTest, ReadsTheShippedPaperJob) {
+  const JobFile file = read_job_file(AXISFIT_CONFIGS "/jobs/paper.yaml");
+  EXPECT_EQ(file.rig.name, "x axis of the Automatix AID 600");
+  EXPECT_EQ(file.axis_file, AXISFIT_CONFIGS "/axes/x.yaml");
+  const Job& job = file.job;
+  EXPECT_EQ(job.model.structure.drive, Drive::velocity_loop);
+  EXPECT_EQ(job.model.axis.M, 146.0);
+
+  ASSERT_EQ(job.recordings.size(), 1u);
+  const Recording& step = job.recordings.front();
+  EXPECT_EQ(step.name, "step");
+  EXPECT_EQ(step.file, "../../testdata/clean-fit.csv");
+  EXPECT_EQ(step.role, Role::fit);
+  EXPECT_EQ(step.initial_state, InitialState::given);
+  EXPECT_TRUE(step.score_initial_samples);
+  EXPECT_TRUE(step.overrides.empty());
+  EXPECT_FALSE(step.acceleration_at_rest);
+  ASSERT_EQ(step.times.size(), 2501u);
+  EXPECT_EQ(step.times.front(), 0.0);
+  EXPECT_EQ(step.times[1], 0.001);
+  EXPECT_EQ(step.times.back(), 2.5);
+  EXPECT_EQ(step.command.times, (Values{0.0, 1.5}));
+  EXPECT_EQ(step.command.values, (Values{10.0, 0.0}));
+
+  ASSERT_EQ(step.measurements.size(), 2u);
+  EXPECT_EQ(step.measurements[0].signal, Signal::velocity);
+  EXPECT_DOUBLE_EQ(step.measurements[0].sigma, 0.002);
+  EXPECT_EQ(step.measurements[0].values.front(), 0.000969287364);
+  EXPECT_EQ(step.measurements[1].signal, Signal::acceleration);
+  EXPECT_DOUBLE_EQ(step.measurements[1].sigma, 0.05);
+  for (const Measurement& m : step.measurements) {
+    EXPECT_EQ(m.values.size(), 2501u);
+    EXPECT_EQ(m.noise, NoiseSource::given);
+    EXPECT_TRUE(m.fitted);
+  }
+  // The arm rests at the end.
+  EXPECT_TRUE(step.measurements[0].left_out.empty());
+  EXPECT_TRUE(step.measurements[1].counts(1800));
+  EXPECT_FALSE(step.measurements[1].counts(2400));
+
+  const std::vector<std::pair<const char*, double>> free{
+      {"V_L", 8.0}, {"B_a", 60.0}, {"b_g", 5000.0}, {"k_g", 1.5e6}, {"T_p", 0.1}};
+  ASSERT_EQ(job.free.size(), free.size());
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const FreeParameter& p = job.free[i];
+    EXPECT_EQ(p.quantity, index(free[i].first));
+    EXPECT_DOUBLE_EQ(p.initial, free[i].second);
+    EXPECT_DOUBLE_EQ(p.lower, free[i].second / 100.0);
+    EXPECT_DOUBLE_EQ(p.upper, free[i].second * 100.0);
+    EXPECT_TRUE(p.logarithmic);
+    EXPECT_FALSE(p.recording.has_value());
+    EXPECT_FALSE(p.prior.has_value());
+  }
+
+  const FitOptions standard;
+  EXPECT_EQ(job.options.coupling, CouplingMode::continuation);
+  EXPECT_EQ(job.options.loss, Loss::squares);
+  EXPECT_EQ(job.options.max_iterations, standard.max_iterations);
+  EXPECT_EQ(job.options.starts, 1);
+  EXPECT_EQ(job.options.seed, 1u);
+}
+
+TEST_F(JobFileTest, KeepsIrregularSampleTimes) {
+  const JobFile file = read(kJob);
+  const Recording& recording = file.job.recordings.front();
+  EXPECT_EQ(recording.times, times_s());
+  EXPECT_EQ(recording.name, "data");
+  EXPECT_EQ(recording.command.times, (Values{times_s()[0], times_s()[2], times_s()[9]}));
+  EXPECT_EQ(recording.command.values, (Values{0.5, -3.0, 2.0}));
+  EXPECT_EQ(recording.measurements.front().values, Data().v);
+}
+
+TEST_F(JobFileTest, ColumnsHaveUnitSignAndFactor) {
+  const std::string text =
+      replaced(replaced(kJob, "{column: u, unit: V}", "{column: u, unit: mV, sign: -1}"),
+               "{column: v, unit: m/s, sigma: 1 mm/s}",
+               "{column: v, unit: mm/s, sign: -1, factor: 4, sigma: 1 mm/s, fit: true}\n"
+               "      position: {column: x, unit: cm, factor: 50 %, sigma: 2 um, fit: false}");
+  const JobFile file = read(text);
+  const Recording& recording = file.job.recordings.front();
+  ASSERT_EQ(recording.measurements.size(), 2u);
+  const Measurement &position = recording.measurements[0], &velocity = recording.measurements[1];
+  EXPECT_EQ(position.signal, Signal::position);
+  EXPECT_FALSE(position.fitted);
+  EXPECT_DOUBLE_EQ(position.sigma, 2e-6);
+  EXPECT_TRUE(velocity.fitted);
+  for (std::size_t i = 0; i < kRows; ++i) {
+    EXPECT_DOUBLE_EQ(position.values[i], Data().x[i] * 0.5 * 0.01);
+    EXPECT_DOUBLE_EQ(velocity.values[i], Data().v[i] * -4.0 * 0.001);
+  }
+  EXPECT_DOUBLE_EQ(recording.command.values[0], -0.0005);
+}
+
+TEST_F(JobFileTest, TrimKeepsCommandsFromBefore) {
+  const JobFile file = read(with_lines("    trim: {from: 8 ms, to: 1.0 s}\n"));
+  const Recording& all = file.job.recordings.front();
+  Values kept = times_s();
+  kept.erase(kept.begin(), kept.begin() + 3);
+  EXPECT_EQ(all.times, kept);
+  EXPECT_EQ(all.command.times.front(), times_s()[0]);
+  EXPECT_EQ(all.command.values, (Values{0.5, -3.0, 2.0}));
+  EXPECT_EQ(all.measurements.front().values.size(), 11u);
+  EXPECT_EQ(all.measurements.front().values.front(), Data().v[3]);
+}
+
+TEST_F(JobFileTest, TrimLeavesOutWhatComesAfter) {
+  const std::string to = std::to_string(Data().t_ms[9]) + " ms";
+  const JobFile file = read(with_lines("    trim: {to: " + to + "}\n"));
+  const Recording& recording = file.job.recordings.front();
+  EXPECT_EQ(recording.times.size(), 10u);
+  EXPECT_EQ(recording.times.back(), times_s()[9]);  // the limit belongs to it
+  EXPECT_EQ(recording.measurements.front().values.size(), 10u);
+  EXPECT_EQ(
+      errors(with_lines("    trim: {from: 1 s}\n")),
+      "job.yaml:4:11: 0 samples of 14, from -0.008 s to 0.064 s, are left: at least 10 must be");
+  EXPECT_EQ(errors(with_lines("    trim: {from: 1, until: 2 s}\n")),
+            "job.yaml:4:18: from needs a unit, for example '1 s'\n"
+            "job.yaml:4:21: unknown key 'until'; known keys: from, to");
+}
+
+TEST_F(JobFileTest, ATrimmedRecordingOnTheEpochIsTheOneFromZero) {
+  // Multiples of 1/64 s are exact at 1.7e9 s, too.
+  const auto read_from = [&](double start) {
+    Table table;
+    table.columns = Data().columns();
+    for (std::size_t i = 0; i < kRows; ++i)
+      table.columns[0].values[i] = start + static_cast<double>(i) / 64.0;
+    folder_.write("data.csv", table);
+    const std::string from = fmt::format("    trim: {{from: {} s}}\n", start + 0.0625);
+    return read(replaced(with_lines(from), "unit: ms", "unit: s")).job.recordings.front();
+  };
+  const Recording zero = read_from(0.0), epoch = read_from(1.7e9);
+  EXPECT_EQ(zero.times.front(), 0.0625);
+  EXPECT_EQ(zero.command.times.front(), 0.0);
+  EXPECT_EQ(epoch.times, zero.times);
+  EXPECT_EQ(epoch.command.times, zero.command.times);
+  EXPECT_EQ(epoch.command.values, zero.command.values);
+  EXPECT_EQ(epoch.measurements.front().values, zero.measurements.front().values);
+}
+
+TEST_F(JobFileTest, AFitNeedsMoreValuesThanParameters) {
+  const auto errors_of_ten_values = [&](const std::string& free) {
+    const std::string to = fmt::format("    trim: {{to: {} ms}}\n", Data().t_ms[9]);
+    return errors(replaced(with_lines(to), "M: {}", free));
+  };
+  const std::string nine =
+      "M: {}\n  B_a: {}\n  coulomb_friction.F_c: {}\n  velocity.bias: {}\n  velocity.gain: {}\n"
+      "  velocity.delay: {}\n  velocity.lag: {}\n  initial.y0: {}\n  initial.y1: {}";
+  EXPECT_EQ(errors_of_ten_values(nine), "");
+  EXPECT_EQ(errors_of_ten_values(nine + "\n  K_f: {}"),
+            "job.yaml:10:3: 10 values, priors included, do not determine 10 parameters: fit fewer, "
+            "or to more samples");
+}
+
+TEST_F(JobFileTest, LimitsOfTheMachineAreRead) {
+  EXPECT_FALSE(read(kJob).job.limits.speed);
+  const JobFile file =
+      read(std::string(kJob) + "limits: {travel: [-1 cm, 1.2 m], speed: 90 cm/s}\n");
+  EXPECT_DOUBLE_EQ(file.job.limits.lowest.value(), -0.01);
+  EXPECT_DOUBLE_EQ(file.job.limits.highest.value(), 1.2);
+  EXPECT_DOUBLE_EQ(file.job.limits.speed.value(), 0.9);
+  EXPECT_FALSE(file.job.limits.voltage);
+}
+
+TEST_F(JobFileTest, NoiseIsEstimatedFromTheSamplesThatAreKept) {
+  Data data;
+  for (std::size_t i = 0; i < kRows; ++i) data.v[i] = i % 2 == 0 ? 0.5 : -0.5;
+  write_data("data.csv", data.columns());
+  const JobFile file = read(replaced(kJob, ", sigma: 1 mm/s", ""));
+  const Measurement& velocity = file.job.recordings.front().measurements.front();
+  EXPECT_EQ(velocity.noise, NoiseSource::differences);
+  EXPECT_EQ(velocity.sigma, noise_from_differences(velocity.values));
+  EXPECT_GT(velocity.sigma, 0.0);
+  const JobFile fit = read(replaced(kJob, "sigma: 1 mm/s", "sigma: fit"));
+  const Measurement& same = fit.job.recordings.front().measurements.front();
+  EXPECT_EQ(same.noise, NoiseSource::fit);
+  EXPECT_EQ(same.sigma, velocity.sigma);
+
+  for (double& v : data.v) v = 1.0;
+  write_data("data.csv", data.columns());
+  EXPECT_EQ(errors_with(", sigma: 1 mm/s", ""),
+            "job.yaml:7:17: the noise of velocity cannot be estimated from these samples: give its "
+            "sigma, for example 'sigma: 0.01 m/s'");
+}
+
+TEST_F(JobFileTest, ADriveForceReplacesTheCommandOfAForceSource) {
+  const JobFile file =
+      read(replaced(kJob, "command: {column: u, unit: V}", "drive_force: {column: f, unit: kN}"));
+  const Recording& recording = file.job.recordings.front();
+  EXPECT_EQ(recording.command.values.size(), kRows);
+  EXPECT_DOUBLE_EQ(recording.command.values.front(), 7000.0);
+  EXPECT_EQ(recording.overrides, (Overrides{{index("K_f"), 1.0}}));
+  EXPECT_EQ(recording.measurements.size(), 1u);
+
+  EXPECT_EQ(errors_with("      command: {column: u, unit: V}\n",
+                        "      command: {column: u, unit: V}\n"
+                        "      drive_force: {column: f, unit: N}\n"),
+            "job.yaml:7:20: give either the command or the drive force, not both: each drives the "
+            "axis");
+  EXPECT_EQ(errors_with("      command: {column: u, unit: V}\n", ""),
+            "job.yaml:6:7: the axis is driven by a command or a drive_force: name one of them");
+  EXPECT_EQ(errors(replaced(replaced(kJob, "mass.yaml", "driven.yaml"),
+                            "      command: {column: u, unit: V}\n", "")),
+            "job.yaml:6:7: the axis is driven by the command: name its column, or that of the "
+            "position_reference, from which the slave control unit makes it");
+}
+
+TEST_F(JobFileTest, InitialStateFromData) {
+  // A cubic, which the estimate follows exactly, in position and velocity.
+  Data data;
+  for (std::size_t i = 0; i < kRows; ++i) {
+    const double t = 1e-3 * (data.t_ms[i] - data.t_ms[0]);
+    data.x[i] = 0.5 + 2.0 * t - 30.0 * t * t;
+    data.v[i] = 2.0 - 60.0 * t;
+  }
+  write_data("data.csv", data.columns());
+  const std::string velocity = with_lines("    initial_state: data\n    initial_samples: 6\n");
+  const JobFile from_velocity = read(velocity);
+  const Recording& a = from_velocity.job.recordings.front();
+  EXPECT_EQ(a.initial_state, InitialState::data);
+  EXPECT_EQ(a.initial_samples, 6u);
+  ASSERT_EQ(a.overrides.size(), 1u);
+  EXPECT_EQ(a.overrides[0].first, index("initial.y1"));
+  EXPECT_NEAR(a.overrides[0].second, 2.0, 1e-9);
+
+  const std::string position = replaced(velocity, "velocity: {column: v, unit: m/s, sigma: 1 mm/s}",
+                                        "position: {column: x, unit: m, sigma: 1 mm}");
+  const JobFile from_position = read(position);
+  const Recording& b = from_position.job.recordings.front();
+  ASSERT_EQ(b.overrides.size(), 2u);
+  EXPECT_EQ(b.overrides[0].first, index("initial.y0"));
+  EXPECT_NEAR(b.overrides[0].second, 0.5, 1e-9);
+  EXPECT_EQ(b.overrides[1].first, index("initial.y1"));
+  EXPECT_NEAR(b.overrides[1].second, 2.0, 1e-9);
+
+  // What is set by hand stays.
+  const JobFile set = read(replaced(velocity, "initial_state: data",
+                                    "initial_state: data\n    set: {initial.y1: 3 m/s}"));
+  EXPECT_EQ(set.job.recordings.front().overrides, (Overrides{{index("initial.y1"), 3.0}}));
+
+  EXPECT_EQ(errors(replaced(velocity, "velocity: {column: v, unit: m/s, sigma: 1 mm/s}",
+                            "acceleration: {column: x, unit: m/s^2, sigma: 1 m/s^2}")),
+            "job.yaml:8:7: initial_state: data needs a recorded position or velocity");
+}
+
+TEST_F(JobFileTest, UnscoredInitialSamplesMustLeaveSomeToScore) {
+  const std::string text =
+      with_lines("    score_initial_samples: false\n    initial_samples: 13\n");
+  EXPECT_FALSE(read(text).job.recordings.front().score_initial_samples);
+  EXPECT_EQ(errors(replaced(text, "13", "14")),
+            "job.yaml:5:22: 14 initial samples that are not scored leave nothing of 14 to score");
+  EXPECT_EQ(errors(replaced(text, "    initial_samples: 13\n", "")),
+            "job.yaml:3:5: 20 initial samples that are not scored leave nothing of 14 to score");
+}
+
+TEST_F(JobFileTest, AccelerationAtRestIsLeftOutUnlessKept) {
+  std::vector<Column> columns{{"t_ms", {}}, {"u", {}}, {"v", {}}, {"a", {}}};
+  for (int i = 0; i < 200; ++i) {
+    const bool rests = i >= 100;
+    const double row[] = {double(i), 1.0, rests ? 0.0 : 0.5, rests ? 0.2 : 1.0};
+    for (std::size_t c = 0; c < 4; ++c) columns[c].values.push_back(row[c]);
+  }
+  write_data("data.csv", columns);
+  const std::string text =
+      replaced(kJob, "sigma: 1 mm/s}\n",
+               "sigma: 1 mm/s}\n      acceleration: {column: a, unit: m/s^2, sigma: 1 cm/s^2}\n");
+  const auto with = [&](const std::string& value) {
+    return replaced(text, "  - file: data.csv\n",
+                    "  - file: data.csv\n    acceleration_at_rest: " + value + "\n");
+  };
+  for (const std::string& left_out : {text, with("leave_out")}) {
+    const Recording recording = read(left_out).job.recordings.front();
+    EXPECT_TRUE(recording.measurements[0].counts(150));
+    EXPECT_TRUE(recording.measurements[1].counts(50));
+    EXPECT_FALSE(recording.measurements[1].counts(150));
+  }
+  EXPECT_TRUE(read(with("keep")).job.recordings.front().measurements[1].counts(150));
+  EXPECT_EQ(errors(with("drop")),
+            "job.yaml:4:27: acceleration_at_rest must be one of leave_out, keep, not 'drop'");
+}
+
+TEST_F(JobFileTest, OverridesHoldForTheirRecording) {
+  const JobFile file = read(with_lines("    set: {B_a: 1 kN s/m, velocity.bias: 3 mm/s}\n"));
+  EXPECT_EQ(file.job.recordings.front().overrides,
+            (Overrides{{index("B_a"), 1000.0}, {index("velocity.bias"), 0.003}}));
+  EXPECT_EQ(file.job.model.axis.B_a, 8.0);
+  EXPECT_EQ(errors(with_lines("    set: {B_q: 1 kN s/m, K_m: 3 N m/A, F_s: -1 N}\n")),
+            "job.yaml:4:11: there is no quantity 'B_q'; did you mean 'B_a'?\n"
+            "job.yaml:4:26: K_m has no part in this axis: its drive or transmission leaves "
+            "it out\n"
+            "job.yaml:4:45: F_s must lie between 0 N and 1e+05 N, not -1 N");
+}
+
+TEST_F(JobFileTest, OverridesMayNotMakeAnAxisThatCannotBeSimulated) {
+  std::string axis = replaced(kDriven, "transmission: rigid", "transmission: backlash");
+  axis = replaced(axis, "J_m: 0 kg m^2", "J_m: 1 kg m^2, H: 0 m, b_g: 1 N s/m, k_g: 1 N/m");
+  folder_.write("mass.yaml", axis);
+  EXPECT_EQ(errors(with_lines("    set: {J_m: 0 kg m^2}\n")),
+            "job.yaml:4:10: J_m must be above zero where the gear has backlash: between the teeth "
+            "nothing but J_m carries the motor torque");
+}
+
+TEST_F(JobFileTest, AQuantityIsEitherFittedForAllOrSet) {
+  const std::string text = with_lines("    set: {M: 5 kg}\n");
+  EXPECT_EQ(errors(text),
+            "job.yaml:10:6: M is fitted for all recordings but set for 'data': remove one, or say "
+            "per_recording: true");
+  const JobFile file = read(replaced(text, "M: {}", "M: {per_recording: true}"));
+  ASSERT_EQ(file.job.free.size(), 1u);
+  EXPECT_EQ(file.job.free[0].recording, 0u);
+  EXPECT_EQ(file.job.free[0].initial, 5.0);  // of the recording
+}
+
+TEST_F(JobFileTest, PerRecordingFreesAQuantityOnceForEachFittedRecording) {
+  const std::string more =
+      R"(  - {file: data.csv, name: judge, role: validate, time: {column: t_ms, unit: ms},
+     signals: {command: {column: u, unit: V}, velocity: {column: v, unit: m/s, sigma: 1 m/s}}}
+  - {file: data.csv, name: second, set: {M: 6 kg}, time: {column: t_ms, unit: ms},
+     signals: {command: {column: u, unit: V}, velocity: {column: v, unit: m/s, sigma: 1 m/s}}}
+)";
+  std::string text = replaced(kJob, "free:\n", more + "free:\n");
+  text = replaced(text, "M: {}", "M: {per_recording: true}\n  B_a: {}");
+  const JobFile file = read(text);
+  ASSERT_EQ(file.job.recordings.size(), 3u);
+  EXPECT_EQ(file.job.recordings[1].role, Role::validate);
+  ASSERT_EQ(file.job.free.size(), 3u);
+  EXPECT_EQ(file.job.free[0].recording, 0u);
+  EXPECT_EQ(file.job.free[0].initial, 4.0);
+  EXPECT_EQ(file.job.free[1].recording, 2u);
+  EXPECT_EQ(file.job.free[1].initial, 6.0);
+  EXPECT_FALSE(file.job.free[2].recording.has_value());
+
+  EXPECT_EQ(errors(replaced(text, "name: second", "name: data")),
+            "job.yaml:3:3: two recordings are called 'data': give them different names");
+}
+
+// Scale and bounds of a free parameter, from its entry in the job.
+FreeParameter parameter(const JobFile& file) { return file.job.free.front(); }
+
+TEST_F(JobFileTest, ScalesAndBoundsOfFreeParameters) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  struct Case {
+    const char* text;
+    double initial, lower, upper;
+    bool logarithmic;
+  };
+  for (const Case& c : std::vector<Case>{
+           {"M: {}", 4.0, 0.04, 400.0, true},
+           {"M: {initial: 200 g}", 0.2, 0.002, 20.0, true},
+           {"M: {initial: 2 g}", 0.002, 0.001, 0.2, true},  // no less than the least sensible mass
+           {"M: {bounds: [3 kg, 5 kg]}", 4.0, 3.0, 5.0, true},
+           {"M: {bounds: [3 kg, 5 kg], scale: linear}", 4.0, 3.0, 5.0, false},
+           {"M: {scale: linear}", 4.0, 1e-3, 1e5, false},
+           {"B_a: {bounds: [0 N s/m, 9 N s/m]}", 8.0, 0.0, 9.0, false},
+           {"B_a: {initial: 0 N s/m}", 0.0, 0.0, 1e6, false},
+           {"F_s: {}", 0.0, 0.0, 1e5, false},
+           {"F_s: {initial: 3 N, scale: log, bounds: [1 N, 9 N]}", 3.0, 1.0, 9.0, true},
+           {"coulomb_friction.F_c: {}", 1.0, 0.0, 1e5, false},
+           {"velocity.gain: {}", 1.0, -1e6, 1e6, false},
+           {"initial.y1: {bounds: [-1 m/s, 1 m/s]}", 0.0, -1.0, 1.0, false},
+           {"T_d: {initial: 2 ms, bounds: [0 s, 9 ms]}", 0.002, 0.0, 0.009, false},
+       }) {
+    SCOPED_TRACE(c.text);
+    ASSERT_LT(c.upper, infinity);
+    const FreeParameter p = parameter(read(replaced(kJob, "M: {}", c.text)));
+    EXPECT_DOUBLE_EQ(p.initial, c.initial);
+    EXPECT_DOUBLE_EQ(p.lower, c.lower);
+    EXPECT_DOUBLE_EQ(p.upper, c.upper);
+    EXPECT_EQ(p.logarithmic, c.logarithmic);
+  }
+}
+
+TEST_F(JobFileTest, Priors) {
+  const FreeParameter p =
+      parameter(read(replaced(kJob, "M: {}", "M: {prior: {mean: 3900 g, sigma: 0.1 kg}}")));
+  ASSERT_TRUE(p.prior.has_value());
+  EXPECT_DOUBLE_EQ(p.prior->mean, 3.9);
+  EXPECT_DOUBLE_EQ(p.prior->sigma, 0.1);
+  EXPECT_EQ(errors_with("M: {}", "M: {prior: {mean: 3900, sgima: 0.1 kg}}"),
+            "job.yaml:9:21: mean needs a unit, for example '3900 kg'\n"
+            "job.yaml:9:27: unknown key 'sgima'; did you mean 'sigma'?");
+}
+
+TEST_F(JobFileTest, EffectsOfTheJobAddToThoseOfTheAxis) {
+  const std::string text = std::string(kJob) + "effects: {constant_force: {F_0: 3 N}}\n";
+  const JobFile file = read(replaced(text, "M: {}", "constant_force.F_0: {bounds: [0 N, 9 N]}"));
+  EXPECT_EQ(file.job.model.structure.effects.count(), 2u);
+  EXPECT_EQ(file.rig.model.structure.effects.count(), 2u);
+  EXPECT_EQ(parameter(file).initial, 3.0);
+  EXPECT_EQ(errors_with("M: {}", "constant_force.F_0: {}"),
+            "job.yaml:9:3: constant_force.F_0 needs the effect: add it to the axis or job, as in "
+            "'effects: {constant_force: {F_0: ...}}'");
+  EXPECT_EQ(errors(std::string(kJob) + "effects: {quadratic_darg: {c: 3 N}, constant_force: {}}\n"),
+            "job.yaml:10:11: unknown key 'quadratic_darg'; did you mean 'quadratic_drag'?\n"
+            "job.yaml:10:53: key 'F_0' is missing in constant_force");
+}
+
+TEST_F(JobFileTest, ReadsEveryOptionOfTheFit) {
+  const JobFile file = read(std::string(kJob) + R"(fit:
+  coupling: {fixed: 5 1/ms}
+  loss: huber
+  huber_width: 2.5
+  max_iterations: 7
+  starts: 3
+  seed: 11
+  spread: 2
+  step: 1 ms
+)");
+  const FitOptions& options = file.job.options;
+  EXPECT_EQ(options.coupling, CouplingMode::fixed);
+  EXPECT_DOUBLE_EQ(options.coupling_rate, 5000.0);
+  EXPECT_EQ(options.loss, Loss::huber);
+  EXPECT_EQ(options.huber_width, 2.5);
+  EXPECT_EQ(options.max_iterations, 7);
+  EXPECT_EQ(options.starts, 3);
+  EXPECT_EQ(options.seed, 11u);
+  EXPECT_EQ(options.spread, 2.0);
+  EXPECT_DOUBLE_EQ(options.step, 1e-3);
+  EXPECT_EQ(read(std::string(kJob) + "fit: {coupling: none}\n").job.options.coupling,
+            CouplingMode::none);
+  const JobFile first = read(std::string(kJob) + "fit: {first_coupling: 20 1/s}\n");
+  EXPECT_EQ(first.job.options.coupling, CouplingMode::continuation);
+  EXPECT_DOUBLE_EQ(first.job.options.coupling_rate, 20.0);
+}
+
+TEST_F(JobFileTest, MatAndCsvGiveTheSameJob) {
+  write_mat(folder_.path("data.mat"), Data().columns());
+  const JobFile csv = read(with_lines("    name: a\n"));
+  const JobFile mat =
+      read(replaced(with_lines("    name: a\n"), "file: data.csv", "file: data.mat"));
+  const Recording &a = csv.job.recordings.front(), &b = mat.job.recordings.front();
+  EXPECT_EQ(a.times, b.times);
+  EXPECT_EQ(a.command.times, b.command.times);
+  EXPECT_EQ(a.command.values, b.command.values);
+  EXPECT_EQ(a.measurements.front().values, b.measurements.front().values);
+  EXPECT_EQ(a.measurements.front().sigma, b.measurements.front().sigma);
+}
+
+TEST_F(JobFileTest, MatFilesMayHoldColumnsThatDoNotFit) {
+  const std::string text = replaced(kJob, "data.csv", "data.mat");
+  Data data;
+  data.v.pop_back();
+  write_mat(folder_.path("data.mat"), data.columns());
+  EXPECT_EQ(errors(text), "job.yaml:7:17: velocity has 13 values but the time has 14");
+  data = Data();
+  data.u.pop_back();
+  write_mat(folder_.path("data.mat"), data.columns());
+  EXPECT_EQ(errors(text), "job.yaml:6:16: command has 13 values but the time has 14");
+  data = Data();
+  data.v[4] = std::numeric_limits<double>::quiet_NaN();
+  data.t_ms[5] = data.t_ms[4];
+  data.x = {3.0};
+  write_mat(folder_.path("data.mat"), data.columns());
+  EXPECT_EQ(
+      errors(text),
+      "job.yaml:4:11: data.mat: row 6: time 0.016 s does not come after 0.016 s: samples must "
+      "be in the order of time, each once\n"
+      "job.yaml:7:26: data.mat: row 5: 'v' is not finite there: cut the recording or fill the "
+      "gap");
+  data.t_ms = Data().t_ms;
+  write_mat(folder_.path("data.mat"), data.columns());
+  EXPECT_EQ(errors(replaced(text, "column: v", "column: x")),
+            "job.yaml:7:26: 'x' in data.mat is a scalar: export it as a numeric array");
+}
+
+TEST_F(JobFileTest, RecordingsMayBeInAnotherFolder) {
+  std::filesystem::create_directory(folder_.path("rig"));
+  std::filesystem::rename(folder_.path("data.csv"), folder_.path("rig/data.csv"));
+  const std::string nowhere =
+      ": cannot be opened (No such file or directory); check the path and the permissions";
+  EXPECT_EQ(errors(kJob), "job.yaml:3:11: data.csv" + nowhere);
+  EXPECT_EQ(errors(kJob, folder_.path("rig")), "");
+  EXPECT_EQ(errors_with("data.csv", "rig/data.csv"), "");
+  EXPECT_EQ(errors_with("data.csv", folder_.path("rig/data.csv")), "");
+  EXPECT_EQ(errors(kJob, folder_.path("none")), "job.yaml:3:11: none/data.csv" + nowhere);
+}
+
+TEST_F(JobFileTest, MistakesInTheAxisFileAreThoseOfTheJob) {
+  EXPECT_EQ(errors_with("mass.yaml", "none.yaml"), "job.yaml:1:7: there is no axis file none.yaml");
+  EXPECT_EQ(errors_with("axis: mass.yaml\n", ""),
+            "job.yaml:1:1: key 'axis' is missing in the file");
+  EXPECT_EQ(errors_with("mass.yaml", "[mass.yaml]"),
+            "job.yaml:1:7: axis must be a text, not a list");
+  folder_.write("mass.yaml", replaced(kMass, "4 kg", "4"));
+  EXPECT_EQ(errors(std::string(kJob) + "fit: {starts: 0}\n"),
+            "mass.yaml:6:6: M needs a unit, for example '4 kg'\n"
+            "job.yaml:10:15: starts must be a whole number between 1 and 1000000, not '0'");
+}
+
+struct Mistake {
+  const char* from;
+  const char* to;
+  const char* message;
+};
+
+TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
+  for (const auto& [from, to, message] : std::vector<Mistake>{
+           // The whole.
+           {"free:\n  M: {}\n", "", "1:1: key 'free' is missing in the file"},
+           {"free:\n", "fre: {}\nfree:\n", "8:1: unknown key 'fre'; did you mean 'free'?"},
+           {"free:\n", "starts: 3\nfree:\n",
+            "8:1: unknown key 'starts'; known keys: axis, effects, recordings, free, fit, "
+            "limits"},
+           // Recordings.
+           {"  - file: data.csv\n    time: {column: t_ms, unit: ms}\n", "  - file: data.csv\n",
+            "3:5: key 'time' is missing in entry 1 of recordings"},
+           {"file: data.csv", "file: data.csv\n    rol: fit",
+            "4:5: unknown key 'rol'; did you mean 'role'?"},
+           {"file: data.csv", "file: data.csv\n    role: fitt",
+            "4:11: role must be one of fit, validate, not 'fitt'; did you mean 'fit'?"},
+           {"file: data.csv", "file: data.csv\n    role: validate",
+            "3:3: no recording has the role fit: at least one must"},
+           {"file: data.csv", "file: data.csv\n    initial_state: guess",
+            "4:20: initial_state must be one of given, data, not 'guess'"},
+           {"file: data.csv", "file: data.csv\n    initial_samples: 3",
+            "4:22: initial_samples must be a whole number between 4 and 1000000, not '3'"},
+           {"file: data.csv", "file: data.csv\n    score_initial_samples: no",
+            "4:28: score_initial_samples must be true or false, not 'no'"},
+           {"file: data.csv", "file: .", "3:11: : is a directory; give the path of a recording"},
+           // Columns.
+           {"column: v,", "column: w,", "7:26: no column 'w' in data.csv; it has f, t_ms, u, v, x"},
+           {"column: t_ms", "column: tms",
+            "4:20: no column 'tms' in data.csv; did you mean 't_ms'? It has f, t_ms, u, v, x"},
+           {"column: u, ", "", "6:16: key 'column' is missing in command"},
+           {"unit: ms", "unit: m",
+            "4:32: 'm' does not fit a quantity in 's'; write for example 's'"},
+           {"unit: m/s", "unit: V",
+            "7:35: 'V' does not fit a quantity in 'm/s'; write for example "
+            "'m/s'"},
+           {", unit: V", "", "6:16: key 'unit' is missing in command"},
+           {"unit: V}", "unit: V, sigma: 1 V}", "6:37: unknown key 'sigma'; did you mean 'sign'?"},
+           {"unit: V}", "unit: V, sign: 2}", "6:43: sign must be one of 1, -1, not '2'"},
+           {"unit: V}", "unit: V, factor: 2 V}",
+            "6:45: factor: 'V' does not fit a dimensionless quantity; write a plain number or '%'"},
+           {"sigma: 1 mm/s", "sigma: 1", "7:47: sigma needs a unit, for example '1 m/s'"},
+           {"sigma: 1 mm/s", "sigma: 0 mm/s",
+            "7:47: sigma must be above zero: residuals are divided by it"},
+           {"sigma: 1 mm/s", "sigma: -1 mm/s", "7:47: sigma must be at least 0 m/s, not -1 mm/s"},
+           {"sigma: 1 mm/s", "fit: maybe, sigma: 1 mm/s",
+            "7:45: fit must be true or false, not 'maybe'"},
+           {"sigma: 1 mm/s", "fit: false, sigma: 1 mm/s",
+            "6:7: nothing to fit: every signal says fit: false; drop that from one, or give the "
+            "recording the role validate"},
+           {"      velocity: {column: v, unit: m/s, sigma: 1 mm/s}\n", "",
+            "6:7: nothing to compare with: name at least one of position, velocity, acceleration, "
+            "tachometer, motor_current, V_c, V_m, drive_force"},
+           // What is free.
+           {"M: {}", "m: {}", "9:3: there is no quantity 'm'; did you mean 'M'?"},
+           {"M: {}", "coulomb_friction: {}",
+            "9:3: there is no quantity 'coulomb_friction'; did you mean 'coulomb_friction.F_c'?"},
+           {"M: {}", "friction_of_the_arm: {}",
+            "9:3: there is no quantity 'friction_of_the_arm'; the axis has its parameters, "
+            "effect.parameter, signal.gain, bias, lag and delay, and initial.y0 ... initial.y6"},
+           {"M: {}", "K_m: {}",
+            "9:3: K_m has no part in this axis: its drive or transmission leaves it out"},
+           {"free:\n  M: {}", "free: {}",
+            "8:7: nothing is free: name at least one quantity to fit"},
+           {"free:\n  M: {}", "free: [M]",
+            "8:7: free must be a map of keys and values, not a list"},
+           {"M: {}", "M: {intial: 3 kg}", "9:7: unknown key 'intial'; did you mean 'initial'?"},
+           {"M: {}", "M: {initial: 3}", "9:16: initial needs a unit, for example '3 kg'"},
+           {"M: {}", "M: {initial: 0 kg}",
+            "9:16: initial must lie between 0.001 kg and 1e+05 kg, not 0 kg"},
+           {"M: {}", "M: {bounds: [5 kg, 9 kg]}",
+            "9:6: the initial value 4 kg of M lies outside its bounds, 5 kg to 9 kg"},
+           {"M: {}", "M: {bounds: [9 kg, 5 kg]}",
+            "9:15: bounds must be given as [lower, upper], but 9 kg is not less than 5 kg"},
+           {"M: {}", "M: {bounds: 9 kg}",
+            "9:15: bounds must be a list of two values: [lower, upper]"},
+           {"M: {}", "M: {bounds: [1 kg, 5 m]}",
+            "9:22: entry 2 of bounds: 'm' does not fit a quantity in 'kg'; write for example 'kg'"},
+           {"M: {}", "M: {scale: logarithmic}",
+            "9:14: scale must be one of log, linear, not 'logarithmic'"},
+           {"M: {}", "B_a: {scale: log, bounds: [0 N s/m, 9 N s/m]}",
+            "9:8: B_a on a logarithmic scale needs an initial value and a lower bound above zero"},
+           {"M: {}", "M: {per_recording: each}",
+            "9:22: per_recording must be true or false, not 'each'"},
+           // How to fit.
+           {"free:\n", "fit: {threads: 2}\nfree:\n",
+            "8:7: unknown key 'threads'; known keys: coupling, first_coupling, loss, huber_width, "
+            "max_iterations, starts, seed, spread, step"},
+           {"free:\n", "fit: {coupling: loose}\nfree:\n",
+            "8:17: coupling must be continuation, none, or for example {fixed: 300 1/s}"},
+           {"free:\n", "fit: {coupling:}\nfree:\n",
+            "8:7: coupling must be continuation, none, or for example {fixed: 300 1/s}"},
+           {"free:\n", "fit: {coupling: none, first_coupling: 3 1/s}\nfree:\n",
+            "8:39: first_coupling is where a continuation starts: it needs coupling: continuation"},
+           {"free:\n", "fit: {coupling: {fixd: 3 1/s}}\nfree:\n",
+            "8:18: unknown key 'fixd'; did you mean 'fixed'?"},
+           {"free:\n", "fit: {coupling: {fixed: 3}}\nfree:\n",
+            "8:25: fixed needs a unit, for example '3 1/s'"},
+           {"free:\n", "fit: {loss: hubre}\nfree:\n",
+            "8:13: loss must be one of squares, huber, not 'hubre'; did you mean 'huber'?"},
+           {"free:\n", "fit: {max_iterations: 0}\nfree:\n",
+            "8:23: max_iterations must be a whole number between 1 and 100000, not '0'"},
+           {"free:\n", "fit: {step: 1}\nfree:\n", "8:13: step needs a unit, for example '1 s'"},
+           {"free:\n", "fit: {spread: 0.5}\nfree:\n",
+            "8:15: spread must lie between 1 and 1e+06, not 0.5"},
+       }) {
+    EXPECT_EQ(errors_with(from, to), "job.yaml:" + std::string(message)) << to;
+  }
+}
+
+// The signal that holds the simulation to the end is taken to be on time.
+TEST_F(JobFileTest, RefusesALateSignalThatHoldsTheSimulation) {
+  const std::string fixed = std::string(kJob) + "fit: {coupling: {fixed: 300 1/s}}\n";
+  const std::string message =
+      "a fixed coupling holds the simulation to the recorded velocity as if that had no ";
+  EXPECT_EQ(errors(replaced(fixed, "M: {}", "velocity.delay: {}")),
+            "job.yaml:9:19: " + message +
+                "delay: leave velocity.delay out and fit T_d, which delays the whole motion, or "
+                "use coupling: continuation");
+  EXPECT_EQ(
+      errors(replaced(fixed, "M: {}", "velocity.lag: {}")),
+      "job.yaml:9:17: " + message + "lag: leave velocity.lag out and use coupling: continuation");
+  EXPECT_EQ(
+      errors(replaced(fixed, "    signals:", "    set: {velocity.lag: 1 ms}\n    signals:")),
+      "job.yaml:7:7: " + message + "lag: leave velocity.lag out and use coupling: continuation");
+  EXPECT_NO_THROW(read(replaced(fixed, "M: {}", "position.delay: {}")));
+  EXPECT_NO_THROW(read(replaced(kJob, "M: {}", "velocity.delay: {}")));
+}
+
+TEST_F(JobFileTest, MistakesInARecordingNameItsLine) {
+  folder_.write("data.csv", "t_ms,u,v\n0,0,1\n1,0,2\n\n3,0,4\n");
+  EXPECT_EQ(errors(kJob).substr(0, 27), "job.yaml:3:11: data.csv:4: ");
+  folder_.write("data.csv", "t_ms,u,v\n0,0,1\n1,0,x\n");
+  EXPECT_EQ(
+      errors(kJob),
+      "job.yaml:3:11: data.csv:3: column 'v': 'x' is not a number; every row below the header "
+      "must hold numbers");
+  Data data;
+  data.t_ms[7] = data.t_ms[5];
+  write_data("data.csv", data.columns());
+  EXPECT_EQ(errors(kJob).substr(0, 27), "job.yaml:4:11: data.csv:9: ");
+  // Instants that differ late.
+  for (std::size_t i = 0; i < kRows; ++i) data.t_ms[i] = 1e9 + static_cast<double>(i);
+  data.t_ms[7] = data.t_ms[6] - 0.5;
+  write_data("data.csv", data.columns());
+  EXPECT_EQ(errors(kJob),
+            "job.yaml:4:11: data.csv:9: time 1000000.0055 s does not come after 1000000.006 s: "
+            "samples must be in the order of time, each once");
+}
+
+TEST_F(JobFileTest, AllMistakesAreNamedAtOnce) {
+  EXPECT_EQ(
+      errors(R"(axis: mass.yaml
+recordings:
+  - file: data.csv
+    role: train
+    time: {column: time, unit: ms}
+    signals:
+      command: {column: u, unit: Volt}
+      velocity: {column: v, unit: m/s, sigma: 1 mm/s, sing: -1}
+  - file: none.csv
+    set: {M_a: 3 kg}
+    time: {column: t_ms, unit: ms}
+free:
+  B_a: {initial: -1 N s/m}
+  K_t: {}
+fit: {loss: cubes}
+colour: red
+)"),
+      "job.yaml:4:11: role must be one of fit, validate, not 'train'\n"
+      "job.yaml:5:20: no column 'time' in data.csv; did you mean 't_ms'? It has f, t_ms, u, v, x\n"
+      "job.yaml:8:55: unknown key 'sing'; did you mean 'sign'?\n"
+      "job.yaml:9:5: key 'signals' is missing in entry 2 of recordings\n"
+      "job.yaml:9:11: none.csv: cannot be opened (No such file or directory); check the path "
+      "and the permissions\n"
+      "job.yaml:10:11: there is no quantity 'M_a'; did you mean 'B_a'?\n"
+      "job.yaml:13:18: initial must lie between 0 N s/m and 1e+06 N s/m, not -1 N s/m\n"
+      "job.yaml:14:3: K_t has no part in this axis: its drive or transmission leaves "
+      "it out\n"
+      "job.yaml:15:13: loss must be one of squares, huber, not 'cubes'; did you mean 'huber'?\n"
+      "job.yaml:16:1: unknown key 'colour'; known keys: axis, effects, recordings, free, fit, "
+      "limits");
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,375 @@
+#include "io/recording/csv.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cfloat>
+#include <clocale>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <locale>
+#include <random>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace axisfit {
+namespace {
+
+// A directory of its own for each test, so that tests can run at the same time.
+class TableTest : public ::testing::Test {
+ protected:
+  TableTest() {
+    const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
+    directory_ = std::filesystem::temp_directory_path() /
+                 ("axisfit_table_test." + std::to_string(::getpid()) + "." + info->name());
+    std::filesystem::create_directories(directory_);
+  }
+  ~TableTest() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(directory_, ignored);
+  }
+
+  std::string path() const { return (directory_ / "rec.csv").string(); }
+
+  Table read(std::string_view text) const {
+    std::ofstream(path(), std::ios::binary) << text;
+    return read_csv(path());
+  }
+
+  // The message of the error for this text, without the directory.
+  std::string error(std::string_view text) const {
+    try {
+      read(text);
+    } catch (const RecordingError& caught) {
+      return without_directory(caught.what());
+    }
+    return "no error";
+  }
+
+  std::string without_directory(const std::string& message) const {
+    const std::string prefix = directory_.string() + "/";
+    return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
+  }
+
+  std::filesystem::path directory_;
+};
+
+using Values = std::vector<double>;
+
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+TEST_F(TableTest, ReadsNamesValuesAndLines) {
+  const Table table = read("time,position\n0,1.5\n0.001,-2e-3\n");
+  EXPECT_EQ(table.file, path());
+  ASSERT_EQ(table.columns.size(), 2u);
+  EXPECT_EQ(table.columns[0].name, "time");
+  EXPECT_EQ(table.columns[0].values, (Values{0, 0.001}));
+  EXPECT_EQ(table.columns[1].values, (Values{1.5, -2e-3}));
+  EXPECT_EQ(table.rows(), 2u);
+  EXPECT_EQ(table.lines, (std::vector<std::size_t>{2, 3}));
+  EXPECT_EQ(table.where(1), path() + ":3");
+}
+
+TEST_F(TableTest, FindsColumnsByExactName) {
+  const Table table = read("q,Q\n1,2\n");
+  EXPECT_EQ(table.find("Q"), &table.columns[1]);
+  EXPECT_EQ(table.find("x"), nullptr);
+  EXPECT_EQ(table.find(""), nullptr);
+}
+
+TEST_F(TableTest, AcceptsWhatSpreadsheetsAndLoggersWrite) {
+  const std::vector<std::string_view> variants = {
+      "a,b\n1,2\n3,-4\n",  // plain
+      "a,b\n1,2\n3,-4",    // no line end at the end
+      // Two literals: the escape would go on. NOLINTNEXTLINE(bugprone-suspicious-missing-comma)
+      "\xEF\xBB\xBF"
+      "a,b\r\n1,2\r\n3,-4\r\n",                // byte-order mark, CRLF
+      "a,b\n1,2\n3,-4\n\n \t\r\n\n",           // blank lines at the end
+      "a;b\n1;2\n3;-4\n",                      // semicolons
+      "a\tb\n1\t2\n3\t-4\n",                   // tabs
+      "\"a\",\"b\"\n\"1\",2\n 3 , \"-4\" \n",  // quotes and blanks
+      " a , b \n 1 , 2 \n\t3\t,\t-4\t\n",      // blanks
+      "\"a\"\t b \n 1\t\"2\"\n3 \t -4\n",      // the same with tabs
+      "a,b\n+1,2.\n3.0e0,-4E+00\n",            // other spellings of the numbers
+      "a;b\n1,0;+2\n3;-4,00e0\n",              // decimal commas
+      "a,b,\n1,2,\n3,-4, \n",                  // separators at the end of every line
+  };
+  for (const std::string_view text : variants) {
+    SCOPED_TRACE(text);
+    const Table table = read(text);
+    ASSERT_EQ(table.columns.size(), 2u);
+    EXPECT_EQ(table.columns[0].name, "a");
+    EXPECT_EQ(table.columns[1].name, "b");
+    EXPECT_EQ(table.columns[0].values, (Values{1, 3}));
+    EXPECT_EQ(table.columns[1].values, (Values{2, -4}));
+    EXPECT_EQ(table.lines, (std::vector<std::size_t>{2, 3}));
+  }
+}
+
+TEST_F(TableTest, ReadsARowOfUnits) {
+  for (const char* text :
+       {"t;v;k\ns;mm/s;\n0,5;1;2\n1;2,5;3\n", "t,v,k\ns,mm/s,\n0.5,1,2\n1,2.5,3\n"}) {
+    const Table table = read(text);
+    ASSERT_EQ(table.columns.size(), 3u);
+    EXPECT_EQ(table.columns[0].unit, "s");
+    EXPECT_EQ(table.columns[1].unit, "mm/s");
+    EXPECT_EQ(table.columns[2].unit, "");
+    EXPECT_EQ(table.columns[1].values, (Values{1, 2.5}));
+    EXPECT_EQ(table.lines, (std::vector<std::size_t>{3, 4}));
+  }
+}
+
+TEST_F(TableTest, TakesNoRowOfDataForUnits) {
+  EXPECT_EQ(error("t,v\n0,abc\n1,2\n"),
+            "rec.csv:2: column 'v': 'abc' is not a number; every row below the header must hold "
+            "numbers");
+  EXPECT_EQ(error("t,v\nnan,nan\n1,2\n"),
+            "rec.csv:2: column 't': 'nan' is not finite; remove the row or cut the recording "
+            "there");
+  EXPECT_EQ(error("t,v\ns,m\nkg,N\n1,2\n"),
+            "rec.csv:3: column 't': 'kg' is not a number; every row below the header must hold "
+            "numbers");
+}
+
+TEST_F(TableTest, QuotedNamesMayHoldDelimitersAndQuotes) {
+  const Table table = read("\"q (rad, motor)\";\"the \"\"raw\"\" one\"\n1;2\n");
+  ASSERT_EQ(table.columns.size(), 2u);
+  EXPECT_EQ(table.columns[0].name, "q (rad, motor)");
+  EXPECT_EQ(table.columns[1].name, "the \"raw\" one");
+}
+
+TEST_F(TableTest, TellsTheLineAndTheColumnOfTextThatIsNoNumber) {
+  EXPECT_EQ(error("time,velocity\n0,1\n1,abc\n"),
+            "rec.csv:3: column 'velocity': 'abc' is not a number; every row below the header must "
+            "hold numbers");
+  EXPECT_EQ(error("time,velocity\n0,\n"),
+            "rec.csv:2: column 'velocity': the field is empty; every row below the header must "
+            "hold a number in every column");
+  EXPECT_EQ(error("time\tvelocity\n\t\"1\"\n"),
+            "rec.csv:2: column 'time': the field is empty; every row below the header must hold a "
+            "number in every column");
+  EXPECT_EQ(error("time;velocity\n0.5;1\n1;1,5\n"),
+            "rec.csv:3: column 'velocity': '1,5' has a decimal comma, but numbers above it have a "
+            "decimal point; write all of them alike");
+  EXPECT_EQ(error("time;velocity\n0,5;1\n1;1.5\n"),
+            "rec.csv:3: column 'velocity': '1.5' has a decimal point, but numbers above it have a "
+            "decimal comma; write all of them alike");
+  EXPECT_EQ(error("time\nnan\n"),
+            "rec.csv:2: column 'time': 'nan' is not finite; remove the row or cut the recording "
+            "there");
+  EXPECT_EQ(error("time\n1e999\n"),
+            "rec.csv:2: column 'time': '1e999' is out of the range of a double; choose another "
+            "unit or fix the number");
+}
+
+TEST_F(TableTest, RefusesEverythingThatIsNotExactlyOneFiniteNumber) {
+  for (const char* text :
+       {"1 2",       "1.2.3",     "0x10",    "1e",   ".",     "-",   "+",    "+-1",
+        "--1",       "1,000,000", "1.000,5", "1,5e", ",",     "1d3", "12 s", "inf",
+        "-Infinity", "NaN(1)",    "1e-999",  "\"\"", "1\"\"", "\"1"}) {
+    SCOPED_TRACE(text);
+    const std::string message = error(std::string("a;b\n0;") + text + "\n");
+    EXPECT_TRUE(message.starts_with("rec.csv:2: ")) << message;
+  }
+}
+
+TEST_F(TableTest, KeepsTheTextOfTheFileInMessagesShortAndPrintable) {
+  const std::string message = error("a\n1\nx\x1B[31m" + std::string(500, 'y') + "\n");
+  EXPECT_NE(message.find("'x?[31m"), std::string::npos) << message;
+  EXPECT_LT(message.size(), 200u);
+}
+
+TEST_F(TableTest, TellsWhichColumnARowLacksOrExceeds) {
+  EXPECT_EQ(error("t,q,u\n0,1,2\n1,2\n"),
+            "rec.csv:3: 2 fields for the 3 columns of the header, none for column 'u'; complete or "
+            "remove the row");
+  EXPECT_EQ(error("t\n0\n1,2\n"),
+            "rec.csv:3: 2 fields for the 1 column of the header, more after column 't'; name them "
+            "or remove them");
+}
+
+TEST_F(TableTest, ARowReadsAlikeWhereverItStands) {
+  // The first row may be units and is split into fields; below it plain rows are read in one go.
+  const auto outcome = [&](const std::string& row, int line) {
+    const std::string above = line == 3 ? "a,b\n0,0.5\n" : "a,b\n";
+    for (const char* const below : {"\n7,8\n", "\n", ""}) {
+      const std::string text = above + row + below;
+      const std::string message = error(text);
+      if (message != "no error") return message.substr(message.find(' '));
+      std::vector<double> values;
+      for (const Column& column : read(text).columns)
+        values.insert(values.end(), column.values.begin() + (line - 2), column.values.end());
+      const std::vector<double> rows = *below == '\0' || below[1] == '\0'
+                                           ? std::vector<double>{1.0, -2.5e3}
+                                           : std::vector<double>{1.0, 7.0, -2.5e3, 8.0};
+      if (values != rows) return std::string("other values");
+    }
+    return std::string("these values");
+  };
+  for (const char* const row : {"1,-2.5e3", "+1,-2500", " 1 ,\t-2500 ", "\"1\",-2500", "1,-2500\r"})
+    for (const int line : {2, 3}) EXPECT_EQ(outcome(row, line), "these values") << row << line;
+  for (const char* const row : {"1", "1,2,3", "1,2,", "1,", ",2", "1,inf", "1,nan", "1,2x",
+                                "1e999,2", "1,2\r\r", "0x1,2", "1;2", "\"1,2", "1,2 3"}) {
+    EXPECT_NE(outcome(row, 3), "these values") << row;
+    const bool may_be_a_unit = std::string_view(row).find_first_of("in") != std::string_view::npos;
+    if (!may_be_a_unit) {
+      EXPECT_EQ(outcome(row, 2), outcome(row, 3)) << row;
+    }
+  }
+}
+
+TEST_F(TableTest, RefusesBlankLinesBetweenRows) {
+  EXPECT_EQ(error("t\r\n0\r\n\r\n1\r\n"),
+            "rec.csv:3: the line is blank, but rows follow; remove it, or complete the row");
+}
+
+TEST_F(TableTest, RefusesUnusableHeaders) {
+  EXPECT_EQ(error(",q\n0,1\n"), "rec.csv:1: column 1 has no name; name it or remove it");
+  EXPECT_EQ(error("t,,q\n0,1,2\n"), "rec.csv:1: column 2 has no name; name it or remove it");
+  EXPECT_EQ(error("t,\n0,1\n"),
+            "rec.csv:2: 2 fields for the 1 column of the header, more after column 't'; name them "
+            "or remove them");
+  EXPECT_EQ(error("t,q,t\n0,1,2\n"),
+            "rec.csv:1: columns 1 and 3 are both named 't'; give every column its own name");
+  EXPECT_EQ(error("0,0\n0,1\n"),
+            "rec.csv:1: there are only numbers; the first line must name the columns");
+  EXPECT_EQ(error("\nt,q\n0,1\n"),
+            "rec.csv:1: the line is blank; the first line must name the columns");
+  EXPECT_EQ(error("\"t,q\n0,1\n"),
+            "rec.csv:1: field 1: the quotes are not balanced; close them before the next separator "
+            "and on the same line");
+}
+
+TEST_F(TableTest, RefusesFilesWithoutRows) {
+  for (const char* text : {"", "\n\r\n", "\xEF\xBB\xBF"}) {
+    EXPECT_EQ(error(text), "rec.csv: the file is empty; the first line must name the columns");
+  }
+  for (const char* text : {"t,q", "t,q\n", "t,q\r\n\r\n"}) {
+    EXPECT_EQ(error(text),
+              "rec.csv:1: there are no rows below the header; check how it was recorded");
+  }
+  EXPECT_EQ(error("\xFF\xFEt"), "rec.csv: is UTF-16 text; save it as UTF-8 or plain ASCII");
+}
+
+TEST_F(TableTest, RefusesFilesThatCannotBeOpened) {
+  try {
+    read_csv(path());
+    FAIL() << "no error";
+  } catch (const RecordingError& caught) {
+    EXPECT_EQ(without_directory(caught.what()),
+              "rec.csv: cannot be opened (No such file or directory); check the path and the "
+              "permissions");
+  }
+  EXPECT_THROW(read_csv(directory_.string()), RecordingError);
+  ASSERT_EQ(::mkfifo(path().c_str(), 0600), 0);  // nobody writes to it
+  EXPECT_THROW(read_csv(path()), RecordingError);
+}
+
+TEST_F(TableTest, ReadsFilesLargerThanOneChunk) {
+  std::string text = "t,q\n";
+  constexpr std::size_t kRows = 200000;
+  for (std::size_t i = 0; i < kRows; ++i) text += std::to_string(i) + ",0.25\n";
+  const Table table = read(text);
+  ASSERT_EQ(table.rows(), kRows);
+  EXPECT_EQ(table.columns[0].values.back(), kRows - 1.0);
+  EXPECT_EQ(table.lines.back(), kRows + 1);
+}
+
+TEST(Table, WithoutColumnsHasNoRows) { EXPECT_EQ(Table{}.rows(), 0u); }
+
+TEST(Table, NamesRowsWhenThereAreNoLines) {
+  EXPECT_EQ((Table{"rec.mat", {{"t", {0, 1}}}, {}}).where(1), "rec.mat: row 2");
+}
+
+TEST(RecordingError, NamesTheLineOnlyWhenThereIsOne) {
+  EXPECT_STREQ(RecordingError("rec.csv", 17, "no").what(), "rec.csv:17: no");
+  EXPECT_STREQ(RecordingError("rec.csv", 0, "no").what(), "rec.csv: no");
+}
+
+std::string written(const Table& table, int significant_digits = 0) {
+  std::ostringstream out;
+  write_csv(out, table.columns, significant_digits);
+  return out.str();
+}
+
+TEST(WriteCsv, WritesTheShortestExactOrTheRequestedDigits) {
+  const Table table{"", {{"a", {0.1, 1e22, 100}}, {"b", {1.0 / 3, -0.0, 2}}}, {}};
+  EXPECT_EQ(written(table), "a,b\n0.1,0.3333333333333333\n1e+22,-0\n100,2\n");
+  EXPECT_EQ(written(table, 3), "a,b\n0.1,0.333\n1e+22,-0\n100,2\n");
+}
+
+TEST(WriteCsv, LeavesNoValueEmptyAndQuotesNamesThatNeedIt) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(written({"", {{"m(:,1)", {nan, 1}}, {"the \"raw\" one", {2, nan}}}, {}}),
+            "\"m(:,1)\",\"the \"\"raw\"\" one\"\n,2\n1,\n");
+}
+
+TEST(WriteCsv, RefusesWhatTheProgramGotWrong) {
+  EXPECT_THROW(written({"", {{"a", {1}}, {"b", {}}}, {}}), std::logic_error);
+  EXPECT_THROW(written({"", {{"a", {1}}}, {}}, -1), std::logic_error);
+  EXPECT_THROW(written({"", {{"a", {1}}}, {}}, 18), std::logic_error);
+}
+
+// All kinds of doubles: every exponent, subnormal numbers, both zeros and the limits.
+Values many_doubles() {
+  Values values = {0.0,      -0.0,    1.0,      0.1,           DBL_MIN,
+                   -DBL_MIN, DBL_MAX, -DBL_MAX, DBL_TRUE_MIN,  9007199254740993.0,
+                   1e22,     1e23,    5e-324,   123456789e-15, 0.30000000000000004};
+  std::mt19937_64 bits(1);
+  while (values.size() < 20000) {
+    const std::uint64_t pattern = bits();
+    double value = 0;
+    std::memcpy(&value, &pattern, sizeof value);
+    if (std::isfinite(value)) values.push_back(value);
+  }
+  return values;
+}
+
+TEST_F(TableTest, RoundTripIsExact) {
+  const Table table{"", {{"v", many_doubles()}}, {}};
+  for (const int digits : {0, 17}) {
+    const Table copy = read(written(table, digits));
+    ASSERT_EQ(copy.rows(), table.rows());
+    for (std::size_t i = 0; i < table.rows(); ++i) {
+      ASSERT_TRUE(same_bits(copy.columns[0].values[i], table.columns[0].values[i])) << i;
+    }
+  }
+}
+
+// Decimal commas and thousands points, whether or not the machine has a German locale.
+class GermanNumbers : public std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+TEST_F(TableTest, LocaleDoesNotMatter) {
+  const std::locale before = std::locale::global(std::locale(std::locale(), new GermanNumbers));
+  const std::string c_before = std::setlocale(LC_ALL, nullptr);
+  std::setlocale(LC_ALL, "de_DE.UTF-8");  // as far as there is one
+
+  const Table table{"", {{"t", {1234567.25, 0.5}}}, {}};
+  const std::string text = written(table);
+  const Table copy = read(text);
+  std::string message = error("t\n" + std::string(2000, '\n') + "1\n");
+
+  std::setlocale(LC_ALL, c_before.c_str());
+  std::locale::global(before);
+  EXPECT_EQ(text, "t\n1234567.25\n0.5\n");
+  EXPECT_EQ(copy.columns[0].values, table.columns[0].values);
+  EXPECT_TRUE(message.starts_with("rec.csv:2: ")) << message;
+}
+
+}  // namespace
+}  // namespace axisfit

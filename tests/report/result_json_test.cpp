@@ -1,0 +1,711 @@
+// What is told of a fit: result.json, residuals.csv and the text for a terminal.
+#include "report/result_json.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "base/text_table.h"
+#include "base/version.h"
+#include "fit/design/forecast.h"
+#include "fit/estimation/estimate.h"
+#include "fit/run.h"
+#include "io/config/axis_file.h"
+#include "io/config/job_file.h"
+#include "report/text/report_text.h"
+#include "tests/apps/files.h"
+#include "tests/apps/fit_job.h"
+
+namespace axisfit {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> keys(const Json& object) {
+  std::vector<std::string> result;
+  for (const auto& [key, value] : object.items()) result.push_back(key);
+  return result;
+}
+
+/// Nobody has to scroll, and no line has blanks at its end.
+void expect_narrow(const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(width_of(line), 80u) << line;
+    EXPECT_FALSE(line.ends_with(' ')) << line;
+  }
+}
+
+/// What was found for a job on the recordings of fit_job.h, and what is told of it.
+struct Found {
+  explicit Found(const std::string& job, bool close_the_loop = false) {
+    const TempFolder folder;
+    write_recordings(folder);
+    write_rubbing_mass(folder);
+    const JobFile file = read_job_file(folder.write("job.yaml", job));
+    rig = file.rig;
+    outcome = find_outcome(file.job, {.close_loop = close_the_loop});
+    json = result_json(outcome);
+    text = report_text(outcome);
+    expect_narrow(text);
+  }
+  Rig rig;
+  Outcome outcome;
+  Json json;
+  std::string text;
+};
+
+/// No reader of JSON takes nan or inf, and null is only for what the documentation says may lack.
+void expect_finite(const Json& value, const std::string& where) {
+  EXPECT_TRUE(!value.is_number() || std::isfinite(value.get<double>())) << where;
+  EXPECT_TRUE(!value.is_null() || where.ends_with("standard_error") ||
+              where.ends_with("confidence_interval"))
+      << where;
+  if (value.is_structured())
+    for (const auto& [key, entry] : value.items()) expect_finite(entry, where + "/" + key);
+}
+
+TEST(ResultTest, JsonHasItsDocumentedKeys) {
+  const Json json = Found(fit_job("{starts: 2, seed: 5}")).json;
+  // docs/result.md promises these to other programs.
+  EXPECT_EQ(keys(json), (std::vector<std::string>{"schema_version",
+                                                  "version",
+                                                  "status",
+                                                  "usable",
+                                                  "interrupted",
+                                                  "out_of_time",
+                                                  "verdict",
+                                                  "message",
+                                                  "axis",
+                                                  "recordings",
+                                                  "parameters",
+                                                  "reduced_chi_square",
+                                                  "residual",
+                                                  "correlation",
+                                                  "singular_values",
+                                                  "without_influence",
+                                                  "weak_directions",
+                                                  "combinations",
+                                                  "assumptions",
+                                                  "coupling_rate",
+                                                  "stages",
+                                                  "starts",
+                                                  "minima",
+                                                  "iterations",
+                                                  "seed",
+                                                  "wall_time_s"}));
+  ASSERT_EQ(json.at("correlation").size(), json.at("parameters").size());
+  for (std::size_t i = 0; i < json.at("correlation").size(); ++i)
+    EXPECT_DOUBLE_EQ(json.at("correlation")[i][i], 1.0);
+  EXPECT_EQ(json.at("singular_values").size(), json.at("parameters").size());
+  EXPECT_TRUE(json.at("weak_directions").empty());
+  EXPECT_EQ(keys(json.at("residual")),
+            (std::vector<std::string>{"explained", "tests", "suspects", "missing_force"}));
+  ASSERT_EQ(json.at("residual").at("tests").size(), 2u);
+  for (const Json& test : json.at("residual").at("tests"))
+    EXPECT_EQ(keys(test),
+              (std::vector<std::string>{"recording", "signal", "role", "reduced_chi_square",
+                                        "autocorrelation_time", "unexplained_percent", "explained",
+                                        "dependences", "outliers", "drift", "grid"}));
+  ASSERT_EQ(json.at("residual").at("missing_force").size(), 2u);
+  for (const Json& force : json.at("residual").at("missing_force"))
+    EXPECT_EQ(keys(force), (std::vector<std::string>{"recording", "rms_n", "noise_n", "cutoff_hz",
+                                                     "drive_rms_n"}));
+  for (const Json& recording : json.at("recordings")) {
+    EXPECT_EQ(keys(recording),
+              (std::vector<std::string>{"name", "file", "role", "samples", "start_s", "end_s",
+                                        "events", "concerns", "signals"}));
+    for (const Json& signal : recording.at("signals"))
+      EXPECT_EQ(keys(signal),
+                (std::vector<std::string>{"name", "unit", "fitted", "rmse", "nrmse_percent",
+                                          "sigma", "sigma_source", "reduced_chi_square"}));
+  }
+  for (const Json& parameter : json.at("parameters"))
+    EXPECT_EQ(keys(parameter), (std::vector<std::string>{
+                                   "name", "unit", "meaning", "value", "verdict", "standard_error",
+                                   "confidence_interval", "initial", "lower", "upper", "scale"}));
+  expect_finite(json, "");
+}
+
+TEST(ResultTest, JsonSaysWhatTheFitFound) {
+  const Found fit(fit_job("{starts: 2, seed: 5}"));
+  const Json& json = fit.json;
+  EXPECT_EQ(json.at("status"), "converged");
+  EXPECT_EQ(json.at("usable"), true);
+  EXPECT_EQ(json.at("verdict"), fit.outcome.first.verdict);
+  EXPECT_EQ(json.at("axis"), "x axis of the Automatix AID 600");
+  EXPECT_EQ(json.at("version"), version());
+  EXPECT_EQ(json.at("seed"), 5);
+  EXPECT_EQ(json.at("wall_time_s"), fit.outcome.wall_time);
+  EXPECT_GT(fit.outcome.wall_time, 0.0);
+  EXPECT_EQ(json.at("iterations"), fit.outcome.first.iterations);
+  EXPECT_GT(fit.outcome.first.iterations, 0);
+  EXPECT_EQ(json.at("reduced_chi_square"), fit.outcome.first.reduced_chi_square);
+  EXPECT_EQ(json.at("coupling_rate"), 0.0);
+  EXPECT_EQ(json.at("starts").size(), 2u);
+  EXPECT_EQ(json.at("stages").size(), fit.outcome.first.stages.size());
+
+  ASSERT_EQ(json.at("recordings").size(), 2u);
+  const Json& first = json.at("recordings")[0];
+  EXPECT_EQ(first.at("file"), "short.csv");
+  EXPECT_EQ(first.at("name"), "short");
+  EXPECT_EQ(first.at("role"), "fit");
+  EXPECT_EQ(first.at("samples"), 151);
+  EXPECT_EQ(first.at("start_s"), 0.0);
+  EXPECT_EQ(first.at("end_s"), 0.3);
+  EXPECT_EQ(json.at("recordings")[1].at("role"), "validate");
+  ASSERT_EQ(first.at("signals").size(), 2u);
+  const Json& velocity = first.at("signals")[0];
+  const SignalError& error = fit.outcome.first.recordings[0].signals[0];
+  EXPECT_EQ(velocity.at("name"), "velocity");
+  EXPECT_EQ(velocity.at("unit"), "m/s");
+  EXPECT_EQ(velocity.at("fitted"), true);
+  EXPECT_EQ(velocity.at("rmse"), error.rmse);
+  EXPECT_EQ(velocity.at("nrmse_percent"), error.nrmse_percent);
+  EXPECT_EQ(velocity.at("sigma"), 0.002);
+  EXPECT_EQ(velocity.at("sigma_source"), "given");
+  EXPECT_NEAR(velocity.at("reduced_chi_square"), std::pow(error.rmse / 0.002, 2), 1e-9);
+  EXPECT_EQ(first.at("signals")[1].at("fitted"), false);
+  EXPECT_EQ(json.at("recordings")[1].at("signals")[0].at("sigma_source"), "differences");
+
+  ASSERT_EQ(json.at("parameters").size(), 2u);
+  const Json& damping = json.at("parameters")[0];
+  const ParameterResult& found = fit.outcome.first.parameters[0];
+  EXPECT_EQ(damping.at("name"), "B_a");
+  EXPECT_EQ(damping.at("unit"), "N s/m");
+  EXPECT_EQ(damping.at("value"), found.value);
+  EXPECT_EQ(damping.at("standard_error"), found.uncertainty.standard_error);
+  EXPECT_EQ(damping.at("confidence_interval"),
+            Json::array({found.uncertainty.lower, found.uncertainty.upper}));
+  EXPECT_EQ(damping.at("initial"), 100.0);
+  EXPECT_EQ(damping.at("lower"), 1.0);
+  EXPECT_EQ(damping.at("upper"), 10000.0);
+  EXPECT_EQ(damping.at("scale"), "log");
+  EXPECT_EQ(damping.at("verdict"), "determined");
+  // The truth, by which the recording was made.
+  EXPECT_NEAR(found.value, 200.0, 5.0 * found.uncertainty.standard_error);
+  EXPECT_NEAR(fit.outcome.first.parameters[1].value, 2.7,
+              5.0 * fit.outcome.first.parameters[1].uncertainty.standard_error);
+}
+
+TEST(ResultTest, AParameterAtItsBoundHasAOneSidedInterval) {
+  const Found fit(replaced(fit_job(), "{initial: 100 N s/m}",
+                           "{initial: 100 N s/m, bounds: [1 N s/m, 120 N s/m]}"));
+  const Json& damping = fit.json.at("parameters")[0];
+  EXPECT_EQ(damping.at("verdict"), "at bound");
+  EXPECT_DOUBLE_EQ(damping.at("value"), 120.0);
+  EXPECT_TRUE(damping.at("standard_error").is_null());
+  ASSERT_EQ(damping.at("confidence_interval").size(), 2u);
+  EXPECT_DOUBLE_EQ(damping.at("confidence_interval")[1], 120.0);
+  EXPECT_LT(damping.at("confidence_interval")[0], 120.0);
+  EXPECT_NE(fit.text.find("at bound"), std::string::npos);
+}
+
+TEST(ResultTest, AFixedCouplingAlsoTellsThePredictionError) {
+  const Found fit(fit_job("{coupling: {fixed: 100 1/s}}"));
+  const Json& velocity = fit.json.at("recordings")[0].at("signals")[0];
+  EXPECT_EQ(velocity.at("prediction_rmse"),
+            fit.outcome.first.recordings[0].signals[0].prediction_rmse.value());
+  EXPECT_TRUE(velocity.contains("prediction_reduced_chi_square"));
+  EXPECT_EQ(fit.json.at("coupling_rate"), 100.0);
+  EXPECT_NE(fit.text.find("predicted rmse"), std::string::npos);
+}
+
+TEST(ResultTest, ReportHasEveryFreeParameterAndTheVerdict) {
+  const Found fit(fit_job());
+  const std::string& text = fit.text;
+  for (const char* part : {"B_a  arm viscous friction", "V_L  preamplifier limit", "N s/m", "short",
+                           "judge", "validate", "compare", "motor_current", "151 samples",
+                           "* estimated from differences of the samples"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
+  EXPECT_NE(text.find("\n" + fit.outcome.first.verdict + "\n"), std::string::npos);
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_FALSE(line.ends_with(' ')) << line;
+    EXPECT_EQ(line.find('\t'), std::string::npos);
+  }
+}
+
+/// A CSV text with empty fields as NaN.
+struct Csv {
+  explicit Csv(const std::string& text) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      std::vector<std::string> fields(1);
+      for (const char c : line) {
+        if (c == ',')
+          fields.emplace_back();
+        else
+          fields.back() += c;
+      }
+      if (header.empty()) {
+        header = fields;
+        continue;
+      }
+      rows.emplace_back();
+      for (const std::string& f : fields)
+        rows.back().push_back(f.empty() ? std::nan("") : std::strtod(f.c_str(), nullptr));
+    }
+  }
+  std::vector<std::string> header;
+  std::vector<std::vector<double>> rows;
+};
+
+TEST(ResultTest, ResidualsAreMeasuredMinusSimulated) {
+  const Found fit(fit_job());
+  const Csv csv(residuals_csv(fit.outcome.baseline, fit.outcome.first));
+  ASSERT_EQ(csv.header, (std::vector<std::string>{
+                            "recording", "time_s", "velocity_measured", "velocity_simulated",
+                            "velocity_residual", "motor_current_measured",
+                            "motor_current_simulated", "motor_current_residual"}));
+  ASSERT_EQ(csv.rows.size(), 302u);
+  double squares[2][2] = {};  // recording, signal
+  for (std::size_t i = 0; i < csv.rows.size(); ++i) {
+    const std::vector<double>& row = csv.rows[i];
+    ASSERT_EQ(row.size(), csv.header.size());
+    const std::size_t recording = i / 151, sample = i % 151;
+    EXPECT_EQ(row[0], static_cast<double>(recording + 1));
+    EXPECT_EQ(row[1], fit.outcome.baseline.recordings[recording].times[sample]);
+    EXPECT_EQ(row[2], fit.outcome.baseline.recordings[recording].measurements[0].values[sample]);
+    EXPECT_NEAR(row[4], row[2] - row[3], 1e-8);
+    squares[recording][0] += row[4] * row[4];
+    if (recording == 0) {
+      EXPECT_NEAR(row[7], row[5] - row[6], 1e-6);
+      squares[recording][1] += row[7] * row[7];
+    } else {  // has no current
+      for (std::size_t column = 5; column < 8; ++column) EXPECT_TRUE(std::isnan(row[column]));
+    }
+  }
+  const auto rmse = [&](std::size_t recording, std::size_t signal) {
+    return fit.outcome.first.recordings[recording].signals[signal].rmse;
+  };
+  EXPECT_NEAR(std::sqrt(squares[0][0] / 151.0) / rmse(0, 0), 1.0, 1e-6);
+  EXPECT_NEAR(std::sqrt(squares[0][1] / 151.0) / rmse(0, 1), 1.0, 1e-6);
+  EXPECT_NEAR(std::sqrt(squares[1][0] / 151.0) / rmse(1, 0), 1.0, 1e-6);
+}
+
+TEST(ResultTest, ARecordingThatCannotBeSimulatedHasNoErrors) {
+  // Reading a job refuses an armature without inertia in a gear with backlash.
+  TempFolder folder;
+  write_recordings(folder);
+  JobFile file = read_job_file(folder.write("job.yaml", fit_job("{max_iterations: 1}")));
+  file.job.model.axis.J_m = 0.0;
+  const Outcome outcome = find_outcome(file.job, {.close_loop = true});
+  EXPECT_EQ(outcome.first.status, Status::failed);
+  EXPECT_FALSE(outcome.first.usable);
+  EXPECT_FALSE(outcome.loop.has_value());
+  const Json json = result_json(outcome);
+  EXPECT_EQ(json.at("status"), "failed");
+  EXPECT_TRUE(json.at("recordings")[0].at("signals")[0].at("rmse").is_null());
+  EXPECT_TRUE(json.at("residual").is_null());
+  EXPECT_FALSE(json.contains("closed_loop"));
+  EXPECT_EQ(json.dump().find("nan"), std::string::npos);
+  EXPECT_EQ(json.dump().find("inf,"), std::string::npos);
+  const Csv csv(residuals_csv(outcome.job(), outcome.fit()));
+  EXPECT_EQ(csv.rows.size(), 302u);
+  const std::string text = report_text(outcome);
+  EXPECT_NE(text.find(" - "), std::string::npos);
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+  EXPECT_TRUE(text.ends_with(std::string("\n").append(paragraph(outcome.first.verdict))));
+}
+
+TEST(ResultTest, LongNamesAndNumbersFitInTheWidth) {
+  const TempFolder folder;
+  write_recordings(folder);
+  std::string text = fit_job("{coupling: {fixed: 100 1/s}}");
+  text =
+      replaced(text, "file: short.csv\n", "file: short.csv\n    name: a_recording_of_many_words\n");
+  text = replaced(text, "free:\n",
+                  "effects: {quadratic_drag: {c: 1 N s^2/m^2}, directional_friction: {dB_a: 1 N "
+                  "s/m}, coulomb_friction: {F_c: 1 N}}\nfree:\n"
+                  "  directional_friction.dB_a: {}\n  coulomb_friction.F_c: {}\n"
+                  "  quadratic_drag.c: {initial: 1 N s^2/m^2}\n");
+  Outcome outcome =
+      find_outcome(read_job_file(folder.write("job.yaml", text)).job, {.profiles = {"V_L"}});
+  expect_narrow(
+      forecast_text(outcome.job(), forecast(outcome.job(), draw_start(outcome.job(), 0))));
+  for (ParameterResult& p : outcome.first.parameters) {
+    p.value = -5000311.7;
+    p.uncertainty = {
+        .determined = true, .standard_error = 2812.3, .lower = -5005812.0, .upper = -4994890.0};
+  }
+  const std::string report = report_text(outcome);
+  expect_narrow(report);
+  EXPECT_NE(report.find("\n  directional_friction.dB_a\n"), std::string::npos) << report;
+  EXPECT_NE(report.find("-5.0058e+06 .. -4.9949e+06"), std::string::npos) << report;
+}
+
+TEST(ResultTest, AnExplainedResidualIsSaidToBe) {
+  const Found fit(fit_job());
+  EXPECT_EQ(fit.json.at("residual").at("explained"), true);
+  EXPECT_EQ(fit.json.at("residual").at("suspects"), Json::array());
+  EXPECT_EQ(fit.text.find("Suspects"), std::string::npos);
+  EXPECT_NE(fit.text.find("\nWhat was not fitted is explained down to the noise, too. "),
+            std::string::npos);
+}
+
+TEST(ResultTest, AResidualThatIsNotExplainedNamesItsSuspects) {
+  const Found fit(rubbing_job());
+  const Json& residual = fit.json.at("residual");
+  EXPECT_EQ(residual.at("explained"), false);
+  ASSERT_EQ(residual.at("tests").size(), 2u);
+  const Json& test = residual.at("tests")[1];
+  EXPECT_EQ(test.at("recording"), "judged");
+  EXPECT_EQ(test.at("signal"), "velocity");
+  EXPECT_EQ(test.at("role"), "validate");
+  EXPECT_EQ(test.at("explained"), false);
+  EXPECT_GT(test.at("unexplained_percent"), 90.0);
+  ASSERT_GE(residual.at("suspects").size(), 1u);
+  for (const Json& suspect : residual.at("suspects"))
+    EXPECT_EQ(keys(suspect), (std::vector<std::string>{"name", "slot", "meaning", "share",
+                                                       "strengths", "shapes"}));
+  const auto rubbing = std::ranges::find_if(residual.at("suspects"), [](const Json& suspect) {
+    return suspect.at("name") == "coulomb_friction";
+  });
+  ASSERT_NE(rubbing, residual.at("suspects").end());
+  EXPECT_EQ(rubbing->at("slot"), "friction");
+  EXPECT_EQ(keys(rubbing->at("strengths")[0]), (std::vector<std::string>{"name", "unit", "value"}));
+  EXPECT_EQ(rubbing->at("strengths")[0].at("name"), "coulomb_friction.F_c");
+  EXPECT_GT(rubbing->at("strengths")[0].at("value"), 0.5);
+  for (const char* part : {"\nSuspects", "\n  coulomb_friction ", "\nUnexplained: up to ",
+                           "\nMissing force", "at rest are left out"})
+    EXPECT_NE(fit.text.find(part), std::string::npos) << part << " in\n" << fit.text;
+}
+
+TEST(ResultTest, WhatAResidualDependsOnIsNamed) {
+  Found fit(rubbing_job());
+  for (SeriesTest& test : fit.outcome.diagnosis->tests) test.dependences.clear();
+  fit.outcome.diagnosis->tests[1].dependences = {{"motor angle", 0.25, 1e-9},
+                                                 {"load", 0.125, 1e-5}};
+  const Json dependences = result_json(fit.outcome).at("residual").at("tests")[1].at("dependences");
+  ASSERT_EQ(dependences.size(), 2u);
+  EXPECT_EQ(dependences[0], (Json{{"on", "motor angle"}, {"share", 0.25}, {"p_value", 1e-9}}));
+  EXPECT_NE(report_text(fit.outcome).find(" %  motor angle 25 %, load 12 %\n"), std::string::npos);
+  fit.outcome.diagnosis->explained = true;
+  std::string text = report_text(fit.outcome);
+  std::ranges::replace(text, '\n', ' ');
+  EXPECT_NE(
+      text.find("A trace is left that depends on load, motor angle: at most 25 % of the mean "),
+      std::string::npos);
+}
+
+TEST(ResultTest, ADriftOfUnknownErrorHasNone) {
+  Found fit(rubbing_job());
+  fit.outcome.diagnosis->tests[1].drift.standard_error = INFINITY;
+  const Json drift = result_json(fit.outcome).at("residual").at("tests")[1].at("drift");
+  EXPECT_TRUE(drift.at("standard_error").is_null());  // and no infinity, which becomes one in text
+  EXPECT_TRUE(drift.at("over_sigma_per_second").is_number());
+}
+
+TEST(ResultTest, SamplesAtRestAreCounted) {
+  const Found fit(rubbing_job());
+  const Json& acceleration = fit.json.at("recordings")[0].at("signals")[1];
+  EXPECT_GT(acceleration.at("left_out"), 80);
+  EXPECT_NEAR(acceleration.at("mean_left_out"), 0.0, 0.03);
+  EXPECT_FALSE(fit.json.at("recordings")[0].at("signals")[0].contains("left_out"));
+  Measurement biased;
+  biased.values = {1.0, 0.2, 0.2};
+  biased.sigma = 0.05;
+  biased.left_out = {false, true, true};
+  ASSERT_TRUE(left_out(biased).has_value());
+  EXPECT_EQ(left_out(biased)->samples, 2u);
+  EXPECT_DOUBLE_EQ(left_out(biased)->mean, 0.2);
+  EXPECT_FALSE(left_out(biased)->is_noise);
+}
+
+TEST(ResultTest, FaultsOfInstrumentsAreTold) {
+  const TempFolder folder;
+  write_recordings(folder);
+  const Table good = read_csv(folder.path("short.csv"));
+  const auto told = [&](auto&& spoil) {
+    Table table = good;
+    spoil(table.columns[0].values, table.columns[2].values);
+    folder.write("short.csv", table, 12);
+    const Outcome outcome =
+        find_outcome(read_job_file(folder.write("job.yaml", fit_job())).job, {});
+    return std::pair{report_text(outcome), result_json(outcome)["residual"]["tests"]};
+  };
+  using Values = std::vector<double>;
+  EXPECT_EQ(told([](const Values&, Values&) {}).first.find("Instruments"), std::string::npos);
+
+  const auto [outlier, outlier_test] = told([](const Values&, Values& v) { v[100] += 0.1; });
+  EXPECT_NE(outlier.find("The velocity of short has 1 outlier, "), std::string::npos) << outlier;
+  ASSERT_EQ(outlier_test[0].at("outliers").size(), 1u);
+  EXPECT_DOUBLE_EQ(outlier_test[0].at("outliers")[0].at("time_s"), good.columns[0].values[100]);
+  EXPECT_NEAR(outlier_test[0].at("outliers")[0].at("residual_over_sigma"), 50.0, 5.0);
+
+  const auto [drift, drift_test] = told([](const Values& t, Values& v) {
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] += 0.02 * (t[i] - 0.15);
+  });
+  // The fit takes what it can of it: what it was not fitted to drifts.
+  EXPECT_NE(drift.find("The velocity of judge drifts: "), std::string::npos) << drift;
+  EXPECT_LT(drift_test[1].at("drift").at("p_value"), 1e-3);
+
+  const auto [grid, grid_test] = told([](const Values&, Values& v) {
+    for (double& x : v) x = 0.01 * std::round(x / 0.01);
+  });
+  EXPECT_NE(grid.find("The velocity of short is rounded to steps of 0.01 m/s."), std::string::npos)
+      << grid;
+  EXPECT_NEAR(grid_test[0].at("grid"), 0.01, 1e-9);
+}
+
+/// The job of the rubbing mass, before anything is fitted.
+JobFile rubbing_file() {
+  const TempFolder folder;
+  write_rubbing_mass(folder);
+  return read_job_file(folder.write("job.yaml", rubbing_job()));
+}
+
+/// Text in which runs of blanks and line ends are one blank.
+std::string on_one_line(const std::string& text) {
+  std::istringstream words(text);
+  std::string line;
+  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
+TEST(ResultTest, InstrumentsAreJudgedInTheirUnits) {
+  const Job job = rubbing_file().job;
+  ASSERT_EQ(job.recordings[0].measurements[0].sigma, 0.002);
+  const auto told = [&](const SeriesTest& test) {
+    Diagnosis diagnosis;
+    diagnosis.tests.push_back(test);
+    return on_one_line(instruments_text(job, diagnosis));
+  };
+  SeriesTest drifting;
+  drifting.drift = {.per_second = 3.0, .standard_error = 0.1, .p_value = 1e-6, .span = -4.5};
+  EXPECT_EQ(told(drifting),
+            "The velocity of fitted drifts: its residual changes by 0.006 m/s per second, "
+            "-0.009 m/s in all.");
+  // An outlier's place is one of the series, which lacks what was left out.
+  SeriesTest spoilt;
+  spoilt.series.samples = {10, 20, 50};
+  spoilt.series.values = {4.5, 0.5, -7.5};
+  spoilt.outliers = {0, 2};
+  ASSERT_EQ(job.recordings[0].times[50], 0.2);
+  EXPECT_EQ(told(spoilt),
+            "The velocity of fitted has 2 outliers, the farthest 7.5 times the noise off at 0.2 s: "
+            "bad readings, or an event that comes a sample early or late.");
+}
+
+TEST(ResultTest, OutliersHaveTheTimesOfTheirSamples) {
+  Found fit(rubbing_job());
+  SeriesTest& test = fit.outcome.diagnosis->tests[1];
+  test.series.samples = {10, 20, 50};
+  test.series.values = {4.5, 0.5, -7.5};
+  test.outliers = {0, 2};
+  EXPECT_EQ(result_json(fit.outcome).at("residual").at("tests")[1].at("outliers"),
+            Json::parse(R"([{"time_s": 0.04, "residual_over_sigma": 4.5},
+                            {"time_s": 0.2, "residual_over_sigma": -7.5}])"));
+}
+
+TEST(ResultTest, StrongCorrelationsOfEitherSignAreNamed) {
+  FitResult fit;
+  for (const char* name : {"M", "B_a", "K_f"}) fit.parameters.push_back({name, 1.0, {}});
+  fit.reduced_chi_square = 1.0;
+  fit.correlation = Eigen::Matrix3d{{1.0, 0.96, -0.98}, {0.96, 1.0, 0.94}, {-0.98, 0.94, 1.0}};
+  EXPECT_NE(on_one_line(knowledge_text(fit))
+                .find("Strongly correlated: M and K_f by -0.98, M and B_a by 0.96."),
+            std::string::npos)
+      << knowledge_text(fit);
+}
+
+TEST(ResultTest, TheNextExperimentPredictsWhatIsKnownAfterIt) {
+  Outcome outcome = Found(rubbing_job()).outcome;
+  outcome.wishes.experiment = true;
+  Suggestion& s = outcome.suggestion.emplace();
+  s.experiment = {.motion = StepMotion{}, .duration = 2.0, .words = "a step of 3 V"};
+  s.limits = {.lowest = -1.0, .highest = 1.0, .speed = 0.5, .voltage = 10.0};
+  const auto known = [](double value, double error) {
+    return ParameterUncertainty{.determined = true,
+                                .standard_error = error,
+                                .lower = value - 2.0 * error,
+                                .upper = value + 2.0 * error};
+  };
+  for (const double value : {4.0, 8.0}) {
+    s.now.parameters.push_back(known(value, 0.5));
+    s.predicted.parameters.push_back(known(value, 0.125));
+  }
+  EXPECT_EQ(result_json(outcome).at("next_experiment").at("predicted"), Json::parse(R"([
+    {"name": "M", "standard_error": 0.125, "confidence_interval": [3.75, 4.25]},
+    {"name": "B_a", "standard_error": 0.125, "confidence_interval": [7.75, 8.25]}])"));
+  EXPECT_NE(on_one_line(suggestion_text(outcome))
+                .find("95 % interval now predicted unit M 3.00 .. 5.00 3.75 .. 4.25 kg"),
+            std::string::npos)
+      << suggestion_text(outcome);
+}
+
+TEST(ResultTest, TheTimeOfAFitIsSaidToItsFirstDigit) {
+  Job job;
+  job.options.threads = 1;
+  const auto told = [&](double seconds) {
+    return on_one_line(effort_text(job, {.evaluation = 0.01, .expected = seconds}));
+  };
+  EXPECT_EQ(told(0.9),
+            "The fit will take about a second on this machine with 1 thread; if the model does not "
+            "explain the recordings, up to ten times that.");
+  EXPECT_EQ(told(36.0).find("The fit will take about 40 s on this machine"), 0u);
+  EXPECT_EQ(told(1300.0).find("The fit will take about 20 min on this machine"), 0u);
+  job.options.threads = 3;
+  EXPECT_NE(told(0.9).find("with 3 threads; "), std::string::npos);
+}
+
+TEST(ResultTest, ErrorsOfAHeldSimulationStandBesideTheFreeRunningOnes) {
+  Outcome outcome;
+  outcome.file = rubbing_file();
+  ClosedLoop& loop = outcome.loop.emplace();
+  loop.result.job = outcome.file.job;
+  loop.models.resize(1);
+  SignalScore score{{.fitted = true}, SignalErrors{.rmse = 0.5}, SignalErrors{0.25, 3.0, 1.5}};
+  outcome.scores = {{.signals = {score}, .forces = {{}, {}}}};
+  const auto told = [&] { return on_one_line(loop_text(outcome)); };
+  EXPECT_NE(told().find("Errors of the held simulation, before and after rmse of range red. chi2 "
+                        "free-running rmse fitted, fit: velocity declared 0.25 m/s 3 % 1.5 "
+                        "0.5 m/s "),
+            std::string::npos)
+      << told();
+  outcome.scores[0].signals[0].held.reset();
+  EXPECT_NE(told().find("Errors of the free-running simulation, before and after rmse of range "
+                        "red. chi2 fitted, fit: velocity declared 0.5 m/s 0 % 0 Missing force"),
+            std::string::npos)
+      << told();
+}
+
+TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
+  const Found found(rubbing_job(), true);
+  const Json& json = found.json;
+  EXPECT_EQ(keys(json), (std::vector<std::string>{"schema_version",
+                                                  "version",
+                                                  "status",
+                                                  "usable",
+                                                  "interrupted",
+                                                  "out_of_time",
+                                                  "verdict",
+                                                  "message",
+                                                  "axis",
+                                                  "recordings",
+                                                  "parameters",
+                                                  "reduced_chi_square",
+                                                  "residual",
+                                                  "correlation",
+                                                  "singular_values",
+                                                  "without_influence",
+                                                  "weak_directions",
+                                                  "combinations",
+                                                  "assumptions",
+                                                  "effects",
+                                                  "before",
+                                                  "after",
+                                                  "models",
+                                                  "closed_loop",
+                                                  "coupling_rate",
+                                                  "stages",
+                                                  "starts",
+                                                  "minima",
+                                                  "iterations",
+                                                  "seed",
+                                                  "wall_time_s"}));
+  EXPECT_EQ(keys(json.at("closed_loop")),
+            (std::vector<std::string>{"verdict", "explained", "held_out_blocks", "hints"}));
+  EXPECT_EQ(json.at("closed_loop").at("explained"), true);
+  EXPECT_EQ(json.at("closed_loop").at("held_out_blocks"), false);
+  int accepted = 0;
+  for (const Json& effect : json.at("effects")) {
+    EXPECT_EQ(keys(effect),
+              (std::vector<std::string>{"name", "slot", "meaning", "decision", "accepted", "reason",
+                                        "round", "score", "parameters", "p_value",
+                                        "validate_improvement_percent"}));
+    EXPECT_EQ(effect.at("accepted"), effect.at("decision") == "accepted");
+    EXPECT_NE(effect.at("reason"), "");
+    if (!effect.at("accepted").get<bool>()) continue;
+    ++accepted;
+    EXPECT_EQ(effect.at("name"), "coulomb_friction");
+    EXPECT_EQ(effect.at("parameters")[0].at("name"), "coulomb_friction.F_c");
+    EXPECT_NEAR(effect.at("parameters")[0].at("value"), 6.0, 0.1);
+    EXPECT_LT(effect.at("p_value"), 1e-3);
+    EXPECT_GT(effect.at("validate_improvement_percent"), 50.0);
+  }
+  EXPECT_EQ(accepted, 1);
+
+  ASSERT_EQ(json.at("models").size(), 1u);
+  EXPECT_EQ(json.at("models")[0], json.at("after"));
+  EXPECT_EQ(json.at("before").at("added"), "");
+  EXPECT_EQ(json.at("after").at("added"), "coulomb_friction");
+  for (const char* model : {"before", "after"}) {
+    EXPECT_EQ(keys(json.at(model)), (std::vector<std::string>{"added", "reduced_chi_square",
+                                                              "recordings", "parameters"}));
+    for (const Json& recording : json.at(model).at("recordings")) {
+      EXPECT_EQ(keys(recording),
+                (std::vector<std::string>{"name", "role", "signals", "missing_force"}));
+      EXPECT_EQ(keys(recording.at("missing_force")),
+                (std::vector<std::string>{"rms_n", "noise_n", "cutoff_hz", "drive_rms_n"}));
+      ASSERT_EQ(recording.at("signals").size(), 1u);
+      for (const Json& signal : recording.at("signals"))
+        EXPECT_EQ(keys(signal), (std::vector<std::string>{"name", "unit", "role", "rmse",
+                                                          "nrmse_percent", "reduced_chi_square"}));
+    }
+    for (const Json& parameter : json.at(model).at("parameters"))
+      EXPECT_EQ(keys(parameter),
+                (std::vector<std::string>{"name", "unit", "meaning", "value", "verdict",
+                                          "standard_error", "confidence_interval"}));
+  }
+  EXPECT_GT(json.at("before").at("reduced_chi_square"), 10.0);
+  EXPECT_LT(json.at("after").at("reduced_chi_square"), 1.5);
+  // What stands at the top is the final model's, which is fitted once more.
+  EXPECT_NEAR(json.at("reduced_chi_square"), json.at("after").at("reduced_chi_square"), 1e-4);
+  ASSERT_EQ(json.at("parameters").size(), 3u);
+  EXPECT_EQ(json.at("parameters")[0].at("initial"), 10.0);
+  EXPECT_EQ(json.at("parameters")[2].at("name"), "coulomb_friction.F_c");
+  for (std::size_t r = 0; r < 2; ++r)
+    EXPECT_NEAR(json.at("recordings")[r].at("signals")[0].at("rmse"),
+                json.at("after").at("recordings")[r].at("signals")[0].at("rmse"), 1e-6);
+  expect_finite(json, "");
+
+  for (const char* part :
+       {"  declared  unit\n", "\n  accepted  coulomb_friction ", "\n  refused ",
+        "\n  judged, validate: velocity\n    declared ", "\n    + coulomb_friction ",
+        "Missing force on the arm, before and after"})
+    EXPECT_NE(found.text.find(part), std::string::npos) << part << " in\n" << found.text;
+
+  // residuals.csv and fitted.yaml are of the final model.
+  const Csv csv(residuals_csv(found.outcome.job(), found.outcome.fit()));
+  double squares = 0.0;
+  for (std::size_t i = 0; i < 501; ++i) squares += csv.rows[i][4] * csv.rows[i][4];
+  EXPECT_NEAR(std::sqrt(squares / 501.0) /
+                  json.at("recordings")[0].at("signals")[0].at("rmse").get<double>(),
+              1.0, 1e-5);
+  const TempFolder folder;
+  Rig fitted = found.rig;
+  fitted.model = fitted_model(found.outcome.job(), found.outcome.fit());
+  Diagnostics diagnostics;
+  const auto again =
+      read_axis_file(folder.write("fitted.yaml", format_axis_file(fitted, "")), diagnostics);
+  ASSERT_TRUE(again.has_value());
+  Model<double> model = again->model;
+  EXPECT_EQ(model.structure.effects, fitted.model.structure.effects);
+  EXPECT_EQ(*members(model)[find_quantity("coulomb_friction.F_c")->index],
+            json.at("parameters")[2].at("value").get<double>());
+}
+
+TEST(ResultTest, BlocksHeldOutAreScoredApart) {
+  const Found found(rubbing_job(false), true);
+  EXPECT_EQ(found.json.at("closed_loop").at("held_out_blocks"), true);
+  const Json& signals = found.json.at("after").at("recordings")[0].at("signals");
+  ASSERT_EQ(signals.size(), 2u);
+  std::set<std::string> roles;
+  for (const Json& s : signals) roles.insert(s.at("role").get<std::string>());
+  EXPECT_EQ(roles, (std::set<std::string>{"fit", "held_out"}));
+  EXPECT_NE(found.text.find("fitted, held_out: velocity"), std::string::npos);
+  EXPECT_NE(found.text.find("No recording has the role validate"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace axisfit

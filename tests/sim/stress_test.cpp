@@ -1,0 +1,9 @@
+#include "tests/sim/stress.h"
+
+namespace axisfit {
+namespace {
+
+TEST(HardshipTest, AnyAxisEndsInFiniteReadingsOrIsGivenUp) { expect_endured(0, 300); }
+
+}  // namespace
+}  // namespace axisfit
