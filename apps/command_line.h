@@ -36,8 +36,8 @@ class NarrowHelp : public CLI::Formatter {
                : " " + type.substr(0, type.find(':'));
   }
   std::string make_option_desc(const CLI::Option* option) const override {
-    const std::string standard = option->get_default_str();
-    return option->get_description() + (standard.empty() ? "" : "; default: " + standard);
+    const std::string default_text = option->get_default_str();
+    return option->get_description() + (default_text.empty() ? "" : "; default: " + default_text);
   }
   std::string make_option(const CLI::Option* option, bool positional) const override {
     constexpr std::size_t kColumn = 28;
@@ -62,7 +62,7 @@ int run_program(CLI::App& app, int argc, char** argv, Work&& work) {
     for (const CLI::Option* option : app.get_options())
       for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
     for (const std::string& unknown : app.remaining())
-      if (const std::string meant = nearest(unknown, options);
+      if (const std::string meant = closest_match(unknown, options);
           unknown.starts_with("-") && !meant.empty())
         std::cerr << "Did you mean " << meant << "?\n";
     return kBadInput;
@@ -71,8 +71,8 @@ int run_program(CLI::App& app, int argc, char** argv, Work&& work) {
   try {
     return work();
   } catch (const std::bad_alloc&) {
-    std::cerr << "out of memory: this takes more than the machine has, or a limit (ulimit -v) "
-                 "allows\n";
+    std::cerr
+        << "out of memory: this needs more than the machine has or a limit (ulimit -v) allows\n";
     return kBadInput;
   } catch (const std::exception& error) {  // ConfigError's text has a line for each mistake
     std::cerr << error.what() << '\n';

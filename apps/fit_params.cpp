@@ -44,13 +44,13 @@ constexpr const char* kMotionFile = "next-motion.yaml";
 enum ExitCode {  // besides kBadInput
   kUsable = 0,
   kNoUsableFit = 3,
-  kOutOfTime = 124,  // as that of timeout(1)
+  kTimeLimitReached = 124,  // as that of timeout(1)
   kInterrupted = 130,
 };
 
 // The first signal ends the work, a second one the program.
 StopFlag stop_flag = false;
-StopFlag out_of_time = false;  // that was the time limit
+StopFlag time_limit_reached = false;  // that was the time limit
 static_assert(StopFlag::is_always_lock_free);
 
 void stop_on_signals() {
@@ -63,17 +63,17 @@ void stop_on_signals() {
 
 void stop_after(double seconds) {
   struct sigaction action = {};
-  action.sa_handler = [](int) { out_of_time = !stop_flag.exchange(true); };
+  action.sa_handler = [](int) { time_limit_reached = !stop_flag.exchange(true); };
   action.sa_flags = SA_RESTART;
   sigaction(SIGALRM, &action, nullptr);
-  const double whole = std::floor(seconds);
+  const double complete = std::floor(seconds);
   const itimerval once{{0, 0},
-                       {static_cast<time_t>(whole),
-                        static_cast<suseconds_t>(std::ceil(999'999.0 * (seconds - whole)))}};
+                       {static_cast<time_t>(complete),
+                        static_cast<suseconds_t>(std::ceil(999'999.0 * (seconds - complete)))}};
   setitimer(ITIMER_REAL, &once, nullptr);
 }
 
-int exit_code_of_stop() { return out_of_time ? kOutOfTime : kInterrupted; }
+int exit_code_of_stop() { return time_limit_reached ? kTimeLimitReached : kInterrupted; }
 
 struct Arguments {
   std::string command;             // as one would type it
@@ -84,7 +84,7 @@ struct Arguments {
   std::string axis;
   bool init = false;
   bool check = false;
-  Wishes wishes;
+  RunOptions run_options;
   bool resume = false;
   bool json = false;
   bool quiet = false;
@@ -108,7 +108,7 @@ Exit codes: 0 usable fit, 2 bad input, 3 no usable fit, 124 stopped by the time
 limit, 130 by Ctrl-C.)";
 
 /// Begins at the values of another axis, as far as it has them, instead of the job's initial ones.
-void begin_at(const std::string& axis_file, Job& job) {
+void start_from(const std::string& axis_file, Job& job) {
   Diagnostics diagnostics;
   auto rig = read_axis_file(axis_file, diagnostics);
   diagnostics.throw_if_any();
@@ -129,16 +129,16 @@ std::string for_stdout(const std::string& report) {
 
 /// What the recordings show and can tell, before the fit.
 int check(const Arguments& arguments, const Job& job, std::optional<ProgressLine>& line) {
-  line->tell({"looking at what the recordings can tell"});
+  line->update({"checking what the recordings determine"});
   const Forecast found = forecast(job, draw_start(job, 0));
-  const Effort effort = expected_effort(job);
+  const RunTimeEstimate run_time = estimate_run_time(job);
   const std::vector<RecordingCheck> recordings = check_recordings(job);
   line.reset();
   if (arguments.json)
-    print(check_json(job, recordings, found, effort).dump(2) + "\n");
+    print(check_json(job, recordings, found, run_time).dump(2) + "\n");
   else if (!arguments.quiet)
     print(for_stdout(recordings_text(job, recordings) + "\n" + forecast_text(job, found) + "\n" +
-                     effort_text(job, effort)));
+                     run_time_text(job, run_time)));
   return kUsable;
 }
 
@@ -146,25 +146,25 @@ int check(const Arguments& arguments, const Job& job, std::optional<ProgressLine
 int init(const Arguments& arguments, std::optional<ProgressLine>& line) {
   namespace fs = std::filesystem;
   const fs::path folder = arguments.output.empty() ? "." : arguments.output;
-  const InitialJob made = initial_job(arguments.files, arguments.axis, folder.string());
+  const InitialJob created = initial_job(arguments.files, arguments.axis, folder.string());
   const auto path = [&](const std::string& name) {
     return (folder / name).lexically_normal().string();
   };
   line.reset();
-  for (const auto& [name, contents] : made.files)
+  for (const auto& [name, contents] : created.files)
     if (fs::exists(path(name)))
       throw std::runtime_error(
-          fmt::format("{} is there already and would be overwritten: move it away, or name another "
+          fmt::format("{} already exists and would be overwritten: move it, or choose another "
                       "folder with --output",
                       path(name)));
   fs::create_directories(folder);
-  for (const auto& [name, contents] : made.files) write_file(path(name), contents);
+  for (const auto& [name, contents] : created.files) write_file(path(name), contents);
   if (arguments.quiet) return kUsable;
   std::string text;
-  for (const auto& [name, contents] : made.files) text += fmt::format("Written: {}\n", path(name));
-  if (!made.guesses.empty()) text += "To look at, for nothing in the recordings says it\n";
-  for (const std::string& guess : made.guesses) text += paragraph(guess, 2);
-  const std::string job = path(made.files.back().first);
+  for (const auto& [name, contents] : created.files) text += fmt::format("Wrote {}\n", path(name));
+  if (!created.guesses.empty()) text += "Guessed, please check\n";
+  for (const std::string& guess : created.guesses) text += paragraph(guess, 2);
+  const std::string job = path(created.files.back().first);
   std::cerr << text << fmt::format("Next: fit-params {} --check\n      fit-params {}\n", job, job);
   return kUsable;
 }
@@ -180,39 +180,40 @@ std::string quoted(const std::string& path) {
 }
 
 /// The command line, as one would type it.
-std::string typed(int argc, char** argv) {
+std::string command_line_of(int argc, char** argv) {
   std::string line = "fit-params";
   for (int i = 1; i < argc; ++i) line += " " + quoted(argv[i]);
   return line;
 }
 
-Files files_of(const Arguments& arguments, const JobFile& file, const Outcome& outcome,
+Files files_of(const Arguments& arguments, const JobFile& file, const RunResult& run_result,
                const std::string& json) {
   Rig fitted = file.rig;
-  fitted.model = fitted_model(outcome.job(), outcome.fit());
+  fitted.model = fitted_model(run_result.job(), run_result.fit());
   const std::string origin = fmt::format("axisfit {} from {}, starting from {}", version(),
                                          arguments.files.front(), file.axis_file);
-  Files files{{kResultFile, json},
-              {kAxisFile, format_axis_file(fitted, fmt::format("Fitted by {}.\n{}", origin,
-                                                               verdict_of(outcome)))},
-              {kResidualsFile, residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis)},
-              {kReportFile, report_page(outcome, {arguments.command, arguments.files.front(),
-                                                  file.text, file.axis_file, file.axis_text})}};
-  if (const Experiment* next = next_experiment(outcome)) {
-    files.emplace_back(
-        kMotionFile, format_motion_file({next->motion, next->duration},
-                                        fmt::format("Suggested by {}:\n{}.", origin, next->words)));
+  Files files{
+      {kResultFile, json},
+      {kAxisFile, format_axis_file(fitted, fmt::format("Fitted by {}.\n{}", origin,
+                                                       overall_verdict(run_result)))},
+      {kResidualsFile, residuals_csv(run_result.job(), run_result.fit(), run_result.diagnosis)},
+      {kReportFile, report_page(run_result, {arguments.command, arguments.files.front(), file.text,
+                                             file.axis_file, file.axis_text})}};
+  if (const Experiment* next = next_experiment(run_result)) {
+    files.emplace_back(kMotionFile, format_motion_file({next->motion, next->duration},
+                                                       fmt::format("Suggested by {}:\n{}.", origin,
+                                                                   next->description)));
   }
   return files;
 }
 
 /// How to go on after Ctrl-C or the time limit.
-std::string advice(const Arguments& arguments) {
+std::string how_to_continue(const Arguments& arguments) {
   if (arguments.output.empty())
     return "\n" + paragraph(
-                      "Nothing is written: with --output FOLDER the result is kept, also when "
-                      "stopped, and --resume goes on from there.");
-  return fmt::format("\nTo go on from here:\n  {}{}\n", arguments.command,
+                      "Nothing was saved. With --output FOLDER, results are saved even when a run "
+                      "is stopped, and --resume continues it.");
+  return fmt::format("\nTo continue:\n  {}{}\n", arguments.command,
                      arguments.resume ? "" : " --resume");
 }
 
@@ -229,18 +230,19 @@ std::unique_ptr<OutputFolder> open_folder(const Arguments& arguments, Job& job,
       std::vector<std::string>{kResultFile, kAxisFile, kResidualsFile, kReportFile, kMotionFile});
   JournalFile& journal = folder->journal();
   job.options.journal = &journal;
-  const std::string found =
-      fmt::format("{} solved problem{}", journal.earlier(), journal.earlier() == 1 ? "" : "s");
+  const std::string found = fmt::format("{} solved least-squares problem{}", journal.recovered(),
+                                        journal.recovered() == 1 ? "" : "s");
   std::string note;
   if (arguments.resume) {
-    journal.go_on();
-    note = journal.earlier() > 0
-               ? fmt::format("Going on with the run that ended in {}: {}.", arguments.output, found)
-               : fmt::format("No unfinished run in {}: beginning anew.", arguments.output);
-  } else if (journal.earlier() > 0) {
+    journal.resume();
+    note = journal.recovered() > 0
+               ? fmt::format("Resuming the run in {}: {}.", arguments.output, found)
+               : fmt::format("No unfinished run in {}: starting from the beginning.",
+                             arguments.output);
+  } else if (journal.recovered() > 0) {
     note = fmt::format(
-        "{} has {} of a run that did not end. This one begins anew; to go on with that one, stop "
-        "this and add --resume.",
+        "{} has {} from an unfinished run. This run starts from the beginning; to resume the "
+        "unfinished one, stop this run and add --resume.",
         arguments.output, found);
   }
   if (!arguments.quiet && !note.empty()) {
@@ -252,7 +254,7 @@ std::unique_ptr<OutputFolder> open_folder(const Arguments& arguments, Job& job,
 }
 
 /// Whether a folder holds the whole result of a usable fit.
-bool holds_whole_result(const std::string& folder) {
+bool holds_complete_result(const std::string& folder) {
   std::ifstream file(std::filesystem::path(folder) / kResultFile);
   const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
   const auto is = [&](const char* key, bool value) {
@@ -262,36 +264,37 @@ bool holds_whole_result(const std::string& folder) {
 }
 
 /// Writes the result, unless that would replace a better one.
-void write(const Arguments& arguments, const JobFile& file, const Outcome& outcome,
+void write(const Arguments& arguments, const JobFile& file, const RunResult& run_result,
            const std::string& json, OutputFolder& folder) {
-  const bool whole = !outcome.interrupted;
-  if ((!whole || !outcome.fit().usable) && holds_whole_result(arguments.output)) {
-    std::cerr << paragraph(fmt::format(
-        "{} keeps the usable result that it holds. To write this one, name another folder with "
-        "--output.",
-        arguments.output));
-    if (whole) folder.forget();
+  const bool complete = !run_result.interrupted;
+  if ((!complete || !run_result.fit().usable) && holds_complete_result(arguments.output)) {
+    std::cerr << paragraph(
+        fmt::format("{} already holds a usable result, which was kept. To save this one, choose "
+                    "another folder with --output.",
+                    arguments.output));
+    if (complete) folder.discard_journal();
     return;
   }
-  folder.write(files_of(arguments, file, outcome, json), whole);
+  folder.write(files_of(arguments, file, run_result, json), complete);
 }
 
-int run(const Arguments& arguments) {
+int run_command(const Arguments& arguments) {
   std::optional<ProgressLine> line;
   begin_line(arguments, line);
-  line->tell({"reading the recordings"});
+  line->update({"reading the recordings"});
   if (arguments.init) return init(arguments, line);
   if (arguments.files.size() > 1)
-    throw std::runtime_error(fmt::format(
-        "one job at a time: {} is one too many (to make a job for recordings, say --init)",
-        arguments.files[1]));
+    throw std::runtime_error(
+        fmt::format("only one job file can be given; unexpected: {} (to create a job from "
+                    "recordings, use --init)",
+                    arguments.files[1]));
   const std::string& job = arguments.files.front();
   for (const char* ending : {".csv", ".mat"})
     if (job.ends_with(ending))
       throw std::runtime_error(fmt::format(
-          "{} is a recording; a job for it is made by: fit-params --init {}", job, quoted(job)));
+          "{} is a recording; to create a job for it: fit-params --init {}", job, quoted(job)));
   JobFile file = read_job_file(job, arguments.data);
-  if (!arguments.from.empty()) begin_at(arguments.from, file.job);
+  if (!arguments.from.empty()) start_from(arguments.from, file.job);
   FitOptions& options = file.job.options;
   if (arguments.threads) options.threads = *arguments.threads;
   if (arguments.starts) options.starts = *arguments.starts;
@@ -299,65 +302,66 @@ int run(const Arguments& arguments) {
   if (arguments.check) return check(arguments, file.job, line);
   const std::unique_ptr<OutputFolder> folder = open_folder(arguments, file.job, line);
 
-  Outcome outcome = find_outcome(file.job, arguments.wishes,
-                                 [&](const Progress& progress) { line->tell(progress); });
-  outcome.out_of_time = outcome.interrupted && out_of_time;
-  const std::string json = result_json(outcome).dump(2) + "\n";
+  RunResult run_result = run(file.job, arguments.run_options,
+                             [&](const Progress& progress) { line->update(progress); });
+  run_result.time_limit_reached = run_result.interrupted && time_limit_reached;
+  const std::string json = result_json(run_result).dump(2) + "\n";
   line.reset();
 
   // What was found is shown before anything can go wrong with writing it.
   if (arguments.json)
     print(json);
   else if (!arguments.quiet)
-    print(for_stdout(report_text(outcome)));
-  if (folder) write(arguments, file, outcome, json, *folder);
-  if (outcome.interrupted) {
-    if (!arguments.quiet) std::cerr << advice(arguments);
+    print(for_stdout(report_text(run_result)));
+  if (folder) write(arguments, file, run_result, json, *folder);
+  if (run_result.interrupted) {
+    if (!arguments.quiet) std::cerr << how_to_continue(arguments);
     return exit_code_of_stop();
   }
-  return outcome.fit().usable ? kUsable : kNoUsableFit;
+  return run_result.fit().usable ? kUsable : kNoUsableFit;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Arguments arguments;
-  CLI::App app{"Fits the model of a robot axis to recordings of it, as a job file describes.",
+  CLI::App app{"Fits the model of a robot axis to recordings, as described by a job file.",
                "fit-params"};
   app.footer(kExamples);
   app.add_option("JOB.yaml", arguments.files,
-                 "the job file (docs/job-file.md); with --init recordings, CSV or MATLAB")
+                 "job file (docs/job-file.md); with --init, recordings (CSV or MATLAB)")
       ->required();
-  auto* close =
-      app.add_flag("--close-loop", arguments.wishes.close_loop,
-                   "then add the effects that the model lacks, each checked by data not fitted");
+  auto* close = app.add_flag("--close-loop", arguments.run_options.select_effects,
+                             "after the fit, add effects that the model lacks, each validated on "
+                             "data that were not fitted");
   std::string profiles;
-  auto* profile = app.add_flag("--profile{all}", profiles,
-                               "likelihood profiles: of all parameters, or --profile=NAME,NAME");
-  auto* experiment = app.add_flag("--suggest-experiment", arguments.wishes.experiment,
-                                  "say which motion to record next; next-motion.yaml in --output");
+  auto* profile =
+      app.add_flag("--profile{all}", profiles,
+                   "likelihood profiles of all parameters, or of some: --profile=NAME,NAME");
+  auto* experiment =
+      app.add_flag("--suggest-experiment", arguments.run_options.experiment,
+                   "suggest the motion to record next; written to next-motion.yaml in --output");
   auto* check = app.add_flag("--check", arguments.check,
-                             "do not fit: say what the recordings show, what they can tell of the "
-                             "free parameters, and how long the fit will take")
+                             "do not fit; report what the recordings contain, which free "
+                             "parameters they determine, and how long the fit will take")
                     ->excludes(close)
                     ->excludes(profile)
                     ->excludes(experiment);
-  auto* data =
-      app.add_option("--data", arguments.data, "folder of the recordings, if not the job file's")
-          ->type_name("FOLDER");
+  auto* data = app.add_option("--data", arguments.data,
+                              "folder of the recordings, if not that of the job file")
+                   ->type_name("FOLDER");
   auto* from = app.add_option("--from", arguments.from,
-                              "begin at the values of this axis file, such as a fitted.yaml")
+                              "start from the values of this axis file, such as fitted.yaml")
                    ->type_name("AXIS.yaml");
-  auto* output =
-      app.add_option("--output", arguments.output,
-                     "folder for report.html, result.json, fitted.yaml and residuals.csv; with "
-                     "--init for the job")
-          ->type_name("FOLDER");
-  auto* json = app.add_flag("--json", arguments.json, "print result.json instead of the table");
-  app.add_flag("--quiet", arguments.quiet, "print nothing but errors")->excludes(json);
+  auto* output = app.add_option("--output", arguments.output,
+                                "folder for report.html, result.json, fitted.yaml and "
+                                "residuals.csv; with --init, for the job")
+                     ->type_name("FOLDER");
+  auto* json = app.add_flag("--json", arguments.json, "print result.json instead of the tables");
+  app.add_flag("--quiet", arguments.quiet, "print errors only")->excludes(json);
   auto* init = app.add_flag("--init", arguments.init,
-                            "write job.yaml, and axis.yaml, for recordings: columns, units and "
-                            "signals as their names and values tell")
+                            "create job.yaml and axis.yaml from recordings; columns, units and "
+                            "signals are inferred from names and values")
                    ->excludes(close)
                    ->excludes(profile)
                    ->excludes(experiment)
@@ -366,41 +370,41 @@ int main(int argc, char** argv) {
                    ->excludes(from)
                    ->excludes(json);
   app.add_flag("--resume", arguments.resume,
-               "go on with a run that was stopped or killed, from what it left in --output")
+               "resume a run that was stopped or killed, from its journal in --output")
       ->needs(output)
       ->excludes(init)
       ->excludes(check);
-  app.add_option("--axis", arguments.axis, "with --init: the axis file, if there is one")
+  app.add_option("--axis", arguments.axis, "with --init: use this axis file")
       ->needs(init)
       ->type_name("AXIS.yaml");
   app.add_option("--threads", arguments.threads, "number of threads; default: all cores")
       ->check(CLI::Range(1, 1024));
-  app.add_option("--seed", arguments.seed, "seed of the random starts; default: the job's")
+  app.add_option("--seed", arguments.seed, "seed of the random starts; default: as in the job")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--starts", arguments.starts,
-                 "number of starts, the first from the initial values; default: the job's")
+                 "number of starts, the first from the initial values; default: as in the job")
       ->check(CLI::Range(1, 1000000));
-  app.add_option("--time-limit", arguments.wishes.time_limit,
-                 "stop after so many seconds and keep what is finished, as by Ctrl-C")
+  app.add_option("--time-limit", arguments.run_options.time_limit,
+                 "stop after this many seconds and keep what is finished, as Ctrl-C does")
       ->check(CLI::Range(0.001, 1e8))
       ->excludes(init)
       ->excludes(check)
       ->type_name("SECONDS");
   return run_program(app, argc, argv, [&] {
-    arguments.command = typed(argc, argv);
+    arguments.command = command_line_of(argc, argv);
     for (std::istringstream names(profiles); std::getline(names, profiles, ',');)
-      arguments.wishes.profiles.push_back(profiles);
-    arguments.wishes.stop = &stop_flag;
+      arguments.run_options.profiles.push_back(profiles);
+    arguments.run_options.stop = &stop_flag;
     stop_flag = arguments.init || arguments.check;  // there is nothing to keep
     stop_on_signals();
-    if (arguments.wishes.time_limit) stop_after(*arguments.wishes.time_limit);
+    if (arguments.run_options.time_limit) stop_after(*arguments.run_options.time_limit);
     try {
-      return run(arguments);
+      return run_command(arguments);
     } catch (const Interrupted&) {
       if (!arguments.quiet)
-        std::cerr << fmt::format("Stopped{} before a fit was finished: there is no result.\n",
-                                 out_of_time ? " by the time limit" : "")
-                  << advice(arguments);
+        std::cerr << fmt::format("Stopped{} before any fit finished: there is no result.\n",
+                                 time_limit_reached ? " by the time limit" : "")
+                  << how_to_continue(arguments);
       return exit_code_of_stop();
     }
   });

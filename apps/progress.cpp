@@ -96,7 +96,7 @@ ProgressLine::~ProgressLine() {
   clear_line();
 }
 
-void ProgressLine::tell(Progress progress) {
+void ProgressLine::update(Progress progress) {
   const std::lock_guard lock(mutex_);
   // A count that goes on is that of the same phase, whatever it deals with at the moment.
   if (progress.of != progress_.of || progress.done < progress_.done) phase_begin_ = Clock::now();

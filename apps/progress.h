@@ -38,7 +38,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  void tell(Progress progress);
+  void update(Progress progress);
 
  private:
   using Clock = std::chrono::steady_clock;

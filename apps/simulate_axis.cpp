@@ -59,21 +59,21 @@ void change(const std::string& text, Model<double>& model) {
   diagnostics.throw_if_any();
 }
 
-void run(Arguments arguments) {
+void run_command(Arguments arguments) {
   Diagnostics diagnostics;
   auto rig = read_axis_file(arguments.axis, diagnostics);
   diagnostics.throw_if_any();
   for (const std::string& text : arguments.changes) change(text, rig->model);
-  if (const std::string reason = refusal(rig->model); !reason.empty())
+  if (const std::string reason = model_error(rig->model); !reason.empty())
     throw std::runtime_error(reason);
   const MotionFile motion = read_motion_file(arguments.motion, *rig);
   RecordingOptions& options = arguments.recording;
-  constexpr double kMostRows = 2e7;
-  if (motion.duration * options.rate > kMostRows)
-    throw std::runtime_error(fmt::format(
-        "{}: {:g} s at {:g} samples per second are more than {:g} rows: choose a shorter "
-        "duration or a lower --rate",
-        arguments.motion, motion.duration, options.rate, kMostRows));
+  constexpr double kMaxRows = 2e7;
+  if (motion.duration * options.rate > kMaxRows)
+    throw std::runtime_error(
+        fmt::format("{}: {:g} s at {:g} samples per second give more than {:g} rows: choose a "
+                    "shorter duration or a lower --rate",
+                    arguments.motion, motion.duration, options.rate, kMaxRows));
   options.duration = motion.duration;
   options.noise = !arguments.exact;
   for (const std::string& name : arguments.signals) {
@@ -88,7 +88,7 @@ void run(Arguments arguments) {
   std::ostringstream text;
   {
     ProgressLine line(is_terminal(STDERR_FILENO));
-    line.tell({"simulating"});
+    line.update({"simulating"});
     write_csv(text, record(*rig, motion.motion, options), arguments.exact ? 0 : 9);
   }
   if (arguments.output.empty())
@@ -106,21 +106,21 @@ int main(int argc, char** argv) {
   for (const SignalInfo& signal : kSignalTable) signals.emplace_back(signal.name);
   arguments.signals = {"position", "velocity", "acceleration", "tachometer", "motor_current"};
   CLI::App app{
-      "Runs an axis through a motion and records it as a rig would: sampled, with noise, "
-      "encoder counts, sensor bias and gain.",
+      "Simulates a motion of an axis and records it as a test rig would: sampled, with noise, "
+      "encoder quantisation, and sensor bias and gain.",
       "simulate-axis"};
   app.footer(kExamples);
-  app.add_option("AXIS.yaml", arguments.axis, "the axis (docs/axis-file.md)")->required();
-  app.add_option("MOTION.yaml", arguments.motion, "the motion (docs/motion-file.md)")->required();
+  app.add_option("AXIS.yaml", arguments.axis, "axis file (docs/axis-file.md)")->required();
+  app.add_option("MOTION.yaml", arguments.motion, "motion file (docs/motion-file.md)")->required();
   app.add_option("-o,--output", arguments.output, "CSV file; default: standard output")
       ->type_name("FILE");
-  app.add_option("--set", arguments.changes, "change a quantity; the value has its unit")
+  app.add_option("--set", arguments.changes, "change a quantity; give the value with its unit")
       ->take_all()
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   const auto* chosen =
       app.add_option("--signals", arguments.signals,
-                     fmt::format("signals to record, of {}", fmt::join(signals, ", ")))
+                     fmt::format("signals to record: any of {}", fmt::join(signals, ", ")))
           ->check(CLI::IsMember(signals))
           ->option_text("NAME ...")
           ->default_str(fmt::format("{}", fmt::join(arguments.signals, ", ")));
@@ -130,11 +130,11 @@ int main(int argc, char** argv) {
   app.add_option("--seed", arguments.recording.seed, "seed of the noise")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.add_flag("--exact", arguments.exact, "no noise, encoder not quantised, all digits");
+  app.add_flag("--exact", arguments.exact, "no noise, no encoder quantisation, all digits");
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, end_by_signal);
   return run_program(app, argc, argv, [&] {
     arguments.signals_given = chosen->count() > 0;
-    run(std::move(arguments));
+    run_command(std::move(arguments));
     return 0;
   });
 }

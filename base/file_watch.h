@@ -25,7 +25,7 @@ class FileWatch {
 
   /// What messages say of it.
   static constexpr const char* kMessage =
-      "was changed while it was being read; wait until it is complete, and begin again";
+      "changed while it was being read; wait until it is complete and try again";
 
  private:
   struct stat state() const {

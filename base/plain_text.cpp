@@ -45,15 +45,15 @@ std::size_t find_invalid_utf8(std::string_view text) {
   return std::string_view::npos;
 }
 
-std::string harmless(std::string_view text) {
+std::string sanitized(std::string_view text) {
   std::string result;
   result.reserve(text.size());
   while (!text.empty()) {
     const std::size_t valid = std::min(find_invalid_utf8(text), text.size());
-    for (std::string_view rest = text.substr(0, valid); !rest.empty();) {
-      const std::size_t control = control_size(rest);
-      result += control > 0 ? '?' : rest.front();
-      rest.remove_prefix(std::max<std::size_t>(control, 1));
+    for (std::string_view remaining = text.substr(0, valid); !remaining.empty();) {
+      const std::size_t control = control_size(remaining);
+      result += control > 0 ? '?' : remaining.front();
+      remaining.remove_prefix(std::max<std::size_t>(control, 1));
     }
     if (valid < text.size()) result += '?';
     text.remove_prefix(std::min(valid + 1, text.size()));
@@ -61,7 +61,7 @@ std::string harmless(std::string_view text) {
   return result;
 }
 
-bool is_harmless(std::string_view text) { return harmless(text) == text; }
+bool is_sanitized(std::string_view text) { return sanitized(text) == text; }
 
 std::string shortened(std::string_view text, std::size_t most) {
   if (text.size() <= most) return std::string(text);

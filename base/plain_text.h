@@ -13,10 +13,10 @@ std::size_t find_invalid_utf8(std::string_view text);
 
 /// A text as one line that every reader takes: what breaks lines, controls a terminal or is no
 /// UTF-8 becomes a question mark.
-std::string harmless(std::string_view text);
+std::string sanitized(std::string_view text);
 
-/// Whether harmless() leaves a text as it is.
-bool is_harmless(std::string_view text);
+/// Whether sanitized() leaves a text as it is.
+bool is_sanitized(std::string_view text);
 
 /// The text; of a long one as many whole characters as fit so many bytes, and "...".
 std::string shortened(std::string_view text, std::size_t most = 60);

@@ -13,15 +13,15 @@ namespace axisfit {
 namespace {
 
 /// Does the work as the other process, which ends here.
-[[noreturn]] void answer(const std::function<std::string()>& work, int pipe) {
+[[noreturn]] void run_and_exit(const std::function<std::string()>& work, int pipe) {
   // A crash is an answer too, and nothing to be told of by whoever handles signals.
   for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL}) ::signal(signal, SIG_DFL);
   try {
     const std::string text = work();
-    for (std::string_view rest = text; !rest.empty();) {
-      const ssize_t n = ::write(pipe, rest.data(), rest.size());
+    for (std::string_view remaining = text; !remaining.empty();) {
+      const ssize_t n = ::write(pipe, remaining.data(), remaining.size());
       if (n < 0 && errno != EINTR) ::_exit(1);
-      if (n > 0) rest.remove_prefix(static_cast<std::size_t>(n));
+      if (n > 0) remaining.remove_prefix(static_cast<std::size_t>(n));
     }
   } catch (...) {
     ::_exit(1);
@@ -42,27 +42,27 @@ std::string read_all(int pipe) {
 
 }  // namespace
 
-std::optional<std::string> run_apart(const std::function<std::string()>& work) {
+std::optional<std::string> run_in_subprocess(const std::function<std::string()>& work) {
   const auto fail = [] {
     throw std::system_error(errno, std::generic_category(), "cannot start another process");
   };
   std::array<int, 2> ends{};
   if (::pipe(ends.data()) != 0) fail();
-  const pid_t other = ::fork();
-  if (other < 0) {
+  const pid_t child = ::fork();
+  if (child < 0) {
     ::close(ends[0]);
     ::close(ends[1]);
     fail();
   }
-  if (other == 0) {
+  if (child == 0) {
     ::close(ends[0]);
-    answer(work, ends[1]);
+    run_and_exit(work, ends[1]);
   }
   ::close(ends[1]);
   std::string text = read_all(ends[0]);
   ::close(ends[0]);
   int status = 0;
-  while (::waitpid(other, &status, 0) < 0 && errno == EINTR) {
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return std::nullopt;
   return text;

@@ -41,7 +41,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string nearest(std::string_view name, std::span<const std::string> candidates) {
+std::string closest_match(std::string_view name, std::span<const std::string> candidates) {
   const std::string folded = lower(name);
   const std::string* best = nullptr;
   std::pair<std::size_t, std::size_t> best_distance;  // case ignored, then case respected

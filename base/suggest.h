@@ -13,6 +13,6 @@ namespace axisfit {
 // ASCII case ignored: at most a third of the longer name, though never fewer than two, and no more
 // than half of its characters. Among equally close candidates the one with the more similar case
 // wins, then the first.
-std::string nearest(std::string_view name, std::span<const std::string> candidates);
+std::string closest_match(std::string_view name, std::span<const std::string> candidates);
 
 }  // namespace axisfit

@@ -24,7 +24,7 @@ constexpr std::pair<std::string_view, fmt::terminal_color> kVerdicts[]{
     {"No usable fit", fmt::terminal_color::red},
     {"Usable fit", fmt::terminal_color::green},
     {"Unexplained", fmt::terminal_color::yellow},
-    {"Stopped before all was finished", fmt::terminal_color::yellow},
+    {"Stopped early", fmt::terminal_color::yellow},
     {"  accepted  ", fmt::terminal_color::green},
     {"  undecided  ", fmt::terminal_color::yellow},
     {"weakly determined", fmt::terminal_color::yellow},

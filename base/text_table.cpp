@@ -29,15 +29,16 @@ std::vector<std::string> broken(const std::string& text, std::size_t width) {
 }
 
 constexpr std::size_t kIndent = 2, kGap = 2;
-constexpr std::size_t kLeastWrapped = 20;  ///< width of a column to wrap in
+constexpr std::size_t kMinWrappedWidth = 20;  ///< width of a column to wrap in
 
 /// The widths of the columns, where the first is left no more than there is room for.
 std::vector<std::size_t> widths_of(const std::vector<std::vector<std::string>>& rows,
-                                   const std::vector<Set>& set) {
-  std::vector<std::size_t> width(set.size(), 0);
+                                   const std::vector<Alignment>& alignment) {
+  std::vector<std::size_t> width(alignment.size(), 0);
   for (const auto& row : rows)
     for (std::size_t c = 0; c < row.size(); ++c)
-      width[c] = set[c] == Set::wrapped ? kLeastWrapped : std::max(width[c], width_of(row[c]));
+      width[c] = alignment[c] == Alignment::wrapped ? kMinWrappedWidth
+                                                    : std::max(width[c], width_of(row[c]));
   const std::size_t others =
       std::accumulate(width.begin() + 1, width.end(), kIndent) + kGap * (width.size() - 1);
   const std::size_t room = kTextWidth - std::min(others, kTextWidth);
@@ -56,18 +57,18 @@ std::size_t width_of(std::string_view text) {
       std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-std::string aligned(const std::vector<std::vector<std::string>>& rows,
-                    const std::vector<Set>& set) {
-  const std::vector<std::size_t> width = widths_of(rows, set);
+std::string format_table(const std::vector<std::vector<std::string>>& rows,
+                         const std::vector<Alignment>& alignment) {
+  const std::vector<std::size_t> width = widths_of(rows, alignment);
   std::string text;
   for (const auto& row : rows) {
     std::string line(kIndent, ' ');
     for (std::size_t c = 0; c < row.size(); ++c) {
       if (c > 0) line += std::string(kGap, ' ');
-      if (set[c] == Set::wrapped) {
+      if (alignment[c] == Alignment::wrapped) {
         const std::size_t indent = width_of(line);
         const auto lines =
-            broken(row[c], kTextWidth - std::min(indent, kTextWidth - kLeastWrapped));
+            broken(row[c], kTextWidth - std::min(indent, kTextWidth - kMinWrappedWidth));
         for (std::size_t i = 0; i < lines.size(); ++i)
           line += (i > 0 ? "\n" + std::string(indent, ' ') : "") + lines[i];
         continue;
@@ -80,7 +81,7 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows,
         continue;
       }
       const std::string pad(width[c] - width_of(row[c]), ' ');
-      line += set[c] == Set::left ? row[c] + pad : pad + row[c];
+      line += alignment[c] == Alignment::left ? row[c] + pad : pad + row[c];
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";

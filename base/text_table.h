@@ -10,7 +10,7 @@ namespace axisfit {
 inline constexpr std::size_t kTextWidth = 80;  ///< characters in a line that nobody has to scroll
 
 /// How a column is set.
-enum class Set {
+enum class Alignment {
   left,
   right,
   wrapped,  ///< left, and broken at blanks where the line would be too long; the last column only
@@ -21,7 +21,8 @@ std::size_t width_of(std::string_view text);
 
 /// Rows as columns, a line or more for each, all ending with '\n'. Where lines would be too long, a
 /// first cell that is the reason stands on a line of its own, above the others.
-std::string aligned(const std::vector<std::vector<std::string>>& rows, const std::vector<Set>& set);
+std::string format_table(const std::vector<std::vector<std::string>>& rows,
+                         const std::vector<Alignment>& alignment);
 
 /// A paragraph, broken at blanks, each line after `indent` blanks and ending with '\n'.
 std::string paragraph(const std::string& text, std::size_t indent = 0);

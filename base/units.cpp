@@ -103,8 +103,8 @@ bool is_name(char c) {
 // one m s, "K @ 273" has an offset. Lets pass only names, their whole powers from -9 to 9,
 // products, quotients and the number 1.
 bool is_product_of_powers(std::string_view text) {
-  constexpr std::size_t kLongest = 64;
-  if (text.empty() || text.size() > kLongest) return false;
+  constexpr std::size_t kMaxLength = 64;
+  if (text.empty() || text.size() > kMaxLength) return false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char before = i == 0 ? '\0' : text[i - 1];
     const char c = text[i];
@@ -206,7 +206,7 @@ std::variant<double, UnitError> unit_factor(std::string_view unit, std::string_v
   const Target target(si_unit);
   const bool dimensionless = target.database.is_dimensionless(target.unit);
   const auto failure = [&](UnitProblem problem, std::string message) {
-    message += dimensionless ? "; write a plain number or '%'" : "; write for example '";
+    message += dimensionless ? "; use a plain number or '%'" : "; use for example '";
     if (!dimensionless) message.append(si_unit) += '\'';
     return UnitError{problem, std::move(message)};
   };
@@ -222,15 +222,15 @@ std::variant<double, UnitError> unit_factor(std::string_view unit, std::string_v
   if (ut_are_convertible(given.get(), target.unit.get()) == 0 || !radians_agree) {
     return failure(
         UnitProblem::wrong_dimension,
-        quoted + (dimensionless ? " does not fit a dimensionless quantity"
-                                : " does not fit a quantity in '" + std::string(si_unit) + "'"));
+        quoted + (dimensionless ? " cannot be used for a dimensionless quantity"
+                                : " cannot be converted to '" + std::string(si_unit) + "'"));
   }
 
   const Converter converter(ut_get_converter(given.get(), target.unit.get()));
   const double zero = cv_convert_double(converter.get(), 0.0);
   const double factor = cv_convert_double(converter.get(), 1.0);
   if (zero != 0.0 || !std::isfinite(factor) || factor <= 0.0) {
-    return failure(UnitProblem::not_proportional, quoted + " has a zero of its own");
+    return failure(UnitProblem::not_proportional, quoted + " is not proportional to it");
   }
   return factor;
 }

@@ -181,7 +181,7 @@ Job job_of(const Rig& rig, const Model<double>& declared, const std::vector<Moti
     Recording recording = simulated(rig, motions[r], options);
     recording.name = r == 0 ? "fit" : "validate";
     recording.role = r == 0 ? Role::fit : Role::validate;
-    leave_out_acceleration_at_rest(recording);
+    exclude_acceleration_at_standstill(recording);
     job.recordings.push_back(std::move(recording));
   }
   for (const char* name : {"V_L", "B_a", "b_g", "k_g", "T_p"})
@@ -198,10 +198,10 @@ double refitted_chi_square(const Job& job) {
   for (const FreeParameter& p : job.free) truth.push_back(*member[p.quantity]);
   const Linearization at = linearize(job, space, space.internal(truth), 0.0);
   if (!at.finite) return NAN;
-  const Eigen::VectorXd rest =
+  const Eigen::VectorXd standstill =
       at.residuals -
       at.jacobian * at.jacobian.completeOrthogonalDecomposition().solve(at.residuals);
-  return rest.squaredNorm() / static_cast<double>(rest.size());
+  return standstill.squaredNorm() / static_cast<double>(standstill.size());
 }
 
 Outcome run(const Case& one, const Rig& paper, std::uint64_t seed) {
@@ -229,7 +229,8 @@ Outcome run(const Case& one, const Rig& paper, std::uint64_t seed) {
   const auto stroke = [&](std::size_t motion) {
     Job without = job_with({});
     without.free.clear();
-    const auto samples = predict(without, ParameterSpace(without), motion, nullptr, {}).samples;
+    const auto samples =
+        simulate_recording(without, ParameterSpace(without), motion, nullptr, {}).samples;
     const auto [least, most] = std::ranges::minmax(samples, {}, &Sample::position);
     return std::pair{least.position, most.position};
   };
@@ -273,16 +274,16 @@ Outcome run(const Case& one, const Rig& paper, std::uint64_t seed) {
     fit = estimate(job);
   }
   outcome.reached = fit.reduced_chi_square;
-  const ClosedLoop loop = close_loop(job, fit);
-  for (const EffectTrial& trial : loop.effects) {
+  const EffectSelection selection = select_effects(job, fit);
+  for (const EffectTrial& trial : selection.effects) {
     if (trial.decision == Decision::accepted) outcome.accepted.insert(trial.candidate.name);
     if (trial.decision == Decision::undecided) outcome.undecided.insert(trial.candidate.name);
     outcome.story += fmt::format("    round {} {}: {} (score {:.4g}, {:.3g} %)\n", trial.round,
                                  trial.candidate.name, trial.reason, trial.score,
                                  trial.improvement.validate_percent);
   }
-  outcome.explained = loop.explained;
-  outcome.last = loop.models.back().fit.reduced_chi_square;
+  outcome.explained = selection.explained;
+  outcome.last = selection.models.back().fit.reduced_chi_square;
   return outcome;
 }
 

@@ -20,19 +20,19 @@ constexpr double kDuration = 2.5;  // s
 
 /// Steps and events of the simulation, as the cost runs it. In plain numbers: in dual ones this
 /// program would bring its own code for them, and that would be measured, not the library's.
-SimulationOutcome simulated_once(const Evaluation& evaluation, double rate) {
+SimulationResult simulated_once(const Evaluation& evaluation, double rate) {
   const Recording& recording = evaluation.job().recordings[0];
   const Measurement* velocity = recording.find(Signal::velocity);
   const std::vector<double> target = target_corners(recording.times, velocity->values);
   return simulate<double>(
       evaluation.job().model, recording.command, recording.times,
-      [](std::size_t, const Integrator<double>&) {}, coupling_for(recording, rate), {target, {}},
+      [](std::size_t, const Integrator<double>&) {}, observer_for(recording, rate), {target, {}},
       recording_options(recording.times, FitOptions{}.step));
 }
 
 void count(const Rig& rig, const std::string& name, double rate) {
   Evaluation evaluation(rig, kFree, kDuration, rate);
-  const SimulationOutcome outcome = simulated_once(evaluation, rate);
+  const SimulationResult outcome = simulated_once(evaluation, rate);
   const long before = allocations();
   if (!evaluation.run()) throw std::runtime_error("a simulation does not finish");
   fmt::print("{}.allocations {}\n{}.events {}\n{}.steps {}\n", name, allocations() - before, name,

@@ -1,5 +1,5 @@
 // evaluation [OPTIONS OF GOOGLE BENCHMARK]: the time of one residual with its Jacobian over the
-// number of parameters, the duration and the coupling; the multiply-adds that the exact method
+// number of parameters, the duration and the observer; the multiply-adds that the exact method
 // needs for it; how many of them this machine does, at most, compiled as axisfit is; and the speed
 // of reading a CSV file of a million rows, beside that of reading its bytes.
 #include "bench/speed/evaluation.h"
@@ -28,7 +28,7 @@ double multiply_adds(std::span<const State<Jet<N>>> columns) {
   double count = 0.0;
   for (const State<Jet<N>>& column : columns)
     for (const Jet<N>& x : column) {
-      if (!is_in_play(x)) continue;
+      if (!is_active(x)) continue;
       count += 1.0 + N;
       for (int k = 0; k < N; ++k) count += x.v[k] != 0.0;
     }
@@ -44,8 +44,8 @@ double multiply_adds_of_sample() {
   const Equations<Jet<N>> equations(model);
   Mode mode;
   mode.contact = mode.sliding = 1;
-  const Matrix<Jet<N>> a = matrix_of(equations, mode);
-  Propagator<Jet<N>> propagator(a, ladder_for(a, 1e-3, 0));
+  const Matrix<Jet<N>> a = system_matrix(equations, mode);
+  Propagator<Jet<N>> propagator(a, step_levels_for(a, 1e-3, 0));
   std::array<State<Jet<N>>, kStates> columns_of_a, columns_of_psi;
   for (std::size_t j = 0; j < kStates; ++j) {
     State<Jet<N>> unit{};
@@ -55,7 +55,7 @@ double multiply_adds_of_sample() {
     // Beyond the paper's states it is the identity, times the step.
     if (j >= kPaperStates) columns_of_psi[j] = {};
   }
-  const Driven<State<Jet<N>>> b = driven_by(equations, mode);
+  const PerInput<State<Jet<N>>> b = input_matrix(equations, mode);
   return multiply_adds<N>(columns_of_a) + multiply_adds<N>(columns_of_psi) + multiply_adds<N>(b);
 }
 
@@ -130,7 +130,7 @@ void reading_bytes(benchmark::State& state) {
   state.SetBytesProcessed(file.bytes(state.iterations()));
 }
 
-// Duration in ms, coupling in 1/s.
+// Duration in ms, observer in 1/s.
 BENCHMARK(residual_and_jacobian<1>)->Args({2500, 0})->Unit(benchmark::kMillisecond);
 BENCHMARK(residual_and_jacobian<5>)
     ->Args({2500, 0})

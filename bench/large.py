@@ -19,7 +19,7 @@ recordings:
     signals:
       command: {{column: command_v, unit: V}}
       velocity: {{column: velocity_mps, unit: m/s, sigma: 2 mm/s}}
-fit: {{coupling: none}}
+fit: {{observer: none}}
 free:
   B_a: {{initial: 190 N s/m}}
   V_L: {{initial: 2.8 V}}

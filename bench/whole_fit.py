@@ -107,7 +107,7 @@ recordings:
   - name: step
     file: step.csv
     time: {{column: time_s, unit: s}}
-    acceleration_at_rest: keep
+    acceleration_at_standstill: keep
     signals:
       command: {{column: command_v, unit: V}}
       velocity: {{column: velocity_mps, unit: m/s, sigma: 2 mm/s}}

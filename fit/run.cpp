@@ -31,19 +31,20 @@ std::vector<SignalScore> score_signals(const Job& job, const FitResult& fit) {
     }
   };
   if (std::ranges::none_of(fit.recordings,
-                           [](const RecordingResult& r) { return r.held.has_value(); })) {
+                           [](const RecordingResult& r) { return r.tracking.has_value(); })) {
     add(fit, &SignalScore::free_running);
     return scores;
   }
-  add(fit, &SignalScore::held);
+  add(fit, &SignalScore::tracking);
   FitResult free = fit;
-  for (RecordingResult& r : free.recordings) r.held.reset();
+  for (RecordingResult& r : free.recordings) r.tracking.reset();
   add(free, &SignalScore::free_running);
   return scores;
 }
 
 /// The parameters that are to be profiled.
-std::vector<std::size_t> profiled(const Job& job, const std::vector<std::string>& names) {
+std::vector<std::size_t> parameters_to_profile(const Job& job,
+                                               const std::vector<std::string>& names) {
   const ParameterSpace space(job);
   std::vector<std::string> known;
   for (std::size_t i = 0; i < space.size(); ++i) known.push_back(space.name(i));
@@ -52,7 +53,8 @@ std::vector<std::size_t> profiled(const Job& job, const std::vector<std::string>
     const auto at = std::ranges::find(known, name);
     if (at == known.end() && name != "all")
       throw std::runtime_error(
-          fmt::format("--profile: {} is not fitted; fitted are {}", name, fmt::join(known, ", ")));
+          fmt::format("--profile: {} is not a free parameter; free parameters are {}", name,
+                      fmt::join(known, ", ")));
     for (std::size_t i = 0; i < space.size(); ++i)
       if ((name == "all" || name == known[i]) && std::ranges::find(chosen, i) == chosen.end())
         chosen.push_back(i);
@@ -61,70 +63,72 @@ std::vector<std::size_t> profiled(const Job& job, const std::vector<std::string>
 }
 
 /// All that follows the first fit.
-void pursue(Outcome& outcome, const ProgressReport& progress) {
-  const auto tell = [&](const std::string& phase, int done = 0, int of = 0) {
-    if (progress) progress({phase, done, of, outcome.fit().reduced_chi_square});
+void run_requested_analyses(RunResult& run_result, const ProgressReport& progress) {
+  const auto report_progress = [&](const std::string& phase, int done = 0, int of = 0) {
+    if (progress) progress({phase, done, of, run_result.fit().reduced_chi_square});
   };
-  if (outcome.wishes.close_loop && outcome.first.usable)
-    outcome.loop = close_loop(outcome.baseline, outcome.first, {}, progress);
-  if (outcome.loop && outcome.loop->interrupted) throw Interrupted();
-  if (outcome.loop && has_noise_from(outcome.baseline, NoiseSource::fit) &&
-      !outcome.loop->effects.empty())
-    outcome.loop->result.fit = estimate_with_noise(outcome.loop->result.job, progress);
-  if (outcome.fit().usable) {
-    tell("looking at the residual");
-    outcome.diagnosis = diagnose(outcome.job(), outcome.fit());
+  if (run_result.run_options.select_effects && run_result.first.usable)
+    run_result.selection = select_effects(run_result.baseline, run_result.first, {}, progress);
+  if (run_result.selection && run_result.selection->interrupted) throw Interrupted();
+  if (run_result.selection && has_noise_from(run_result.baseline, NoiseSource::fit) &&
+      !run_result.selection->effects.empty())
+    run_result.selection->result.fit =
+        estimate_with_noise(run_result.selection->result.job, progress);
+  if (run_result.fit().usable) {
+    report_progress("analysing the residual");
+    run_result.diagnosis = diagnose(run_result.job(), run_result.fit());
   }
-  if (outcome.fit().usable && !outcome.wishes.profiles.empty())
-    outcome.profiles =
-        profiles(outcome.job(), outcome.fit(), profiled(outcome.job(), outcome.wishes.profiles),
-                 [&](int done, int of) { tell("profiles", done, of); });
-  const ControllerSettings& controller = outcome.baseline.controller;
-  if (outcome.loop)
-    for (const Rivals& rivals : outcome.loop->rivals) {
-      tell("what tells " + rivals.chosen + " and " + rivals.rival + " apart?");
-      outcome.separations.push_back(
-          what_separates(*outcome.loop, rivals, controller, outcome.baseline.limits));
+  if (run_result.fit().usable && !run_result.run_options.profiles.empty())
+    run_result.profiles =
+        profiles(run_result.job(), run_result.fit(),
+                 parameters_to_profile(run_result.job(), run_result.run_options.profiles),
+                 [&](int done, int of) { report_progress("profiles", done, of); });
+  const ControllerSettings& controller = run_result.baseline.controller;
+  if (run_result.selection)
+    for (const UndecidedPair& rivals : run_result.selection->rivals) {
+      report_progress("discriminating between " + rivals.chosen + " and " + rivals.rival + "");
+      run_result.discriminations.push_back(
+          discriminate(*run_result.selection, rivals, controller, run_result.baseline.limits));
     }
-  if (outcome.wishes.experiment)
-    outcome.suggestion =
-        suggest_experiment(outcome.job(), outcome.fit(), controller, outcome.baseline.limits,
-                           [&](int done, int of) { tell("trying motions", done, of); });
+  if (run_result.run_options.experiment)
+    run_result.suggestion = suggest_experiment(
+        run_result.job(), run_result.fit(), controller, run_result.baseline.limits,
+        [&](int done, int of) { report_progress("trying motions", done, of); });
 }
 
 }  // namespace
 
-Outcome find_outcome(Job job, const Wishes& wishes, const ProgressReport& progress) {
+RunResult run(Job job, const RunOptions& run_options, const ProgressReport& progress) {
   const auto begin = std::chrono::steady_clock::now();
-  Outcome outcome;
-  outcome.baseline = std::move(job);
-  outcome.wishes = wishes;
-  outcome.baseline.options.stop = wishes.stop;
-  profiled(outcome.baseline, wishes.profiles);
-  outcome.first = estimate_with_noise(outcome.baseline, progress);
-  outcome.interrupted = outcome.first.interrupted;
-  outcome.checks = check_recordings(outcome.baseline);
+  RunResult run_result;
+  run_result.baseline = std::move(job);
+  run_result.run_options = run_options;
+  run_result.baseline.options.stop = run_options.stop;
+  parameters_to_profile(run_result.baseline, run_options.profiles);
+  run_result.first = estimate_with_noise(run_result.baseline, progress);
+  run_result.interrupted = run_result.first.interrupted;
+  run_result.checks = check_recordings(run_result.baseline);
   try {
-    if (!outcome.interrupted) pursue(outcome, progress);
+    if (!run_result.interrupted) run_requested_analyses(run_result, progress);
   } catch (const Interrupted&) {
-    outcome.interrupted = true;
+    run_result.interrupted = true;
   }
-  if (outcome.loop)
-    for (const LoopModel& model : outcome.loop->models) {
+  if (run_result.selection)
+    for (const SelectionStep& model : run_result.selection->models) {
       ModelScore score{score_signals(model.job, model.fit), {}};
       for (std::size_t r = 0; r < model.job.recordings.size(); ++r)
         score.forces.push_back(missing_force(model.job, model.fit, r));
-      outcome.scores.push_back(std::move(score));
+      run_result.scores.push_back(std::move(score));
     }
   const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - begin;
-  outcome.wall_time = wall_time.count();
-  return outcome;
+  run_result.wall_time = wall_time.count();
+  return run_result;
 }
 
-std::string stop_reason(const Outcome& outcome) {
-  return outcome.out_of_time
-             ? fmt::format(" by the time limit of {:g} s", outcome.wishes.time_limit.value())
-             : "";
+std::string stop_reason(const RunResult& run_result) {
+  return run_result.time_limit_reached ? fmt::format(" by the time limit of {:g} s",
+                                                     run_result.run_options.time_limit.value())
+                                       : "";
 }
 
 bool has_noise_from(const Job& job, NoiseSource source) {
@@ -133,32 +137,32 @@ bool has_noise_from(const Job& job, NoiseSource source) {
   });
 }
 
-const Experiment* next_experiment(const Outcome& outcome) {
-  if (!outcome.wishes.experiment) return nullptr;
-  for (const Separation& s : outcome.separations)
+const Experiment* next_experiment(const RunResult& run_result) {
+  if (!run_result.run_options.experiment) return nullptr;
+  for (const Discrimination& s : run_result.discriminations)
     if (s.experiment) return &*s.experiment;
-  return outcome.suggestion ? &outcome.suggestion->experiment : nullptr;
+  return run_result.suggestion ? &run_result.suggestion->experiment : nullptr;
 }
 
-std::string verdict_of(const Outcome& outcome) {
-  const FitResult& fit = outcome.fit();
-  if (!outcome.loop) return fit.verdict;
+std::string overall_verdict(const RunResult& run_result) {
+  const FitResult& fit = run_result.fit();
+  if (!run_result.selection) return fit.verdict;
   // Both judge the same model by the same residual.
-  return (fit.usable ? "Usable fit." : fit.verdict) + " " + outcome.loop->verdict;
+  return (fit.usable ? "Usable fit." : fit.verdict) + " " + run_result.selection->verdict;
 }
 
-std::optional<LeftOut> left_out(const Measurement& measurement) {
-  LeftOut rest;
+std::optional<ExcludedSamples> excluded_samples(const Measurement& measurement) {
+  ExcludedSamples excluded;
   for (std::size_t i = 0; i < measurement.values.size(); ++i) {
     if (measurement.counts(i)) continue;
-    ++rest.samples;
-    rest.mean += measurement.values[i];
+    ++excluded.samples;
+    excluded.mean += measurement.values[i];
   }
-  if (rest.samples == 0) return std::nullopt;
-  const double n = static_cast<double>(rest.samples);
-  rest.mean /= n;
-  rest.is_noise = std::abs(rest.mean) < 4.0 * measurement.sigma / std::sqrt(n);
-  return rest;
+  if (excluded.samples == 0) return std::nullopt;
+  const double n = static_cast<double>(excluded.samples);
+  excluded.mean /= n;
+  excluded.is_within_noise = std::abs(excluded.mean) < 4.0 * measurement.sigma / std::sqrt(n);
+  return excluded;
 }
 
 std::string_view verdict_name(const ParameterUncertainty& uncertainty) {
@@ -173,8 +177,8 @@ const char* decision_name(Decision decision) {
       return "accepted";
     case Decision::undecided:
       return "undecided";
-    case Decision::refused:
-      return "refused";
+    case Decision::rejected:
+      return "rejected";
   }
   return "";
 }
@@ -189,9 +193,9 @@ const char* role_name(const Recording& recording, const SignalError& signal) {
   return signal.fitted ? "fit" : "compare";
 }
 
-const FreeParameter& as_declared(const Outcome& outcome, std::size_t parameter) {
-  const std::vector<FreeParameter>& declared = outcome.baseline.free;
-  return parameter < declared.size() ? declared[parameter] : outcome.job().free[parameter];
+const FreeParameter& as_specified(const RunResult& run_result, std::size_t parameter) {
+  const std::vector<FreeParameter>& declared = run_result.baseline.free;
+  return parameter < declared.size() ? declared[parameter] : run_result.job().free[parameter];
 }
 
 }  // namespace axisfit

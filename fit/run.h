@@ -27,9 +27,11 @@ struct SignalErrors {
 /// were not.
 struct SignalScore : SeriesKey {
   std::optional<SignalErrors> free_running;  ///< none where that did not finish
-  std::optional<SignalErrors> held;          ///< at a coupling, where the fit kept one to its end
+  std::optional<SignalErrors> tracking;  ///< with an observer, where the fit kept one to its end
 
-  const std::optional<SignalErrors>& judged() const { return held ? held : free_running; }
+  const std::optional<SignalErrors>& as_fitted() const {
+    return tracking ? tracking : free_running;
+  }
 };
 
 /// How well a model does.
@@ -39,33 +41,33 @@ struct ModelScore {
 };
 
 /// What is asked for beyond a fit.
-struct Wishes {
-  bool close_loop = false;
+struct RunOptions {
+  bool select_effects = false;
   std::vector<std::string> profiles{};  ///< of these parameters; "all": of all
   bool experiment = false;              ///< suggest the next one
   const StopFlag* stop = nullptr;       ///< ends early, with what is finished
   std::optional<double> time_limit{};   ///< s, after which something sets it
 };
 
-struct Outcome {
+struct RunResult {
   Job baseline;  ///< as declared
-  Wishes wishes;
+  RunOptions run_options;
   FitResult first;                     ///< fit of the declared job
   std::vector<RecordingCheck> checks;  ///< of each recording
   /// None unless it was asked for and the first fit is usable.
-  std::optional<ClosedLoop> loop;
-  std::vector<ModelScore> scores;        ///< of the loop's models
-  std::optional<Diagnosis> diagnosis;    ///< of the final model; none unless that is usable
-  std::vector<Profile> profiles;         ///< of the final model, those asked for
-  std::vector<Separation> separations;   ///< of the loop's undecided effects, pair by pair
-  std::optional<Suggestion> suggestion;  ///< of the next experiment, where it was asked for
-  bool interrupted = false;              ///< not all that was asked for was finished
-  bool out_of_time = false;              ///< because of the time limit
-  double wall_time = 0.0;                ///< s
+  std::optional<EffectSelection> selection;
+  std::vector<ModelScore> scores;               ///< of the loop's models
+  std::optional<Diagnosis> diagnosis;           ///< of the final model; none unless that is usable
+  std::vector<Profile> profiles;                ///< of the final model, those asked for
+  std::vector<Discrimination> discriminations;  ///< of the loop's undecided effects, pair by pair
+  std::optional<Suggestion> suggestion;         ///< of the next experiment, where it was asked for
+  bool interrupted = false;                     ///< not all that was asked for was finished
+  bool time_limit_reached = false;              ///< because of the time limit
+  double wall_time = 0.0;                       ///< s
 
   /// The final model's: the result of the loop, or else the declared one.
-  const Job& job() const { return loop ? loop->result.job : baseline; }
-  const FitResult& fit() const { return loop ? loop->result.fit : first; }
+  const Job& job() const { return selection ? selection->result.job : baseline; }
+  const FitResult& fit() const { return selection ? selection->result.fit : first; }
 };
 
 /// Whether the noise of any measurement of a job comes from there.
@@ -73,31 +75,31 @@ bool has_noise_from(const Job& job, NoiseSource source);
 
 /// The experiment to make next, where it was asked for and there is one: that which tells undecided
 /// effects apart, or else that which determines the parameters.
-const Experiment* next_experiment(const Outcome& outcome);
+const Experiment* next_experiment(const RunResult& run_result);
 
 /// Whether the fit can be used, and what a closed loop says of it.
-std::string verdict_of(const Outcome& outcome);
+std::string overall_verdict(const RunResult& run_result);
 
 /// " by the time limit of 60 s", or nothing: to follow "stopped".
-std::string stop_reason(const Outcome& outcome);
+std::string stop_reason(const RunResult& run_result);
 
 /// Fits the job, looks for what it lacks and, where asked, adds that. Throws std::runtime_error
 /// when a wish names a parameter that is not fitted, and Interrupted when it is stopped before one
 /// start of the fit is finished.
-Outcome find_outcome(Job job, const Wishes& wishes, const ProgressReport& progress = {});
+RunResult run(Job job, const RunOptions& run_options, const ProgressReport& progress = {});
 
 /// Samples of a signal that do not count, since the arm rests (fit/data/standstill.h).
-struct LeftOut {
+struct ExcludedSamples {
   std::size_t samples = 0;
-  double mean = 0.0;      ///< of what was measured there
-  bool is_noise = false;  ///< whether that mean is no further from zero than noise would be
+  double mean = 0.0;             ///< of what was measured there
+  bool is_within_noise = false;  ///< whether that mean is no further from zero than noise would be
 };
-std::optional<LeftOut> left_out(const Measurement& measurement);
+std::optional<ExcludedSamples> excluded_samples(const Measurement& measurement);
 
 /// "determined", "weakly determined", "not determined", "at bound"
 std::string_view verdict_name(const ParameterUncertainty& uncertainty);
 
-/// "accepted", "undecided", "refused"
+/// "accepted", "undecided", "rejected"
 const char* decision_name(Decision decision);
 
 /// "fit", "validate" or, where a recording was fitted in part, "held_out".
@@ -108,6 +110,6 @@ const char* role_name(const Recording& recording, const SignalError& signal);
 
 /// A free parameter of the final model with the user's initial value, which the loop does not keep;
 /// of an added effect, with the one it was started from.
-const FreeParameter& as_declared(const Outcome& outcome, std::size_t parameter);
+const FreeParameter& as_specified(const RunResult& run_result, std::size_t parameter);
 
 }  // namespace axisfit

@@ -53,7 +53,7 @@ void check_input(const Folder& folder, std::string_view input) {
     require(rig.has_value(), "an axis is refused without a word");
   });
   if (!rig) return;
-  require(refusal(rig->model).empty(), "an axis was read that cannot be simulated");
+  require(model_error(rig->model).empty(), "an axis was read that cannot be simulated");
   const std::string text = format_axis_file(*rig, "Axis.");
   Diagnostics diagnostics;
   const auto again = read_axis_file(folder.write("again.yaml", text), diagnostics);

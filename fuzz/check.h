@@ -29,7 +29,7 @@ inline void require(bool holds, std::string_view what, const std::string& shown 
 inline void require_harmless(const std::string& text, std::string_view what) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    require(is_harmless(text.substr(at, end - at)), what, text);
+    require(is_sanitized(text.substr(at, end - at)), what, text);
     at = end + 1;
   }
 }

@@ -25,13 +25,13 @@ void check_recording(const Recording& r) {
   for (const Measurement& m : r.measurements) {
     require(m.values.size() == r.times.size() && finite(m.values), "values are missing");
     require(std::isfinite(m.sigma) && m.sigma > 0.0, "a sigma is not above zero");
-    require(m.left_out.empty() || m.left_out.size() == r.times.size(), "samples are lost");
+    require(m.excluded.empty() || m.excluded.size() == r.times.size(), "samples are lost");
   }
 }
 
 void check_job(const JobFile& file) {
   const Job& job = file.job;
-  require(refusal(job.model).empty(), "the model cannot be simulated");
+  require(model_error(job.model).empty(), "the model cannot be simulated");
   require(!job.free.empty(), "nothing is free");
   require(!job.recordings.empty(), "nothing is recorded");
   for (const Recording& r : job.recordings) check_recording(r);

@@ -70,7 +70,7 @@ class Draw {
       text.replace(at, 1, two);
     }
     if (below(4) == 1) text += kElement;
-    return any ? text : harmless(text);
+    return any ? text : sanitized(text);
   }
 
  private:
@@ -151,7 +151,7 @@ std::string job_text(Draw& draw, const Names& names) {
   if (draw.flag()) text += "  velocity.delay: {}\n";
   if (draw.flag()) text += "  M: {prior: {mean: 4 kg, sigma: 1 kg}}\n";
   return text +
-         fmt::format("fit: {{max_iterations: 1, starts: {}, seed: {}, coupling: {}, loss: {}}}\n",
+         fmt::format("fit: {{max_iterations: 1, starts: {}, seed: {}, observer: {}, loss: {}}}\n",
                      draw.below(8) == 1 ? 2 : 1, draw.byte(), kCouplings[draw.below(8)],
                      draw.flag() ? "huber" : "squares");
 }
@@ -188,24 +188,24 @@ Json read_back(const Json& json) {
   return again;
 }
 
-void check_json(const Outcome& outcome, const Names& names) {
-  const Json json = read_back(result_json(outcome));
+void check_json(const RunResult& run_result, const Names& names) {
+  const Json json = read_back(result_json(run_result));
   require(json.at("axis") == names.axis, "the axis has lost its name");
   for (std::size_t r = 0; r < names.files.size(); ++r) {
     require(json.at("recordings")[r].at("name") == names.recordings[r], "a recording's name");
     require(json.at("recordings")[r].at("file") == names.files[r], "a file's name is lost");
   }
-  for (std::size_t i = 0; i < outcome.fit().parameters.size(); ++i)
-    require(
-        same(json.at("parameters")[i].at("value").get<double>(), outcome.fit().parameters[i].value),
-        "a value is lost");
+  for (std::size_t i = 0; i < run_result.fit().parameters.size(); ++i)
+    require(same(json.at("parameters")[i].at("value").get<double>(),
+                 run_result.fit().parameters[i].value),
+            "a value is lost");
 }
 
-void check_axis(const Folder& folder, Rig fitted, const Outcome& outcome,
+void check_axis(const Folder& folder, Rig fitted, const RunResult& run_result,
                 const std::string& typed) {
-  fitted.model = fitted_model(outcome.job(), outcome.fit());
+  fitted.model = fitted_model(run_result.job(), run_result.fit());
   const std::string text =
-      format_axis_file(fitted, "Fitted from " + typed + ".\n" + verdict_of(outcome));
+      format_axis_file(fitted, "Fitted from " + typed + ".\n" + overall_verdict(run_result));
   Diagnostics diagnostics;
   auto again = read_axis_file(folder.write("fitted.yaml", text), diagnostics);
   require(again.has_value(), "fitted.yaml is not read again",
@@ -217,11 +217,11 @@ void check_axis(const Folder& folder, Rig fitted, const Outcome& outcome,
             "fitted.yaml has lost a value", text);
 }
 
-void check_residuals(const Outcome& outcome) {
-  const std::string text = residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis);
+void check_residuals(const RunResult& run_result) {
+  const std::string text = residuals_csv(run_result.job(), run_result.fit(), run_result.diagnosis);
   require_harmless(text, "residuals.csv is no text");
   std::size_t rows = 0;
-  for (const Recording& r : outcome.job().recordings) rows += r.times.size();
+  for (const Recording& r : run_result.job().recordings) rows += r.times.size();
   require(static_cast<std::size_t>(std::ranges::count(text, '\n')) == rows + 1,
           "residuals.csv has lost rows", text);
   require(text.find("nan") == std::string::npos && text.find("inf") == std::string::npos,
@@ -239,12 +239,12 @@ void check_page(const std::string& page) {
 }
 
 /// A fit alone, without the look at its residual, which takes most of the time.
-Outcome fitted(Job job) {
-  Outcome outcome;
-  outcome.first = estimate_with_noise(job);
-  outcome.checks = check_recordings(job);
-  outcome.baseline = std::move(job);
-  return outcome;
+RunResult fitted(Job job) {
+  RunResult run_result;
+  run_result.first = estimate_with_noise(job);
+  run_result.checks = check_recordings(job);
+  run_result.baseline = std::move(job);
+  return run_result;
 }
 
 void check(const Folder& folder, JobFile file, const Names& names, const std::string& job,
@@ -259,12 +259,12 @@ void check(const Folder& folder, JobFile file, const Names& names, const std::st
   read_back(axisfit::check_json(file.job, checks, forecast, {1.0, 1.0}));
   require_harmless(recordings_text(file.job, checks) + forecast_text(file.job, forecast),
                    "--check prints what a terminal cannot show");
-  const Outcome outcome = draw.below(4) == 1 ? find_outcome(file.job, {}) : fitted(file.job);
-  check_json(outcome, names);
-  check_axis(folder, file.rig, outcome, typed);
-  check_residuals(outcome);
-  require_harmless(report_text(outcome), "the text has what a terminal cannot show");
-  check_page(report_page(outcome, {typed, typed, job, typed, "axis"}));
+  const RunResult run_result = draw.below(4) == 1 ? run(file.job, {}) : fitted(file.job);
+  check_json(run_result, names);
+  check_axis(folder, file.rig, run_result, typed);
+  check_residuals(run_result);
+  require_harmless(report_text(run_result), "the text has what a terminal cannot show");
+  check_page(report_page(run_result, {typed, typed, job, typed, "axis"}));
 }
 
 }  // namespace

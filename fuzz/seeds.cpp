@@ -134,13 +134,13 @@ class Words {
 
  private:
   void add(const Form& form) {
-    if (const auto* amount = std::get_if<Amount>(&form)) words_.insert(" " + amount->unit);
+    if (const auto* amount = std::get_if<NumberWithUnit>(&form)) words_.insert(" " + amount->unit);
     if (const auto* bounds = std::get_if<Bounds>(&form)) add(bounds->of);
     if (const auto* choice = std::get_if<Choice>(&form))
       for (const std::string& name : choice->names()) words_.insert(name);
     if (const auto* map = std::get_if<Map>(&form)) add(map->keys);
     if (const auto* list = std::get_if<List>(&form)) add(list->of.front());
-    if (const auto* either = std::get_if<Either>(&form))
+    if (const auto* either = std::get_if<AnyOf>(&form))
       for (const Form& one : either->forms) add(one);
   }
 

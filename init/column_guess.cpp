@@ -209,12 +209,12 @@ constexpr Word kWords[]{
     {"u", command, 4},
 };
 
-constexpr std::string_view kWanted[]{"set",    "cmd",       "command", "commanded", "ref",
-                                     "target", "desired",   "demand",  "setpoint",  "sollwert",
-                                     "soll",   "reference", "nominal", "goal",      "qg"};
-constexpr std::string_view kMeasured[]{"actual",   "act",      "ist", "meas",
-                                       "measured", "feedback", "fb"};
-constexpr std::string_view kNoSignal[]{
+constexpr std::string_view kSetpointWords[]{
+    "set",      "cmd",      "command", "commanded", "ref",     "target", "desired", "demand",
+    "setpoint", "sollwert", "soll",    "reference", "nominal", "goal",   "qg"};
+constexpr std::string_view kMeasuredWords[]{"actual",   "act",      "ist", "meas",
+                                            "measured", "feedback", "fb"};
+constexpr std::string_view kIgnoredWords[]{
     "error",    "err",    "fehler", "deviation", "diff",      "lag",   "abweichung", "schlepp",
     "residual", "status", "index",  "sample",    "simulated", "noise", "temp",       "temperature"};
 
@@ -277,25 +277,25 @@ std::optional<ColumnGuess> guess_column(const std::string& name) {
   for (const Kind kind : kKinds) {
     const SplitName parts = split(name, kind);
     const std::vector<std::string> words = words_of(parts.name);
-    if (words.empty() || has_word(words, kNoSignal)) continue;
+    if (words.empty() || has_word(words, kIgnoredWords)) continue;
     const Word* word = known_word(words);
-    const bool wanted = has_word(words, kWanted);
-    if (word == nullptr && !wanted) continue;
+    const bool is_setpoint = has_word(words, kSetpointWords);
+    if (word == nullptr && !is_setpoint) continue;
     const Kind meant = word == nullptr ? (words.front() == "qg" ? position : command) : word->kind;
-    ColumnGuess guess{meant, wanted, {}, word == nullptr ? 2 : word->rank};
+    ColumnGuess guess{meant, is_setpoint, {}, word == nullptr ? 2 : word->rank};
     if (meant == kind) {
       guess.unit = parts.unit;
     } else if (!parts.unit.empty() && kind == motor_voltage &&
                (meant == velocity || meant == position || meant == command)) {
       // A voltage that stands for something.
-      guess.kind = meant == velocity && wanted  ? set_velocity
-                   : wanted || meant == command ? command
-                                                : motor_voltage;
+      guess.kind = meant == velocity && is_setpoint  ? set_velocity
+                   : is_setpoint || meant == command ? command
+                                                     : motor_voltage;
       guess.unit = parts.unit;
     } else {
       continue;
     }
-    if (has_word(words, kMeasured)) guess.rank += 3;
+    if (has_word(words, kMeasuredWords)) guess.rank += 3;
     if (!guess.unit.empty()) guess.rank += 20;
     if (!best || guess.rank > best->rank) best = guess;
   }

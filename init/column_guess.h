@@ -27,9 +27,10 @@ enum class Kind {
 
 struct ColumnGuess {
   Kind kind = Kind::command;
-  bool wanted = false;  ///< what was asked for, not what was measured: a reference, a set value
-  std::string unit;     ///< as a job writes it; empty where the name does not say
-  int rank = 0;         ///< the surer the higher, among columns of one kind
+  bool is_setpoint =
+      false;         ///< what was asked for, not what was measured: a reference, a set value
+  std::string unit;  ///< as a job writes it; empty where the name does not say
+  int rank = 0;      ///< the surer the higher, among columns of one kind
 };
 
 /// Nothing for a name that says nothing. Understands English and German words, the short symbols of

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kJobName = "job.yaml";
 constexpr const char* kAxisName = "axis.yaml";
-constexpr const char* kOnlyRatios = "only the ratios of the others to it show in a motion";
+constexpr const char* kOnlyRatios = "a motion shows only ratios to it";
 
 std::string scalar(const std::string& text) {
   YAML::Emitter out;
@@ -80,7 +80,7 @@ std::optional<Signal> signal_of(Kind kind) {
 struct Input {
   const char* key = "command";
   Kind kind = Kind::command;
-  bool wanted = false;
+  bool is_setpoint = false;
   std::string unit = "V";
   double gain = 1.0;  ///< by which the column's values are multiplied besides
 };
@@ -105,7 +105,7 @@ std::optional<Input> velocity_input(const RecordingGuess& recording, bool known_
 }
 
 bool has_input(const RecordingGuess& recording, const Input& input) {
-  return recording.find(input.kind, input.wanted) != nullptr;
+  return recording.find(input.kind, input.is_setpoint) != nullptr;
 }
 
 struct Source {
@@ -117,7 +117,7 @@ struct Source {
 /// A quantity that the job may free.
 struct Candidate {
   std::string name, entry;
-  std::string left_out = {};  ///< why it is not free; empty where it is
+  std::string reason_not_free = {};  ///< why it is not free; empty where it is
 };
 
 class Initialiser {
@@ -135,8 +135,8 @@ class Initialiser {
       structure_ = rig->model.structure;
     }
     choose_inputs();
-    drop_what_nothing_drives();
-    turn_signs();
+    drop_recordings_without_input();
+    correct_signs();
     if (axis_.empty()) start_axis();
     list_candidates();
     choose_free();
@@ -154,27 +154,28 @@ class Initialiser {
 
   /// For the user's eye, what the files mark: a column of several recordings once.
   void collect_guesses() {
-    std::set<std::string> told;
+    std::set<std::string> seen;
     for (const Source& source : sources_) {
-      const auto tell = [&](const GuessedColumn& c) {
+      const auto list_guess = [&](const GuessedColumn& c) {
         if (!c.guessed) return;
-        if (told.insert(c.column).second)
-          guesses_.push_back(harmless(fmt::format("{}: {}", c.column, fmt::join(c.reasons, "; "))));
+        if (seen.insert(c.column).second)
+          guesses_.push_back(
+              sanitized(fmt::format("{}: {}", c.column, fmt::join(c.reasons, "; "))));
       };
-      tell(source.guess.time);
+      list_guess(source.guess.time);
       for (const GuessedColumn& c : source.guess.columns)
-        if (is_measured(c) || &c == &input_of(source)) tell(c);
+        if (is_measured(c) || &c == &input_of(source)) list_guess(c);
     }
   }
 
   static const GuessedColumn& input_of(const Source& source) {
-    return *source.guess.find(source.input->kind, source.input->wanted);
+    return *source.guess.find(source.input->kind, source.input->is_setpoint);
   }
 
   /// Whether the job compares the model with the column, unless it drives it.
   bool is_measured(const GuessedColumn& c) const {
     const auto signal = signal_of(c.kind);
-    return signal && !c.wanted && has_signal(*signal, structure_) &&
+    return signal && !c.is_setpoint && has_signal(*signal, structure_) &&
            !(force_source() && c.kind == Kind::force);
   }
 
@@ -217,8 +218,8 @@ class Initialiser {
         source.input = velocity_input(source.guess, !axis_.empty());
         if (!source.input || source.input->kind != Kind::velocity) continue;
         GuessedColumn& column = *source.guess.find(Kind::velocity, true);
-        column.reasons.push_back(fmt::format(
-            "a velocity that is asked for, as a command of {:g} V for 1 m/s", source.input->gain));
+        column.reasons.push_back(fmt::format("a set velocity, taken as a command of {:g} V per m/s",
+                                             source.input->gain));
         column.guessed = true;
       }
       return;
@@ -234,7 +235,7 @@ class Initialiser {
       if (chosen != kForceInputs.end() && has_input(source.guess, *chosen)) source.input = *chosen;
   }
 
-  void drop_what_nothing_drives() {
+  void drop_recordings_without_input() {
     std::vector<std::string> unusable;
     std::erase_if(sources_, [&](const Source& source) {
       const bool driven = source.input.has_value();
@@ -242,19 +243,19 @@ class Initialiser {
       std::vector<std::string> found;
       for (const GuessedColumn& c : source.guess.columns) found.push_back(c.column);
       for (const std::string& name : source.guess.unused)
-        found.push_back(name + " (not understood)");
-      unusable.push_back(harmless(fmt::format(
-          "{}: no column {}; it has {}. If one of them does, call it {}, for example; if not, "
-          "record it.",
-          source.guess.path, driven ? "tells how the axis moved" : "tells what drove the axis",
-          found.empty() ? "the time alone" : fmt::format("{}", fmt::join(found, ", ")),
+        found.push_back(name + " (not recognised)");
+      unusable.push_back(sanitized(fmt::format(
+          "{}: no column {}; the columns are {}. If one of them does, rename it, for example to "
+          "{}; otherwise record that signal.",
+          source.guess.path, driven ? "shows how the axis moved" : "shows what drove the axis",
+          found.empty() ? "only the time" : fmt::format("{}", fmt::join(found, ", ")),
           driven           ? "position_mm or velocity_mps"
           : force_source() ? "current_A, force_N or command_V"
                            : "command_V")));
       return true;
     });
     if (sources_.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(unusable, "\n")));
-    for (const std::string& text : unusable) guesses_.push_back("Left out: " + text);
+    for (const std::string& text : unusable) guesses_.push_back("Skipped: " + text);
   }
 
   static std::vector<double> driving(const Source& source) {
@@ -276,8 +277,7 @@ class Initialiser {
     const Source& first = sources_.front();
     if (!force_source()) {
       starter_ = velocity_loop_starter(first.file);
-      guesses_.push_back(
-          "the axis is one with a velocity loop, with the values of a published axis");
+      guesses_.push_back("axis.yaml describes a velocity loop with the values of a published axis");
       return;
     }
     const GuessedColumn* velocity = first.guess.find(Kind::velocity);
@@ -293,7 +293,7 @@ class Initialiser {
     structure_ = starter_->structure;
     if (seen.input != DrivenMass::Input::force)
       guesses_.push_back(
-          "the gain of the drive, K_f in axis.yaml: M, B_a and the frictions are multiples of it");
+          "the drive gain, K_f in axis.yaml: M, B_a and the friction forces scale with it");
   }
 
   static bool drives_in_newtons(const Source& source) {
@@ -307,26 +307,27 @@ class Initialiser {
   }
 
   /// An input that acts against the motion is recorded with the other sign.
-  void turn_signs() {
+  void correct_signs() {
     for (Source& source : sources_) {
-      GuessedColumn& input = *source.guess.find(source.input->kind, source.input->wanted);
+      GuessedColumn& input = *source.guess.find(source.input->kind, source.input->is_setpoint);
       std::string against;
       if (force_source()) {
         const auto balance = balance_of(source);
         if (balance && balance->correlation < -0.5)
-          against = fmt::format("the axis accelerates against it (correlation {:.2f})",
-                                balance->correlation);
+          against =
+              fmt::format("the axis accelerates in the opposite direction (correlation {:.2f})",
+                          balance->correlation);
       } else if (const GuessedColumn* position = source.guess.find(Kind::position);
                  position && source.input->key == std::string_view("command")) {
         const auto found = rate_ratio(source.guess.time.values, position->values, driving(source));
         if (found && found->correlation < -0.5)
-          against =
-              fmt::format("the axis moves against it (correlation {:.2f})", found->correlation);
+          against = fmt::format("the axis moves in the opposite direction (correlation {:.2f})",
+                                found->correlation);
       }
       if (against.empty()) continue;
       input.negative = !input.negative;
       for (double& x : input.values) x = -x;
-      input.reasons.push_back(against + ": its sign is turned");
+      input.reasons.push_back(against + ": its sign was inverted");
       input.guessed = true;
     }
   }
@@ -336,8 +337,8 @@ class Initialiser {
   void list_candidates() {
     // What no data sheet tells, the most wanted first. A gain of the drive last: what it scales
     // has precedence.
-    static const std::vector<std::string> kWanted{"M",   "B_a", "V_L", "T_p",
-                                                  "k_g", "b_g", "F_s", "H"};
+    static const std::vector<std::string> kCandidates{"M",   "B_a", "V_L", "T_p",
+                                                      "k_g", "b_g", "F_s", "H"};
     const auto add = [&](const std::string& name, const std::string& entry = "{}") {
       const QuantityEntry* quantity = find_quantity(name);
       if (is_used(*quantity, structure_)) candidates_.push_back({name, entry});
@@ -347,7 +348,7 @@ class Initialiser {
     const auto bounds = [](double lower, double upper, std::string_view unit) {
       return fmt::format("{{bounds: [{}, {}]}}", with_unit(lower, unit), with_unit(upper, unit));
     };
-    for (const std::string& name : kWanted) {
+    for (const std::string& name : kCandidates) {
       const Quantity& q = find_quantity(name)->quantity;
       add(name, any_gain ? bounds(std::max(q.lower, 1e-3), q.upper, q.unit) : "{}");
     }
@@ -365,11 +366,11 @@ class Initialiser {
     const RecordingGuess& first = sources_.front().guess;
     const GuessedColumn* position = first.find(Kind::position);
     const bool offset = position && !force_source() && !is_rounded_away(*position, first);
-    if (const double grid = offset ? quantum(position->values) : 0.0; grid > 0.0)
-      add("position.bias", bounds(-two_digits(grid), two_digits(grid), "m"));
+    if (const double resolution = offset ? resolution_of(position->values) : 0.0; resolution > 0.0)
+      add("position.bias", bounds(-two_digits(resolution), two_digits(resolution), "m"));
     if (!force_source() || std::ranges::any_of(sources_, drives_in_newtons)) return;
     add("K_f");
-    if (starter_) candidates_.back().left_out = kOnlyRatios;
+    if (starter_) candidates_.back().reason_not_free = kOnlyRatios;
   }
 
   /// Whether the noise of a position is below the steps of its encoder, while a velocity tells of
@@ -377,7 +378,7 @@ class Initialiser {
   /// position all the same, for what the velocity says little of: slow friction.
   bool is_rounded_away(const GuessedColumn& position, const RecordingGuess& recording) const {
     return !force_source() && recording.find(Kind::velocity) &&
-           noise_from_differences(position.values) < quantum(position.values);
+           noise_from_differences(position.values) < resolution_of(position.values);
   }
 
   /// Takes out one after the other what the recordings leave open, the least wanted first.
@@ -387,8 +388,8 @@ class Initialiser {
       const Forecast found = forecast(job, draw_start(job, 0));
       if (!found.finite) {
         guesses_.push_back(
-            "what the recordings can tell is not known: with the values of the axis file the "
-            "simulation does not get through them");
+            "identifiability could not be checked: with the values of the axis file the simulation "
+            "does not finish");
         return;
       }
       if (job.free.size() == 1) return;
@@ -396,19 +397,20 @@ class Initialiser {
       bool unseen = false;
       std::size_t index = 0;
       for (Candidate& candidate : candidates_) {
-        if (!candidate.left_out.empty()) continue;
+        if (!candidate.reason_not_free.empty()) continue;
         const ParameterUncertainty& u = found.uncertainty.parameters[index];
         if (!u.determined || u.weak) {
           last = &candidate;
-          unseen = std::ranges::count(found.together.without_influence, index) > 0;
+          unseen = std::ranges::count(found.identifiability.without_influence, index) > 0;
         }
         ++index;
       }
       if (last == nullptr) return;
       const std::string_view need = excitation_needed(last->name);
-      last->left_out = unseen ? "no recorded signal shows it" : "these recordings leave it open";
-      if (!need.empty()) last->left_out += fmt::format("; it needs {}", need);
-      if (last->name == "K_f") last->left_out = kOnlyRatios;
+      last->reason_not_free =
+          unseen ? "no recorded signal depends on it" : "these recordings do not determine it";
+      if (!need.empty()) last->reason_not_free += fmt::format("; it needs {}", need);
+      if (last->name == "K_f") last->reason_not_free = kOnlyRatios;
     }
   }
 
@@ -420,8 +422,8 @@ class Initialiser {
       // The places are of a file that the user never sees.
       std::set<std::string> messages;
       for (const Diagnostic& d : error.diagnostics()) messages.insert(d.message);
-      throw std::runtime_error(
-          fmt::format("no job can be made of these recordings:\n{}", fmt::join(messages, "\n")));
+      throw std::runtime_error(fmt::format("no job can be created from these recordings:\n{}",
+                                           fmt::join(messages, "\n")));
     }
   }
 
@@ -436,13 +438,10 @@ class Initialiser {
 
   std::string job_text() const {
     std::string text = fmt::format(
-        "# Written by axisfit {} --init. It runs as it is:\n#\n"
-        "#   fit-params {} --check    what the recordings show, before the fit\n"
-        "#   fit-params {}\n#\n"
-        "# What is marked GUESSED nothing in the recordings says: look at that first. All\n"
-        "# keys: docs/job-file.md.\n"
-        "axis: {}\n"
-        "recordings:\n",
+        "# Written by axisfit {} --init. It can be run as it is:\n#\n#   fit-params {} --check    "
+        "what the recordings show, before the fit\n#   fit-params {}\n#\n# Values marked GUESSED "
+        "do not follow from the recordings: check them first. All\n# keys: "
+        "docs/job-file.md.\naxis: {}\nrecordings:\n",
         version(), kJobName, kJobName, scalar(starter_ ? kAxisName : relative(axis_)));
     for (std::size_t i = 0; i < sources_.size(); ++i)
       text += recording_text(sources_[i], sources_.size() > 1 && i + 1 == sources_.size());
@@ -450,10 +449,11 @@ class Initialiser {
         fmt::format("free:   # initial values are those of the axis file{}\n",
                     starter_ && starter_->gain_guessed ? "; bounds leave room for any K_f" : "");
     for (const Candidate& c : candidates_) {
-      if (c.left_out.empty())
+      if (c.reason_not_free.empty())
         text += fmt::format("  {}: {}\n", c.name, c.entry);
       else
-        text += comment(fmt::format("{}: {}   left out: {}", c.name, c.entry, c.left_out), 2);
+        text +=
+            comment(fmt::format("{}: {}   not free: {}", c.name, c.entry, c.reason_not_free), 2);
     }
     return text + fit_text();
   }
@@ -463,7 +463,7 @@ class Initialiser {
     std::string text =
         fmt::format("  - name: {}\n    file: {}\n", scalar(source.name), scalar(source.file));
     text +=
-        validates ? "    role: validate   # not fitted: it judges the fit\n" : "    role: fit\n";
+        validates ? "    role: validate   # not fitted: validates the fit\n" : "    role: fit\n";
     text += initial_text(guess);
     const Sampling found = sampling(guess.time.values);
     text += reasons_text(guess.time, 4);
@@ -483,9 +483,10 @@ class Initialiser {
       GuessedColumn written = c;
       const bool compared = c.kind == Kind::position && is_rounded_away(c, guess);
       if (compared)
-        written.reasons.push_back(fmt::format(
-            "compared only: its steps of {:.3g} m are no noise, and the velocity tells the same",
-            quantum(c.values)));
+        written.reasons.push_back(
+            fmt::format("compared only: its resolution of {:.3g} m is not noise, and the velocity "
+                        "carries the same information",
+                        resolution_of(c.values)));
       text += reasons_text(written, 6);
       text += fmt::format("      {}: {}\n", info(*signal_of(c.kind)).name,
                           column_map(c, c.unit, compared ? "fit" : ""));
@@ -512,7 +513,8 @@ class Initialiser {
       unit = "V";
       if (source.input->kind != Kind::velocity)
         written.reasons.push_back(
-            "the command of a force source; a job counts it in V, whatever it is, and K_f in N/V");
+            "the command of a force source; a job treats it as V, whatever its unit, and K_f as "
+            "N/V");
     }
     return reasons_text(written, 6) +
            fmt::format("      {}: {}\n", source.input->key, column_map(written, unit));
@@ -532,13 +534,13 @@ class Initialiser {
     } else {
       const auto& t = guess.time.values;
       speed = (position->values[kFirst] - position->values[0]) / (t[kFirst] - t[0]);
-      noise = std::max(noise_from_differences(position->values), quantum(position->values)) /
+      noise = std::max(noise_from_differences(position->values), resolution_of(position->values)) /
               (t[kFirst] - t[0]);
     }
     if (std::abs(speed) > 5.0 * noise + 1e-9)
-      return "    initial_state: data   # from the first samples: the axis moves already\n";
+      return "    initial_state: data   # from the first samples: the axis is already moving\n";
     if (position == nullptr || position->values.front() == 0.0) return {};
-    return fmt::format("    set: {{initial.y0: {}}}   # it begins at rest, there\n",
+    return fmt::format("    set: {{initial.y0: {}}}   # it starts at rest at this position\n",
                        with_unit(position->values.front(), "m"));
   }
 
@@ -550,17 +552,17 @@ class Initialiser {
                         *velocity = first.find(Kind::velocity);
     if (!force_source() || position == nullptr) return {};
     const std::vector<double> none;
-    const double rate =
-        telling_coupling(first.time.values, position->values, velocity ? velocity->values : none);
+    const double rate = suggested_observer_gain(first.time.values, position->values,
+                                                velocity ? velocity->values : none);
     return "fit:\n" +
            comment(
-               "The position is an open integral of the force: free running it drifts away "
-               "whatever the fit. So the simulation is held to the recording, and the "
-               "parameters are those that predict best. At this rate a hundredth of the "
-               "acceleration, were it missing, would show as ten times the noise; a firmer "
-               "hold hides more.",
+               "The position is an open-loop integral of the force: a free-running simulation "
+               "drifts away however good the fit. An observer therefore makes the simulation track "
+               "the recording, and the fit minimises the prediction error. At this gain, an "
+               "unmodelled hundredth of the acceleration would show as ten times the noise; a "
+               "higher gain hides more.",
                2) +
-           fmt::format("  coupling: {{fixed: {} 1/s}}\n", two_digits(rate));
+           fmt::format("  observer: {{fixed: {} 1/s}}\n", two_digits(rate));
   }
 
   std::string axis_, folder_;

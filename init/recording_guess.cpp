@@ -17,7 +17,7 @@ namespace axisfit {
 namespace {
 
 using Values = std::vector<double>;
-constexpr std::size_t kFewest = 10;  // samples of a recording, as the reader of jobs wants
+constexpr std::size_t kMinSamples = 10;  // samples of a recording, as the reader of jobs wants
 
 double largest(const Values& values) {
   double size = 0.0;
@@ -41,19 +41,19 @@ Values derivative(const Values& times, const Values& values) {
 }
 
 /// A column while its unit is looked for.
-struct Unsized {
+struct UnscaledColumn {
   GuessedColumn column;
   std::string named;  ///< unit in its name; empty: none
   double size = 0.0;  ///< of the unit in SI; zero: not known yet
   const Values* raw = nullptr;
   int rank = 0;
 
-  void take(const StoredUnit& unit) {
+  void set_unit(const StoredUnit& unit) {
     column.unit = unit.written;
     column.factor = unit.factor;
     size = unit.size;
   }
-  void take(double any_size) {
+  void set_unit(double any_size) {
     column.unit = si_unit(column.kind);
     column.factor = any_size;
     size = any_size;
@@ -90,7 +90,7 @@ class Guesser {
   using Key = std::pair<Kind, bool>;
 
   static bool usable(const Values& values) {
-    return values.size() >= kFewest &&
+    return values.size() >= kMinSamples &&
            std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
   }
 
@@ -103,24 +103,24 @@ class Guesser {
   void find_time() {
     for (const auto& [name, values] : file_.columns()) {
       const auto guess = heading(name);
-      if (!guess || guess->kind != Kind::time || !usable(values) || !is_harmless(name)) continue;
+      if (!guess || guess->kind != Kind::time || !usable(values) || !is_sanitized(name)) continue;
       if (time_.raw == nullptr || guess->rank > time_.rank) set_time(name, values, *guess);
     }
     if (time_.raw != nullptr) return;
     // One that increases at an even pace, as nothing else does.
     for (const auto& [name, values] : file_.columns()) {
-      if (!usable(values) || !is_harmless(name) || !increases(values) ||
+      if (!usable(values) || !is_sanitized(name) || !increases(values) ||
           sampling(values).jitter > 1e-3)
         continue;
       set_time(name, values, {});
-      time_.guess("no name says time; this column increases at an even pace");
+      time_.guess("no column is named as the time; this one increases evenly");
       return;
     }
     std::vector<std::string> names;
     for (const auto& [name, values] : file_.columns()) names.push_back(name);
     throw RecordingError(path_, 0,
-                         fmt::format("no column can be the time of the samples; it has {}: name "
-                                     "one of them time_s, or add one",
+                         fmt::format("no column can be the sample time; the columns are {}: rename "
+                                     "one of them to time_s, or add one",
                                      fmt::join(names, ", ")));
   }
 
@@ -137,51 +137,51 @@ class Guesser {
     for (const auto& [name, values] : file_.columns()) {
       if (&values == time_.raw) continue;
       const auto guess = heading(name);
-      if (!guess || guess->kind == Kind::time || !usable(values) || !is_harmless(name) ||
+      if (!guess || guess->kind == Kind::time || !usable(values) || !is_sanitized(name) ||
           values.size() != time_.raw->size()) {
         unused_.push_back(name);
         continue;
       }
       // A command is wanted by its nature.
       const bool command = guess->kind == Kind::command || guess->kind == Kind::set_velocity;
-      const Key key{guess->kind, guess->wanted && !command};
+      const Key key{guess->kind, guess->is_setpoint && !command};
       const auto there = columns_.find(key);
       if (there != columns_.end() && there->second.rank >= guess->rank) {
         unused_.push_back(name);
         continue;
       }
       if (there != columns_.end()) unused_.push_back(there->second.column.column);
-      Unsized& column = columns_[key] = {};
+      UnscaledColumn& column = columns_[key] = {};
       column.column.column = name;
       column.column.kind = key.first;
-      column.column.wanted = key.second;
+      column.column.is_setpoint = key.second;
       column.named = guess->unit;
       column.raw = &values;
       column.rank = guess->rank;
     }
-    if (!time_.named.empty()) time_.take(*stored_unit(Kind::time, time_.named));
+    if (!time_.named.empty()) time_.set_unit(*stored_unit(Kind::time, time_.named));
     for (auto& [key, column] : columns_)
-      if (!column.named.empty()) column.take(*stored_unit(key.first, column.named));
+      if (!column.named.empty()) column.set_unit(*stored_unit(key.first, column.named));
   }
 
-  Unsized* find(Kind kind, bool wanted = false) {
-    const auto at = columns_.find({kind, wanted});
+  UnscaledColumn* find(Kind kind, bool is_setpoint = false) {
+    const auto at = columns_.find({kind, is_setpoint});
     return at == columns_.end() ? nullptr : &at->second;
   }
 
   /// By the interval between samples, unless a position and a velocity of known units tell.
   void size_time() {
     if (time_.size > 0.0) return;
-    const Unsized *position = find(Kind::position), *velocity = find(Kind::velocity);
+    const UnscaledColumn *position = find(Kind::position), *velocity = find(Kind::velocity);
     if (position && velocity && position->size > 0.0 && velocity->size > 0.0) {
       const auto found = rate_ratio(*time_.raw, *position->raw, *velocity->raw);
       if (found && found->related()) {
         const StoredUnit* unit =
             unit_of_size(Kind::time, position->size / (std::abs(found->ratio) * velocity->size));
         if (unit != nullptr) {
-          time_.take(*unit);
-          time_.reason(
-              fmt::format("in {} the position changes as fast as the velocity says", unit->text));
+          time_.set_unit(*unit);
+          time_.reason(fmt::format("in {}, the derivative of the position agrees with the velocity",
+                                   unit->text));
           return;
         }
       }
@@ -191,21 +191,22 @@ class Guesser {
                        : interval < 50.0 ? "ms"
                        : interval <= 1e4 ? "us"
                                          : "ns";
-    time_.take(*stored_unit(Kind::time, text));
-    time_.guess(fmt::format("no unit in the header; a sample each {:.4g}, in {} that is {:.4g} Hz",
-                            interval, text, 1.0 / (interval * time_.size)));
+    time_.set_unit(*stored_unit(Kind::time, text));
+    time_.guess(
+        fmt::format("no unit in the header; one sample every {:.4g}, taken as {}: {:.4g} Hz",
+                    interval, text, 1.0 / (interval * time_.size)));
   }
 
   /// Position and velocity: each tells the unit of the other.
   void size_motion() {
-    Unsized *position = find(Kind::position), *velocity = find(Kind::velocity);
+    UnscaledColumn *position = find(Kind::position), *velocity = find(Kind::velocity);
     std::optional<RateRatio> found;
     if (position && velocity) {
       found = rate_ratio(*time_.raw, *position->raw, *velocity->raw);
       if (found && !found->related()) {
         velocity->guess(
-            fmt::format("it does not go along with the derivative of the position "
-                        "(correlation {:.2f}): is it of the same axis?",
+            fmt::format("it does not follow the derivative of the position (correlation {:.2f}): "
+                        "is it from the same axis?",
                         found->correlation));
         found.reset();
       }
@@ -226,10 +227,10 @@ class Guesser {
   }
 
   void size_acceleration() {
-    Unsized* acceleration = find(Kind::acceleration);
+    UnscaledColumn* acceleration = find(Kind::acceleration);
     if (acceleration == nullptr) return;
-    Unsized *velocity = find(Kind::velocity), *position = find(Kind::position);
-    const Unsized* of = velocity ? velocity : position;
+    UnscaledColumn *velocity = find(Kind::velocity), *position = find(Kind::position);
+    const UnscaledColumn* of = velocity ? velocity : position;
     std::optional<RateRatio> found;
     Values derived;
     if (velocity) {
@@ -241,103 +242,101 @@ class Guesser {
       found = rate_ratio(*time_.raw, derived, *acceleration->raw);
     }
     if (found && found->related()) {
-      Unsized like = *of;
+      UnscaledColumn like = *of;
       if (velocity == nullptr) like.size /= time_.size;
       size_rate(*acceleration, like, *found,
                 velocity ? "the velocity" : "the derivative of the position");
     } else if (acceleration->size == 0.0) {
-      acceleration->take(*stored_unit(Kind::acceleration, "m/s^2"));
-      acceleration->guess("no unit in the header, and no velocity shows it");
+      acceleration->set_unit(*stored_unit(Kind::acceleration, "m/s^2"));
+      acceleration->guess("no unit in the header, and no velocity to infer it from");
     }
   }
 
   static double rounded(double size) { return std::stod(fmt::format("{:.4g}", size)); }
 
   /// The unit of the derivative of `of`, which is `found.ratio` times that.
-  void size_rate(Unsized& rate, const Unsized& of, const RateRatio& found,
+  void size_rate(UnscaledColumn& rate, const UnscaledColumn& of, const RateRatio& found,
                  const char* words) const {
     const double size = of.size / (std::abs(found.ratio) * time_.size);
     const std::string measured =
         fmt::format("{:.5g} times the derivative of {}", found.ratio, words);
     if (rate.size > 0.0 && std::abs(std::log(size / rate.size)) < kSameUnit) {
-      rate.reason(fmt::format("{}, as {} should be", measured, rate.named));
+      rate.reason(fmt::format("{}, as expected for {}", measured, rate.named));
     } else if (rate.size > 0.0) {
       const StoredUnit* unit = unit_of_size(rate.column.kind, size);
-      rate.guess(fmt::format("though the header says {} it is {}: {}", rate.named, measured,
+      rate.guess(fmt::format("the header says {}, but it is {}: {}", rate.named, measured,
                              unit ? fmt::format("taken as {}", unit->text)
                                   : fmt::format("a factor of {:.4g} makes them agree", size)));
-      unit ? rate.take(*unit) : rate.take(rounded(size));
+      unit ? rate.set_unit(*unit) : rate.set_unit(rounded(size));
     } else {
       from_ratio(rate, size, measured);
     }
     if (found.ratio > 0.0) return;
     rate.column.negative = true;
-    rate.guess("its sign is turned, or turn that of " + of.column.column);
+    rate.guess("its sign was inverted; if that is wrong, invert that of " + of.column.column);
   }
 
-  static void from_ratio(Unsized& column, double size, const std::string& measured) {
+  static void from_ratio(UnscaledColumn& column, double size, const std::string& measured) {
     if (const StoredUnit* unit = unit_of_size(column.column.kind, size)) {
-      column.take(*unit);
+      column.set_unit(*unit);
       column.reason(fmt::format("{}: taken as {}", measured, unit->text));
     } else {
-      column.take(rounded(size));
-      column.guess(fmt::format("{}, so that 1 of it is {:.4g} {}, which no unit is", measured, size,
-                               si_unit(column.column.kind)));
+      column.set_unit(rounded(size));
+      column.guess(fmt::format("{}: one unit is {:.4g} {}, which matches no known unit", measured,
+                               size, si_unit(column.column.kind)));
     }
   }
 
   /// What nothing but the size of the values tells.
-  static void size_by_range(Unsized& column) {
+  static void size_by_range(UnscaledColumn& column) {
     const bool position = column.column.kind == Kind::position;
     const double range = largest(*column.raw);
-    if (position && quantum(*column.raw) == 1.0 && range > 1e4) {
-      column.take(*stored_unit(Kind::position, "counts"));
-      column.guess("whole numbers, so counts of an encoder: make the factor the metres of a count");
+    if (position && resolution_of(*column.raw) == 1.0 && range > 1e4) {
+      column.set_unit(*stored_unit(Kind::position, "counts"));
+      column.guess("whole numbers, taken as encoder counts: set the factor to metres per count");
       return;
     }
     const char* text = position ? (range < 10.0 ? "m" : "mm") : (range < 10.0 ? "m/s" : "mm/s");
-    column.take(*stored_unit(column.column.kind, text));
+    column.set_unit(*stored_unit(column.column.kind, text));
     column.guess(
         fmt::format("no unit in the header; values up to {:.4g}, taken as {}", range, text));
   }
 
-  void size_other(Unsized& column) {
+  void size_other(UnscaledColumn& column) {
     const Kind kind = column.column.kind;
-    const Unsized* measured = column.column.wanted ? find(kind) : nullptr;
+    const UnscaledColumn* measured = column.column.is_setpoint ? find(kind) : nullptr;
     if (measured != nullptr && measured->size > 0.0) {
       column.column.unit = measured->column.unit;
       column.column.factor = measured->column.factor;
       column.size = measured->size;
-      column.guess(fmt::format("no unit in the header; as {}", measured->column.column));
+      column.guess(fmt::format("no unit in the header; same unit as {}", measured->column.column));
       return;
     }
     if (kind == Kind::position || kind == Kind::velocity) {
       size_by_range(column);
       return;
     }
-    column.take(stored_units(kind).front());
+    column.set_unit(stored_units(kind).front());
     column.guess(fmt::format("no unit in the header, taken as {}", column.column.unit));
   }
 
   /// What there is to say of units that a job cannot write.
-  static void explain(Unsized& column) {
+  static void explain(UnscaledColumn& column) {
     const StoredUnit* unit = stored_unit(column.column.kind, column.named);
     if (unit == nullptr || unit->written == unit->text || column.size != unit->size) return;
     if (unit->text == "counts")
-      column.guess("counts: make the factor the metres of one");
+      column.guess("encoder counts: set the factor to metres per count");
     else if (column.column.kind == Kind::force)
-      column.guess(
-          fmt::format("in {}: as if the lever were 1 m; divide the factor by r_g", unit->text));
+      column.guess(fmt::format("in {}: converted with a lever of 1 m; divide the factor by r_g",
+                               unit->text));
     else if (column.column.kind == Kind::command)
-      column.guess(fmt::format("in {}, which stand for V here", unit->text));
+      column.guess(fmt::format("in {}, treated as V here", unit->text));
     else if (column.column.kind != Kind::acceleration || unit->text != "g")
-      column.guess(
-          fmt::format("in {}: 1 m stands for 1 rad, unless the factor is multiplied by "
-                      "the radius",
-                      unit->text));
+      column.guess(fmt::format("in {}: 1 rad is treated as 1 m; multiply the factor by the radius",
+                               unit->text));
   }
 
-  static GuessedColumn finished(Unsized& column) {
+  static GuessedColumn finished(UnscaledColumn& column) {
     GuessedColumn result = std::move(column.column);
     const double size = column.size * (result.negative ? -1.0 : 1.0);
     for (const double x : *column.raw) result.values.push_back(x * size);
@@ -346,21 +345,21 @@ class Guesser {
 
   const RecordingFile& file_;
   const std::string& path_;
-  Unsized time_;
-  std::map<Key, Unsized> columns_;
+  UnscaledColumn time_;
+  std::map<Key, UnscaledColumn> columns_;
   std::vector<std::string> unused_;
 };
 
 }  // namespace
 
-const GuessedColumn* RecordingGuess::find(Kind kind, bool wanted) const {
+const GuessedColumn* RecordingGuess::find(Kind kind, bool is_setpoint) const {
   for (const GuessedColumn& c : columns)
-    if (c.kind == kind && c.wanted == wanted) return &c;
+    if (c.kind == kind && c.is_setpoint == is_setpoint) return &c;
   return nullptr;
 }
 
-GuessedColumn* RecordingGuess::find(Kind kind, bool wanted) {
-  return const_cast<GuessedColumn*>(std::as_const(*this).find(kind, wanted));
+GuessedColumn* RecordingGuess::find(Kind kind, bool is_setpoint) {
+  return const_cast<GuessedColumn*>(std::as_const(*this).find(kind, is_setpoint));
 }
 
 RecordingGuess guess_recording(const RecordingFile& file, const std::string& path) {

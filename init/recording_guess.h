@@ -13,8 +13,8 @@ namespace axisfit {
 struct GuessedColumn {
   std::string column;  ///< its name
   Kind kind = Kind::command;
-  bool wanted = false;  ///< see ColumnGuess
-  std::string unit;     ///< as written in the job
+  bool is_setpoint = false;  ///< see ColumnGuess
+  std::string unit;          ///< as written in the job
   double factor = 1.0;
   bool negative = false;             ///< its sign is to be turned
   std::vector<std::string> reasons;  ///< what was measured, sentences without a full stop
@@ -28,8 +28,8 @@ struct RecordingGuess {
   std::vector<GuessedColumn> columns;  ///< one at most of each kind, measured and wanted
   std::vector<std::string> unused;     ///< names of all others
 
-  const GuessedColumn* find(Kind kind, bool wanted = false) const;
-  GuessedColumn* find(Kind kind, bool wanted = false);
+  const GuessedColumn* find(Kind kind, bool is_setpoint = false) const;
+  GuessedColumn* find(Kind kind, bool is_setpoint = false);
 };
 
 /// Names first. Where they leave a unit open, the derivative of the position against the velocity,

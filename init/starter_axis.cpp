@@ -13,10 +13,10 @@ namespace axisfit {
 namespace {
 
 std::string origin(const std::string& recording) {
-  return comment(fmt::format("Written by axisfit {} --init, for {}. It is a start, not a "
-                             "description of your axis: what the job does not fit, take from data "
-                             "sheets.",
-                             version(), recording),
+  return comment(fmt::format(
+                     "Written by axisfit {} --init, for {}. This is a starting point, not a "
+                     "description of your axis: take what the job does not fit from data sheets.",
+                     version(), recording),
                  0) +
          "#\n";
 }
@@ -24,16 +24,16 @@ std::string origin(const std::string& recording) {
 /// What stands above K_f.
 std::string gain_comment(const DrivenMass& seen) {
   if (seen.input == DrivenMass::Input::force)
-    return comment("No part where the recordings hold the force itself.", 2);
+    return comment("Not used where the recordings contain the force itself.", 2);
   const bool current = seen.input == DrivenMass::Input::current;
   return comment(
-      fmt::format("{}newtons for each {} of {}. Motion shows only the ratios of the mass and the "
-                  "frictions to it, so that it is not fitted: put {} here, and M, B_a, F_c and F_0 "
-                  "come out right. Multiply their initial values alike, and --check is right, too.",
-                  kGuessed, current ? "ampere" : "volt (or what its unit is)", seen.column,
-                  current ? "torque constant / pinion radius, or 2 pi torque constant / spindle "
-                            "lead,"
-                          : "the gain of the drive"),
+      fmt::format("{}newtons per {} of {}. A motion shows only the ratios of mass and friction to "
+                  "it, so it is not fitted: put {} here, and M, B_a, F_c and F_0 will be correct. "
+                  "Scale their initial values likewise, so that --check is correct too.",
+                  kGuessed, current ? "ampere" : "volt (or whatever its unit is)", seen.column,
+                  current
+                      ? "torque constant / pinion radius, or 2 pi * torque constant / screw lead,"
+                      : "the drive gain"),
       2);
 }
 
@@ -43,8 +43,8 @@ StarterAxis velocity_loop_starter(const std::string& recording) {
   StarterAxis starter;
   starter.structure = {Drive::velocity_loop, Transmission::backlash, {}};
   starter.text = fmt::format(
-      "{}# GUESSED: all of it. The recordings look like those of a velocity loop, so these\n"
-      "# are the values of a published one. Put yours; docs/axis-file.md.\n#\n{}",
+      "{}# GUESSED: everything. The recordings look like those of a velocity loop, so these\n# are "
+      "the values of a published axis. Replace them by yours; docs/axis-file.md.\n#\n{}",
       origin(recording), paper_axis());
   return starter;
 }
@@ -71,24 +71,15 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
   const double viscous = balance.viscous > 0.0 ? balance.viscous * gain
                                                : 0.1 * most / std::max(seen.largest_speed, 1e-3);
   starter.text = fmt::format(
-      "{}# One mass with viscous and Coulomb friction that a force moves: the least that a\n"
-      "# driven axis has. What it lacks fit-params tells, and --close-loop adds. All\n"
-      "# keys: docs/axis-file.md.\n"
-      "name: starter axis\n"
-      "drive: force_source   # {} moves it\n"
-      "transmission: rigid   # motor and arm move as one; backlash needs a motor\n"
-      "parameters:\n"
-      "{}"
-      "  K_f: {}\n"
-      "  # {}\n"
-      "  M: {}\n"
-      "  B_a: {}\n"
-      "effects:   # likewise\n"
-      "  coulomb_friction: {{F_c: {}}}\n"
-      "  constant_force: {{F_0: {}}}   # gravity, or an offset of the drive\n",
-      origin(recording), harmless(seen.column), gain_comment(seen), with_unit(gain, "N/V"),
-      sound ? "Fitted by the job; these are where it starts, from a balance of impulses."
-            : "GUESSED, for the recording has no balance of impulses; fitted by the job.",
+      "{}# One mass with viscous and Coulomb friction, driven by a force: the simplest model\n# of "
+      "an axis. fit-params reports what it lacks, and --close-loop adds it. All\n# keys: "
+      "docs/axis-file.md.\nname: starter axis\ndrive: force_source   # driven by {}\ntransmission: "
+      "rigid   # motor and arm move as one; backlash needs a motor\nparameters:\n{}  K_f: {}\n  # "
+      "{}\n  M: {}\n  B_a: {}\neffects:   # initial values, as above\n  coulomb_friction: {{F_c: "
+      "{}}}\n  constant_force: {{F_0: {}}}   # gravity, or an offset of the drive\n",
+      origin(recording), sanitized(seen.column), gain_comment(seen), with_unit(gain, "N/V"),
+      sound ? "Fitted by the job; initial values from an impulse balance."
+            : "GUESSED, because no impulse balance could be computed; fitted by the job.",
       with_unit(within(balance.mass * gain, 1e-3, 1e5), "kg"),
       with_unit(within(viscous, 1e-6, 1e6), "N s/m"),
       with_unit(within(std::max(balance.coulomb * gain, 0.01 * most), 0.0, most), "N"),

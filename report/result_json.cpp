@@ -31,8 +31,8 @@ const char* noise_name(NoiseSource noise) {
       return "given";
     case NoiseSource::differences:
       return "differences";
-    case NoiseSource::rest:
-      return "rest";
+    case NoiseSource::standstill:
+      return "standstill";
     case NoiseSource::fit:
       return "fit";
   }
@@ -64,27 +64,27 @@ Json signal_json(const Measurement& measurement, const SignalError& e, bool fini
     signal["prediction_rmse"] = *e.prediction_rmse;
     signal["prediction_reduced_chi_square"] = e.prediction_reduced_chi_square.value();
   }
-  if (const auto rest = left_out(measurement)) {
-    signal["left_out"] = rest->samples;
-    signal["mean_left_out"] = rest->mean;
+  if (const auto excluded = excluded_samples(measurement)) {
+    signal["excluded_samples"] = excluded->samples;
+    signal["excluded_mean"] = excluded->mean;
   }
   return signal;
 }
 
 Json recording_json(const Recording& recording, const RecordingResult& result,
-                    const std::vector<std::string>& concerns) {
+                    const std::vector<std::string>& warnings) {
   Json signals = Json::array();
   for (std::size_t m = 0; m < recording.measurements.size(); ++m)
     signals.push_back(
-        signal_json(recording.measurements[m], result.signals[m], result.prediction.finished));
+        signal_json(recording.measurements[m], result.signals[m], result.free_running.finished));
   return {{"name", recording.name},
           {"file", recording.file},
           {"role", role_name(recording, true)},
           {"samples", recording.times.size()},
           {"start_s", recording.times.front()},
           {"end_s", recording.times.back()},
-          {"events", result.prediction.events},
-          {"concerns", concerns},
+          {"events", result.free_running.events},
+          {"warnings", warnings},
           {"signals", std::move(signals)}};
 }
 
@@ -115,8 +115,8 @@ Json parameter_json(const ParameterResult& p, const FreeParameter& free) {
 }
 
 /// What is known of the parameters together.
-Json together_json(const ParameterSpace& space, const Eigen::MatrixXd& correlation,
-                   const Identifiability& known) {
+Json identifiability_json(const ParameterSpace& space, const Eigen::MatrixXd& correlation,
+                          const Identifiability& known) {
   const auto name = [&](std::size_t i) { return space.name(i); };
   Json rows = Json::array();
   for (const auto& row : correlation.rowwise()) rows.push_back(list(row, finite));
@@ -131,7 +131,7 @@ Json together_json(const ParameterSpace& space, const Eigen::MatrixXd& correlati
                                    parts[name(part.parameter)] = part.change;
                                  return Json{{"singular_value", weak.singular_value},
                                              {"direction", std::move(parts)},
-                                             {"words", weak.words}};
+                                             {"description", weak.description}};
                                })},
       {"combinations", list(known.combinations, [](const Combination& c) {
          return Json{{"name", c.name}, {"value", c.value}, {"standard_error", c.standard_error}};
@@ -141,11 +141,11 @@ Json together_json(const ParameterSpace& space, const Eigen::MatrixXd& correlati
 /// What the intervals rest on.
 Json assumptions_json(const FitResult& fit) {
   return {{"residuals",
-           "stationary, with the variance and autocorrelation found in each signal, "
-           "no less than the stated noise"},
+           "stationary, with the variance and autocorrelation estimated for each signal, not below "
+           "the stated noise"},
           {"model", "linear over the intervals"},
-          {"samples_per_independent_sample", fit.colour},
-          {"degrees_of_freedom", fit.freedom}};
+          {"autocorrelation_time", fit.autocorrelation_time},
+          {"degrees_of_freedom", fit.degrees_of_freedom}};
 }
 
 Json profile_json(const Profile& profile, const FitResult& fit) {
@@ -173,16 +173,16 @@ Json suggestion_json(const Suggestion& s, const FitResult& fit) {
                          {"standard_error", optional(u.determined, u.standard_error)},
                          {"confidence_interval", interval_json(u)}});
   }
-  return {{"motion", s.experiment.words},
+  return {{"motion", s.experiment.description},
           {"duration_s", s.experiment.duration},
-          {"for", fit.parameters[s.parameter].name},
+          {"parameter", fit.parameters[s.parameter].name},
           {"predicted", std::move(predicted)},
           {"limits",
            {{"travel_m", {*s.limits.lowest, *s.limits.highest}},
             {"speed_mps", *s.limits.speed},
             {"voltage_v", *s.limits.voltage}}},
-          {"tried", s.tried},
-          {"allowed", s.allowed}};
+          {"motions_tried", s.tried},
+          {"motions_feasible", s.feasible}};
 }
 
 Json force_json(const MissingForce& force) {
@@ -195,28 +195,28 @@ Json force_json(const MissingForce& force) {
 
 Json test_json(const Job& job, const SeriesTest& test) {
   const Recording& recording = job.recordings[test.series.recording];
-  return {
-      {"recording", recording.name},
-      {"signal", info(recording.measurements[test.series.measurement].signal).name},
-      {"role", role_name(recording, test.series.fitted)},
-      {"reduced_chi_square", test.reduced_chi_square},
-      {"autocorrelation_time", test.autocorrelation_time},
-      {"unexplained_percent", test.unexplained_percent},
-      {"explained", test.explained},
-      {"dependences", list(test.dependences,
-                           [](const Dependence& d) {
-                             return Json{{"on", d.on}, {"share", d.share}, {"p_value", d.p_value}};
-                           })},
-      {"outliers", list(test.outliers,
-                        [&](std::size_t i) {
-                          return Json{{"time_s", recording.times[test.series.samples[i]]},
-                                      {"residual_over_sigma", test.series.values[i]}};
-                        })},
-      {"drift",
-       {{"over_sigma_per_second", test.drift.per_second},
-        {"standard_error", finite(test.drift.standard_error)},
-        {"p_value", test.drift.p_value}}},
-      {"grid", test.grid}};
+  return {{"recording", recording.name},
+          {"signal", info(recording.measurements[test.series.measurement].signal).name},
+          {"role", role_name(recording, test.series.fitted)},
+          {"reduced_chi_square", test.reduced_chi_square},
+          {"autocorrelation_time", test.autocorrelation_time},
+          {"unexplained_percent", test.unexplained_percent},
+          {"explained", test.explained},
+          {"dependences",
+           list(test.dependences,
+                [](const Dependence& d) {
+                  return Json{{"variable", d.on}, {"fraction", d.fraction}, {"p_value", d.p_value}};
+                })},
+          {"outliers", list(test.outliers,
+                            [&](std::size_t i) {
+                              return Json{{"time_s", recording.times[test.series.samples[i]]},
+                                          {"residual_over_sigma", test.series.values[i]}};
+                            })},
+          {"drift",
+           {{"over_sigma_per_second", test.drift.per_second},
+            {"standard_error", finite(test.drift.standard_error)},
+            {"p_value", test.drift.p_value}}},
+          {"resolution", test.resolution}};
 }
 
 Json quantities_json(const std::vector<std::size_t>& quantities,
@@ -229,11 +229,11 @@ Json quantities_json(const std::vector<std::size_t>& quantities,
   return array;
 }
 
-Json suspect_json(const Suspect& s) {
+Json suspected_effect_json(const SuspectedEffect& s) {
   return {{"name", s.candidate.name},
-          {"slot", s.candidate.slot},
+          {"acts_on", s.candidate.acts_on},
           {"meaning", s.candidate.meaning},
-          {"share", s.share},
+          {"fraction", s.fraction},
           {"strengths", quantities_json(s.candidate.strengths, s.strengths)},
           {"shapes", quantities_json(s.candidate.shapes, s.shapes)}};
 }
@@ -248,14 +248,14 @@ Json residual_json(const Job& job, const Diagnosis& diagnosis) {
   }
   return {{"explained", diagnosis.explained},
           {"tests", list(diagnosis.tests, [&](const SeriesTest& t) { return test_json(job, t); })},
-          {"suspects", list(diagnosis.suspects, suspect_json)},
+          {"suspected_effects", list(diagnosis.suspected_effects, suspected_effect_json)},
           {"missing_force", std::move(forces)}};
 }
 
 Json effect_json(const EffectTrial& t) {
   const bool judged = t.improvement.comparable;
   return {{"name", t.candidate.name},
-          {"slot", t.candidate.slot},
+          {"acts_on", t.candidate.acts_on},
           {"meaning", t.candidate.meaning},
           {"decision", decision_name(t.decision)},
           {"accepted", t.decision == Decision::accepted},
@@ -264,7 +264,7 @@ Json effect_json(const EffectTrial& t) {
           {"score", t.score},
           {"parameters", list(t.parameters, estimate_json)},
           {"p_value", optional(judged, t.improvement.p_value)},
-          {"validate_improvement_percent", optional(judged, t.improvement.validate_percent)}};
+          {"validation_improvement_percent", optional(judged, t.improvement.validate_percent)}};
 }
 
 Json score_json(const Job& job, const SignalScore& score) {
@@ -278,14 +278,14 @@ Json score_json(const Job& job, const SignalScore& score) {
             {"rmse", optional(finished, errors.rmse)},
             {"nrmse_percent", optional(finished, errors.nrmse_percent)},
             {"reduced_chi_square", optional(finished, errors.reduced_chi_square)}};
-  if (score.held) {
-    json["prediction_rmse"] = score.held->rmse;
-    json["prediction_reduced_chi_square"] = score.held->reduced_chi_square;
+  if (score.tracking) {
+    json["prediction_rmse"] = score.tracking->rmse;
+    json["prediction_reduced_chi_square"] = score.tracking->reduced_chi_square;
   }
   return json;
 }
 
-Json model_json(const LoopModel& model, const ModelScore& score) {
+Json model_json(const SelectionStep& model, const ModelScore& score) {
   Json recordings = Json::array();
   for (std::size_t r = 0; r < model.job.recordings.size(); ++r) {
     const Recording& recording = model.job.recordings[r];
@@ -304,22 +304,22 @@ Json model_json(const LoopModel& model, const ModelScore& score) {
 }
 
 /// What only a closed loop has.
-Json loop_json(const Outcome& outcome) {
-  const ClosedLoop& loop = *outcome.loop;
-  const std::vector<ModelScore>& scores = outcome.scores;
+Json selection_json(const RunResult& run_result) {
+  const EffectSelection& selection = *run_result.selection;
+  const std::vector<ModelScore>& scores = run_result.scores;
   Json models = Json::array();
-  for (std::size_t i = 0; i < loop.models.size(); ++i)
-    models.push_back(model_json(loop.models[i], scores[i]));
-  Json json{{"effects", list(loop.effects, effect_json)},
+  for (std::size_t i = 0; i < selection.models.size(); ++i)
+    models.push_back(model_json(selection.models[i], scores[i]));
+  Json json{{"effects", list(selection.effects, effect_json)},
             {"before", models.front()},
             {"after", models.back()}};
   models.erase(0);
   json["models"] = std::move(models);
-  json["closed_loop"] = {
-      {"verdict", loop.verdict},
-      {"explained", loop.explained},
-      {"held_out_blocks", loop.held_out_blocks},
-      {"hints", list(outcome.separations, [](const Separation& s) { return s.words; })}};
+  json["selection"] = {{"verdict", selection.verdict},
+                       {"explained", selection.explained},
+                       {"held_out_blocks", selection.held_out_blocks},
+                       {"hints", list(run_result.discriminations,
+                                      [](const Discrimination& s) { return s.description; })}};
   return json;
 }
 
@@ -336,9 +336,9 @@ Json recording_check_json(const Job& job, const Recording& recording, const Reco
                        {"sigma", measurement.sigma},
                        {"sigma_source", noise_name(measurement.noise)},
                        {"noise", values.noise},
-                       {"grid", values.grid},
-                       {"frozen_samples", values.frozen},
-                       {"frozen_at_s", optional(values.frozen > 0, values.frozen_at)},
+                       {"resolution", values.resolution},
+                       {"stuck_samples", values.stuck},
+                       {"stuck_at_s", optional(values.stuck > 0, values.stuck_at)},
                        {"clipped_samples", values.clipped},
                        {"clipped_at", optional(values.clipped > 0, values.clipped_at)}});
   }
@@ -356,7 +356,7 @@ Json recording_check_json(const Job& job, const Recording& recording, const Reco
            {{"lowest", check.command.low},
             {"highest", check.command.high},
             {"switches", check.switches},
-            {"share_of_time_at_largest", check.at_largest}}},
+            {"fraction_of_time_at_maximum", check.at_maximum}}},
           {"signals", std::move(signals)},
           {"rates", list(check.rates,
                          [](const RateCheck& rate) {
@@ -365,73 +365,73 @@ Json recording_check_json(const Job& job, const Recording& recording, const Reco
                                        {"ratio", rate.found.ratio},
                                        {"correlation", rate.found.correlation}};
                          })},
-          {"concerns", concerns_of(job, recording, check)}};
+          {"warnings", warnings_for(job, recording, check)}};
 }
 
 }  // namespace
 
-Json result_json(const Outcome& outcome) {
-  const Job& job = outcome.job();
-  const FitResult& fit = outcome.fit();
+Json result_json(const RunResult& run_result) {
+  const Job& job = run_result.job();
+  const FitResult& fit = run_result.fit();
   Json recordings = Json::array(), parameters = Json::array();
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     recordings.push_back(
         recording_json(job.recordings[r], fit.recordings[r],
-                       concerns_of(outcome.baseline, job.recordings[r], outcome.checks[r])));
+                       warnings_for(run_result.baseline, job.recordings[r], run_result.checks[r])));
   for (std::size_t i = 0; i < job.free.size(); ++i)
-    parameters.push_back(parameter_json(fit.parameters[i], as_declared(outcome, i)));
-  Json json{
-      {"schema_version", kSchemaVersion},
-      {"version", version()},
-      {"status", text(fit.status)},
-      {"usable", fit.usable},
-      {"interrupted", outcome.interrupted},
-      {"out_of_time", outcome.out_of_time},
-      {"verdict", fit.verdict},
-      {"message", fit.message},
-      {"axis", outcome.baseline.axis},
-      {"recordings", std::move(recordings)},
-      {"parameters", std::move(parameters)},
-      {"reduced_chi_square", finite(fit.reduced_chi_square)},
-      {"residual", outcome.diagnosis ? residual_json(job, *outcome.diagnosis) : Json(nullptr)}};
-  json.update(together_json(ParameterSpace(job), fit.correlation, fit.identifiability));
+    parameters.push_back(parameter_json(fit.parameters[i], as_specified(run_result, i)));
+  Json json{{"schema_version", kSchemaVersion},
+            {"version", version()},
+            {"status", text(fit.status)},
+            {"usable", fit.usable},
+            {"interrupted", run_result.interrupted},
+            {"time_limit_reached", run_result.time_limit_reached},
+            {"verdict", fit.verdict},
+            {"message", fit.message},
+            {"axis", run_result.baseline.axis},
+            {"recordings", std::move(recordings)},
+            {"parameters", std::move(parameters)},
+            {"reduced_chi_square", finite(fit.reduced_chi_square)},
+            {"residual",
+             run_result.diagnosis ? residual_json(job, *run_result.diagnosis) : Json(nullptr)}};
+  json.update(identifiability_json(ParameterSpace(job), fit.correlation, fit.identifiability));
   json["assumptions"] = assumptions_json(fit);
-  if (!outcome.profiles.empty())
+  if (!run_result.profiles.empty())
     json["profile"] =
-        list(outcome.profiles, [&](const Profile& p) { return profile_json(p, fit); });
-  if (outcome.wishes.experiment)
+        list(run_result.profiles, [&](const Profile& p) { return profile_json(p, fit); });
+  if (run_result.run_options.experiment)
     json["next_experiment"] =
-        outcome.suggestion ? suggestion_json(*outcome.suggestion, fit) : Json(nullptr);
-  if (outcome.loop) json.update(loop_json(outcome));
-  json.update(Json{{"coupling_rate", fit.coupling_rate},
+        run_result.suggestion ? suggestion_json(*run_result.suggestion, fit) : Json(nullptr);
+  if (run_result.selection) json.update(selection_json(run_result));
+  json.update(Json{{"observer_gain", fit.observer_gain},
                    {"stages", list(fit.stages,
                                    [](const Stage& s) {
-                                     return Json{{"coupling_rate", s.coupling_rate},
+                                     return Json{{"observer_gain", s.observer_gain},
                                                  {"reduced_cost", finite(s.reduced_cost)},
                                                  {"iterations", s.iterations},
                                                  {"accepted", s.accepted}};
                                    })},
-                   {"starts", list(outcome.first.starts,
+                   {"starts", list(run_result.first.starts,
                                    [](const StartResult& s) {
                                      return Json{{"from", s.from},
                                                  {"to", s.to},
                                                  {"usable", s.usable},
                                                  {"reduced_cost", finite(s.reduced_cost)}};
                                    })},
-                   {"minima", list(distinct_minima(outcome.first.starts),
+                   {"minima", list(distinct_minima(run_result.first.starts),
                                    [](const Minimum& m) {
                                      return Json{{"reduced_cost", m.reduced_cost},
                                                  {"starts", m.starts},
                                                  {"values", m.values}};
                                    })},
                    {"iterations", fit.iterations},
-                   {"seed", outcome.baseline.options.seed},
-                   {"wall_time_s", outcome.wall_time}});
+                   {"seed", run_result.baseline.options.seed},
+                   {"wall_time_s", run_result.wall_time}});
   return json;
 }
 
 Json check_json(const Job& job, const std::vector<RecordingCheck>& checks, const Forecast& forecast,
-                const Effort& effort) {
+                const RunTimeEstimate& run_time) {
   Json recordings = Json::array();
   for (std::size_t r = 0; r < checks.size(); ++r)
     recordings.push_back(recording_check_json(job, job.recordings[r], checks[r]));
@@ -439,26 +439,28 @@ Json check_json(const Job& job, const std::vector<RecordingCheck>& checks, const
   Json parameters = Json::array();
   for (std::size_t i = 0; i < space.size() && forecast.finite; ++i) {
     const ParameterUncertainty& u = forecast.uncertainty.parameters[i];
-    Json shown = Json::array();
+    Json sensitivity = Json::array();
     for (std::size_t s = 0; s < forecast.series.size(); ++s) {
       const Recording& recording = job.recordings[forecast.series[s].recording];
       const Measurement& m = recording.measurements[forecast.series[s].measurement];
-      shown.push_back({{"recording", recording.name},
-                       {"signal", info(m.signal).name},
-                       {"rms_over_noise", forecast.shown(static_cast<Eigen::Index>(i),
-                                                         static_cast<Eigen::Index>(s))}});
+      sensitivity.push_back(
+          {{"recording", recording.name},
+           {"signal", info(m.signal).name},
+           {"rms_over_noise",
+            forecast.sensitivity(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(s))}});
     }
     parameters.push_back({{"name", space.name(i)},
                           {"initial", space[i].initial},
                           {"verdict", verdict_name(u)},
                           {"standard_error", optional(u.determined, u.standard_error)},
-                          {"shown", std::move(shown)}});
+                          {"sensitivity", std::move(sensitivity)}});
   }
-  Json json{{"schema_version", kSchemaVersion},    {"version", version()},
-            {"recordings", std::move(recordings)}, {"evaluation_time_s", effort.evaluation},
-            {"expected_time_s", effort.expected},  {"finite", forecast.finite},
+  Json json{{"schema_version", kSchemaVersion},     {"version", version()},
+            {"recordings", std::move(recordings)},  {"evaluation_time_s", run_time.evaluation},
+            {"expected_time_s", run_time.expected}, {"finite", forecast.finite},
             {"parameters", std::move(parameters)}};
-  json.update(together_json(space, forecast.uncertainty.correlation, forecast.together));
+  json.update(
+      identifiability_json(space, forecast.uncertainty.correlation, forecast.identifiability));
   return json;
 }
 

@@ -10,10 +10,10 @@
 
 namespace axisfit {
 
-nlohmann::ordered_json result_json(const Outcome& outcome);
+nlohmann::ordered_json result_json(const RunResult& run_result);
 
 /// What the recordings show and can tell of the parameters, before the fit.
 nlohmann::ordered_json check_json(const Job& job, const std::vector<RecordingCheck>& checks,
-                                  const Forecast& forecast, const Effort& effort);
+                                  const Forecast& forecast, const RunTimeEstimate& run_time);
 
 }  // namespace axisfit

@@ -13,17 +13,17 @@
 
 namespace axisfit {
 
-/// The inputs: what is constant in a mode, U, and the coupling's target.
-enum DrivenBy : std::size_t {
-  kByConstants,
-  kByCommand,
-  kByTargetVelocity,
-  kByTargetPosition,
+/// The inputs: what is constant in a mode, U, and the observer's target.
+enum InputIndex : std::size_t {
+  kConstantInput,
+  kCommandInput,
+  kTargetVelocityInput,
+  kTargetPositionInput,
   kInputs,
 };
 /// Per input, what it contributes per unit.
 template <class X>
-using Driven = std::array<X, kInputs>;
+using PerInput = std::array<X, kInputs>;
 
 /// So much of one state or input that constants beside it take no digits; a power of two.
 inline constexpr double kLarge = 0x1p40;
@@ -32,12 +32,15 @@ inline constexpr double kLarge = 0x1p40;
 template <class T>
 Input<T> large_input(std::size_t which) {
   const auto amount = [&](std::size_t input) { return T(input == which ? kLarge : 0.0); };
-  return {amount(kByCommand), {amount(kByTargetVelocity), amount(kByTargetPosition)}, T(0.0), {}};
+  return {amount(kCommandInput),
+          {amount(kTargetVelocityInput), amount(kTargetPositionInput)},
+          T(0.0),
+          {}};
 }
 
 /// A
 template <class T>
-Matrix<T> matrix_of(const Equations<T>& equations, const Mode& mode) {
+Matrix<T> system_matrix(const Equations<T>& equations, const Mode& mode) {
   const State<T> offset = equations.rate(mode, State<T>{}, {}, Terms::affine);
   Matrix<T> a;
   for (std::size_t j = 0; j < kStates; ++j) {
@@ -51,12 +54,12 @@ Matrix<T> matrix_of(const Equations<T>& equations, const Mode& mode) {
 
 /// B, by columns
 template <class T>
-Driven<State<T>> driven_by(const Equations<T>& equations, const Mode& mode) {
-  Driven<State<T>> b;
+PerInput<State<T>> input_matrix(const Equations<T>& equations, const Mode& mode) {
+  PerInput<State<T>> b;
   for (std::size_t c = 0; c < kInputs; ++c)
     b[c] = equations.rate(mode, State<T>{}, large_input<T>(c), Terms::affine);
-  for (std::size_t c = kByConstants + 1; c < kInputs; ++c)
-    for (std::size_t i = 0; i < kStates; ++i) b[c][i] = (b[c][i] - b[kByConstants][i]) / kLarge;
+  for (std::size_t c = kConstantInput + 1; c < kInputs; ++c)
+    for (std::size_t i = 0; i < kStates; ++i) b[c][i] = (b[c][i] - b[kConstantInput][i]) / kLarge;
   return b;
 }
 

@@ -54,7 +54,7 @@ void visit_axis(AxisOfT& a, Visitor&& visit) {
   visit(Q{"B_m", "N m s/rad", "armature damping", 0, 100, kRequired, motor}, a.B_m);
   visit(Q{"K_t", "V s/rad", "tachometer gain", 0, 100, kRequired, electric_drive}, a.K_t);
   visit(Q{"r_g", "m", "pinion radius", 1e-5, 10, kRequired, motor}, a.r_g);
-  visit(Q{"H", "m", "half of the gear backlash", 0, 0.1, kRequired, backlash}, a.H);
+  visit(Q{"H", "m", "half the gear backlash", 0, 0.1, kRequired, backlash}, a.H);
   visit(Q{"M", "kg", "arm mass", 1e-3, 1e5}, a.M);
   visit(Q{"T_z", "s", "compensation zero", 0, 10, kRequired, electric_drive}, a.T_z);
   visit(Q{"T_p", "s", "compensation pole", 1e-5, 100, kRequired, electric_drive}, a.T_p);
@@ -71,7 +71,7 @@ void visit_axis(AxisOfT& a, Visitor&& visit) {
   visit(Q{"w", "m/s", "speed above which F_s vanishes", 1e-6, 1, 0.002}, a.w);
   visit(Q{"K_v", "V/V", "power-unit forward gain", 10, 1e6, kRequired, velocity_loop}, a.K_v);
   visit(Q{"K_f", "N/V", "force per drive signal", 1e-6, 1e9, kRequired, force_source}, a.K_f);
-  visit(Q{"T_d", "s", "delay of the command", 0, 1, 0.0}, a.T_d);
+  visit(Q{"T_d", "s", "dead time of the command", 0, 1, 0.0}, a.T_d);
 }
 
 }  // namespace axisfit

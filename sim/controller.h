@@ -35,20 +35,17 @@ struct ControllerSettings {
 template <class SettingsT, class Visitor>
 void visit_settings(SettingsT& c, Visitor&& visit) {
   using Q = Quantity;
-  constexpr ControllerSettings standard;
-  visit(Q{"period", "s", "sampling period", 1e-5, 1, standard.period}, c.period);
-  visit(Q{"track_period", "s", "time between track points", 1e-5, 10, standard.track_period},
+  constexpr ControllerSettings defaults;
+  visit(Q{"period", "s", "sampling period", 1e-5, 1, defaults.period}, c.period);
+  visit(Q{"track_period", "s", "time between track points", 1e-5, 10, defaults.track_period},
         c.track_period);
-  visit(Q{"k_ff", "1", "speed feed-forward", 0, 100, standard.k_ff}, c.k_ff);
-  visit(Q{"k_p", "1/s", "position gain", 0, 1e5, standard.k_p}, c.k_p);
-  visit(Q{"k_i", "1/s^2", "gain of the integrated position", 0, 1e6, standard.k_i}, c.k_i);
-  visit(Q{"gain", "V s/m", "set-velocity voltage per speed", 1e-3, 1e6, standard.gain}, c.gain);
-  visit(Q{"limit", "V", "largest voltage of any motion, either way", 1e-3, 1e4, standard.limit},
-        c.limit);
-  visit(Q{"counts_per_revolution", "1",
-          "counts of the encoder per turn of the motor; 0: not "
-          "quantised",
-          0, 1e9, standard.counts_per_revolution},
+  visit(Q{"k_ff", "1", "velocity feedforward", 0, 100, defaults.k_ff}, c.k_ff);
+  visit(Q{"k_p", "1/s", "position gain", 0, 1e5, defaults.k_p}, c.k_p);
+  visit(Q{"k_i", "1/s^2", "integral gain", 0, 1e6, defaults.k_i}, c.k_i);
+  visit(Q{"gain", "V s/m", "set-velocity voltage per speed", 1e-3, 1e6, defaults.gain}, c.gain);
+  visit(Q{"limit", "V", "largest magnitude of the voltage", 1e-3, 1e4, defaults.limit}, c.limit);
+  visit(Q{"counts_per_revolution", "1", "encoder counts per motor revolution; 0: no quantisation",
+          0, 1e9, defaults.counts_per_revolution},
         c.counts_per_revolution);
 }
 

@@ -1,6 +1,6 @@
 // Equations (1) to (6) of the paper, in one given mode, and the guards that end the mode.
 //
-// y' = f(y, U) is affine in the state, the command and the coupling's target, except for the slot
+// y' = f(y, U) is affine in the state, the command and the observer's target, except for the slot
 // arm_force of the effects. The integrator relies on that.
 #pragma once
 
@@ -29,30 +29,32 @@ enum class Terms {
 };
 
 /// What of the model is in play: the same for all scalar types of one simulation.
-struct PartsInPlay {
+struct ActiveTerms {
   EffectSet effects;
   slots::Needs needs;
   bool backlash, static_friction, directions, spring, asymmetric, slope, load, driven_load, elastic,
-      lagging, lag_in_play;
+      lagging, lag_active;
 };
 
 template <class T>
 class Equations {
  public:
-  explicit Equations(const Model<T>& model, const Coupling& coupling = {})
-      : Equations(model, coupling,
-                  parts_of(model, slots::in_play(model.effects, model.structure.effects))) {}
+  explicit Equations(const Model<T>& model, const Observer& observer = {})
+      : Equations(
+            model, observer,
+            active_terms_of(model, slots::active_effects(model.effects, model.structure.effects))) {
+  }
 
   /// With what is in play given: from a model in another scalar type, which may show more of it.
-  Equations(const Model<T>& model, const Coupling& coupling, const PartsInPlay& parts)
+  Equations(const Model<T>& model, const Observer& observer, const ActiveTerms& parts)
       : m_(model),
-        coupling_(coupling),
+        observer_(observer),
         slots_(slots::affine(model.effects, parts.effects)),
         is_(parts) {}
 
   const Model<T>& model() const { return m_; }
-  const Coupling& coupling() const { return coupling_; }
-  const PartsInPlay& parts() const { return is_; }
+  const Observer& observer() const { return observer_; }
+  const ActiveTerms& parts() const { return is_; }
   bool has_smooth_forces() const {
     return is_.needs.arm_force || is_.needs.friction_curve || is_.needs.motor_torque;
   }
@@ -60,7 +62,7 @@ class Equations {
   bool signs_matter() const { return is_.asymmetric || is_.slope || is_.load; }
   /// What a drive lag of zero adds to the dead time of a force source: nothing, but its derivative.
   T lag_of_switching() const {
-    const bool adds = is_.lag_in_play && m_.structure.drive == Drive::force_source;
+    const bool adds = is_.lag_active && m_.structure.drive == Drive::force_source;
     return adds ? slots_.drive_lag : T(0.0);
   }
   /// Number of states in use, from the first on.
@@ -79,7 +81,7 @@ class Equations {
     if (is_.lagging) return y[7];
     T v = preamplifier_voltage(mode, y);
     // The derivative at zero lag: v(t - T_l) = v - T_l v'.
-    if (is_.lag_in_play && mode.v_c == 0)
+    if (is_.lag_active && mode.v_c == 0)
       v -= slots_.drive_lag * (y[5] + m_.axis.T_z * preamplifier_curvature(y, input));
     return v;
   }
@@ -136,7 +138,7 @@ class Equations {
            (m_.axis.r_g * y[3] - y[1]) * m_.axis.b_g;
   }
 
-  /// All forces on the moving mass but dry friction and coupling, N on the arm side.
+  /// All forces on the moving mass but dry friction and observer, N on the arm side.
   T applied_force(const Mode& mode, const State<T>& y, const Input<T>& input,
                   Terms terms = Terms::all) const {
     T force = slots_.constant_force - m_.axis.B_a * y[1];
@@ -160,7 +162,7 @@ class Equations {
     return is_.backlash ? mass : mass + m_.axis.J_m / (m_.axis.r_g * m_.axis.r_g);
   }
 
-  /// y1' of the model itself, without coupling, m/s^2: what an accelerometer reads.
+  /// y1' of the model itself, without observer, m/s^2: what an accelerometer reads.
   T acceleration(const Mode& mode, const State<T>& y, const Input<T>& input,
                  Terms terms = Terms::all) const {
     if (mode.sliding == 0) return T(0.0);
@@ -171,30 +173,31 @@ class Equations {
     return force / moving_mass();
   }
 
-  /// Force that the coupling adds to the arm, N: what the model lacks, or noise.
-  T coupling_force(const State<T>& y, const TargetOf<T>& target) const {
-    return moving_mass() * coupling_acceleration(y, target);
+  /// Force that the observer adds to the arm, N: what the model lacks, or noise.
+  T observer_force(const State<T>& y, const TargetOf<T>& target) const {
+    return moving_mass() * observer_acceleration(y, target);
   }
 
-  /// The right-hand side of (1), with coupling.
+  /// The right-hand side of (1), with observer.
   State<T> rate(const Mode& mode, const State<T>& y, const Input<T>& input,
                 Terms terms = Terms::all) const {
     const Axis<T>& p = m_.axis;
     State<T> d{};
     d[0] = y[1];
     d[1] = acceleration(mode, y, input, terms);
-    const T own_acceleration = d[1];
-    T follow(0.0), push(0.0);
-    if (coupling_.active()) {
-      follow = coupling_.position * position_error(y, input.target);
-      push = coupling_.acceleration * position_error(y, input.target);
-      d[0] += follow;
-      if (mode.sliding != 0) d[1] += coupling_acceleration(y, input.target);
+    const T model_acceleration = d[1];
+    T position_correction(0.0), acceleration_correction(0.0);
+    if (observer_.active()) {
+      position_correction = observer_.position * position_error(y, input.target);
+      acceleration_correction = observer_.acceleration * position_error(y, input.target);
+      d[0] += position_correction;
+      if (mode.sliding != 0) d[1] += observer_acceleration(y, input.target);
     }
     if (is_.backlash) {
       const T torque = p.r_g * drive_force(mode, y, input, terms);
-      d[2] = y[3] + follow / p.r_g;
-      d[3] = (torque - p.B_m * y[3] - p.r_g * gear_force(mode, y)) / p.J_m + push / p.r_g;
+      d[2] = y[3] + position_correction / p.r_g;
+      d[3] = (torque - p.B_m * y[3] - p.r_g * gear_force(mode, y)) / p.J_m +
+             acceleration_correction / p.r_g;
     } else {
       d[2] = d[0] / p.r_g;
       d[3] = d[1] / p.r_g;
@@ -208,7 +211,7 @@ class Equations {
     if (is_.lagging) d[7] = (undelayed_input(mode, y, input) - y[7]) / slots_.drive_lag;
     if (is_.elastic) {
       d[8] = y[9];
-      d[9] = -elastic_rate(y) - own_acceleration;
+      d[9] = -elastic_rate(y) - model_acceleration;
     }
     return d;
   }
@@ -375,24 +378,24 @@ class Equations {
                                                      : preamplifier_voltage(mode, y);
   }
 
-  static PartsInPlay parts_of(const Model<T>& model, const EffectSet& effects) {
+  static ActiveTerms active_terms_of(const Model<T>& model, const EffectSet& effects) {
     const Slots<T> slots = slots::affine(model.effects, effects);
-    PartsInPlay is{};
+    ActiveTerms is{};
     is.effects = effects;
     is.needs = slots::needs(effects);
     is.backlash = model.structure.transmission == Transmission::backlash;
-    is.static_friction = is_in_play(model.axis.F_s);
-    is.spring = is_in_play(slots.stiffness);
-    is.asymmetric = is_in_play(slots.viscous_asymmetry);
-    is.slope = is_in_play(slots.friction_slope);
-    is.load = is_in_play(slots.load_friction);
+    is.static_friction = is_active(model.axis.F_s);
+    is.spring = is_active(slots.stiffness);
+    is.asymmetric = is_active(slots.viscous_asymmetry);
+    is.slope = is_active(slots.friction_slope);
+    is.load = is_active(slots.load_friction);
     is.driven_load = is.load && !is.backlash;
     is.directions = is.static_friction || is.asymmetric || is.slope || is.load ||
-                    is_in_play(slots.friction_level) || is_in_play(slots.friction_asymmetry) ||
+                    is_active(slots.friction_level) || is_active(slots.friction_asymmetry) ||
                     is.needs.friction_curve || is.needs.hysteresis;
-    is.elastic = is_in_play(slots.elastic_mass);
+    is.elastic = is_active(slots.elastic_mass);
     is.lagging = value_of(slots.drive_lag) > 0.0;
-    is.lag_in_play = !is.lagging && is_in_play(slots.drive_lag);
+    is.lag_active = !is.lagging && is_active(slots.drive_lag);
     return is;
   }
 
@@ -461,7 +464,7 @@ class Equations {
 
   T stick_force(const Mode& mode, const State<T>& y, const Input<T>& input) const {
     T force = applied_force(mode, y, input);
-    if (coupling_.active()) force += coupling_force(y, input.target);
+    if (observer_.active()) force += observer_force(y, input.target);
     return force;
   }
 
@@ -470,20 +473,20 @@ class Equations {
     return (target.position - encoder.bias) / encoder.gain - m_.axis.r_g * y[2];
   }
 
-  T coupling_acceleration(const State<T>& y, const TargetOf<T>& target) const {
+  T observer_acceleration(const State<T>& y, const TargetOf<T>& target) const {
     const Instrument<T>& meter = m_.instruments[index_of(Signal::velocity)];
     T a(0.0);
-    if (coupling_.velocity > 0.0)
-      a += coupling_.velocity * ((target.velocity - meter.bias) / meter.gain - y[1]);
-    if (coupling_.acceleration > 0.0) a += coupling_.acceleration * position_error(y, target);
+    if (observer_.velocity > 0.0)
+      a += observer_.velocity * ((target.velocity - meter.bias) / meter.gain - y[1]);
+    if (observer_.acceleration > 0.0) a += observer_.acceleration * position_error(y, target);
     return a;
   }
 
   // A copy of the model is not needed: equations live as long as the simulation that owns it.
   const Model<T>& m_;
-  Coupling coupling_;
+  Observer observer_;
   Slots<T> slots_;
-  PartsInPlay is_;
+  ActiveTerms is_;
 };
 
 /// What an instrument without lag and delay reads of `signal`, without noise, in its unit.

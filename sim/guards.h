@@ -5,7 +5,7 @@
 //
 //   g(t) = g(0) + G Psi(t) f + (G Xi(t) r + H t) s
 //
-// (propagator.h; f = y', r and s the ramps and slopes of the coupling's target). So a step of any
+// (propagator.h; f = y', r and s the ramps and slopes of the observer's target). So a step of any
 // length is looked at as closely as its fastest oscillation asks for, at the cost of one product
 // with a matrix.
 #pragma once
@@ -20,7 +20,7 @@
 namespace axisfit {
 
 /// Values, rates and tolerances of all guards of a mode at one instant.
-struct Look {
+struct GuardValues {
   struct Node {
     double value, rate, tolerance;
   };
@@ -36,8 +36,8 @@ class LinearGuards {
 
   /// `a`, `b`: A and B of the mode.
   LinearGuards(const Equations<double>& equations, const Mode& mode, const Matrix<double>& a,
-               const Driven<State<double>>& b)
-      : states_used_(equations.states()), coupled_(equations.coupling().active()) {
+               const PerInput<State<double>>& b)
+      : states_used_(equations.states()), has_observer_(equations.observer().active()) {
     const auto read = [&](const State<double>& y, const Input<double>& input, Form& form) {
       count_ = 0;
       equations.visit_guards(mode, y, input, [&](Guard, double g, double) { form[count_++] = g; });
@@ -50,8 +50,8 @@ class LinearGuards {
       read(large, {}, states_[j]);
     }
     for (std::size_t i = 0; i < count_; ++i) {
-      const double constant = inputs_[kByConstants][i];
-      for (std::size_t c = kByConstants + 1; c < kInputs; ++c)
+      const double constant = inputs_[kConstantInput][i];
+      for (std::size_t c = kConstantInput + 1; c < kInputs; ++c)
         inputs_[c][i] = (inputs_[c][i] - constant) / kLarge;
       for (Form& form : states_) form[i] = (form[i] - constant) / kLarge;
       // Rates behind the values: G A and G B.
@@ -66,16 +66,17 @@ class LinearGuards {
   std::size_t states() const { return states_used_; }
 
   /// Without tolerances. `slope`: of the target, per second.
-  Look look(const State<double>& y, const Input<double>& input, const Slopes& slope) const {
-    Form sum = inputs_[kByConstants];
-    add(sum, input.command, inputs_[kByCommand]);
+  GuardValues guard_values(const State<double>& y, const Input<double>& input,
+                           const Slopes& slope) const {
+    Form sum = inputs_[kConstantInput];
+    add(sum, input.command, inputs_[kCommandInput]);
     for (std::size_t j = 0; j < states_used_; ++j) add(sum, y[j], states_[j]);
-    if (coupled_) {
-      add(sum, input.target.velocity, inputs_[kByTargetVelocity]);
-      add(sum, input.target.position, inputs_[kByTargetPosition]);
+    if (has_observer_) {
+      add(sum, input.target.velocity, inputs_[kTargetVelocityInput]);
+      add(sum, input.target.position, inputs_[kTargetPositionInput]);
       for (std::size_t r = 0; r < kRamps; ++r) add_ramp(sum, slope[r], r, 0.0);
     }
-    Look seen;
+    GuardValues seen;
     seen.count = count_;
     for (std::size_t i = 0; i < count_; ++i) seen.nodes[i] = {sum[i], sum[count_ + i], 0.0};
     return seen;
@@ -89,7 +90,7 @@ class LinearGuards {
   }
   /// What a ramp of the target that has risen for t seconds does to sum, at `factor` per second.
   void add_ramp(Form& sum, double factor, std::size_t ramp, double t) const {
-    const Form& form = inputs_[kByTargetVelocity + ramp];
+    const Form& form = inputs_[kTargetVelocityInput + ramp];
     add(sum, factor * t, form);
     for (std::size_t i = 0; i < count_; ++i) sum[count_ + i] += factor * form[i];
   }
@@ -100,10 +101,10 @@ class LinearGuards {
   }
 
   std::size_t states_used_;
-  bool coupled_;
+  bool has_observer_;
   std::size_t count_ = 0;
   std::array<Form, kStates> states_{};
-  Driven<Form> inputs_{};
+  PerInput<Form> inputs_{};
 };
 
 /// What a guard does in a step.
@@ -130,15 +131,15 @@ inline bool dips(double p, double p_rate, double q, double q_rate, double h, dou
 class GuardCourse {
  public:
   /// The most parts of a step.
-  static constexpr std::size_t kMostParts = 32;
+  static constexpr std::size_t kMaxParts = 32;
 
-  GuardCourse(const Look& start, const Look& end, std::size_t parts, double length)
+  GuardCourse(const GuardValues& start, const GuardValues& end, std::size_t parts, double length)
       : parts_(parts), part_(length / static_cast<double>(parts)), count_(end.count) {
     set(0, start);
     set(parts, end);
   }
 
-  void set(std::size_t instant, const Look& seen) {
+  void set(std::size_t instant, const GuardValues& seen) {
     for (std::size_t i = 0; i < count_; ++i) {
       value(instant, i) = seen.nodes[i].value;
       rate(instant, i) = seen.nodes[i].rate;
@@ -188,16 +189,16 @@ class GuardCourse {
   std::size_t parts_;
   double part_;  // s
   std::size_t count_;
-  std::array<double, 2 * kGuards*(kMostParts + 1)> nodes_;
+  std::array<double, 2 * kGuards*(kMaxParts + 1)> nodes_;
 };
 
 /// The linear forms of all guards at the instants that divide a step into 2^halvings parts.
 class GuardForms {
  public:
   GuardForms(const LinearGuards& guards, Propagator<double>& propagator, int level, int halvings,
-             bool coupled)
+             bool has_observer)
       : guards_(guards.count()), states_(guards.states()), inner_((1U << halvings) - 1U) {
-    const double part = propagator.ladder().length(level + halvings);
+    const double part = propagator.step_levels().length(level + halvings);
     columns_.reserve((states_ + kRamps) * inner_ * 2 * guards_);
     const auto keep = [&](const LinearGuards::Form& form) {
       columns_.insert(columns_.end(), form.begin(),
@@ -216,7 +217,7 @@ class GuardForms {
         keep(form);
       }
     }
-    for (std::size_t r = 0; coupled && r < kRamps; ++r) {
+    for (std::size_t r = 0; has_observer && r < kRamps; ++r) {
       State<double> d{};
       Slopes slope{};
       slope[r] = 1.0;
@@ -233,7 +234,7 @@ class GuardForms {
 
   /// Puts values and rates at the inner instants into the course of a step that begins with
   /// `start`, with the rate of change f.
-  void follow(const Look& start, const State<double>& f, const Slopes& slope,
+  void follow(const GuardValues& start, const State<double>& f, const Slopes& slope,
               GuardCourse& course) const {
     const std::size_t size = inner_ * 2 * guards_;
     if (size == 0) return;

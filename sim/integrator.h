@@ -38,8 +38,8 @@ namespace axisfit {
 
 struct IntegratorOptions {
   /// s. Longest step of the Runge-Kutta method, for smooth effects, and the longest time between
-  /// looks at the guards of a coupled axis. What is affine is exact at any step; guards are then
-  /// looked at as often as the state is read.
+  /// looks at the guards of an axis with an observer. What is affine is exact at any step; guards
+  /// are then looked at as often as the state is read.
   double step = 0.5e-3;
   /// s. Between the instants to which the integration will be advanced, if they are even; else
   /// about. Steps are a fraction of it. Zero: not known, steps are `step`.
@@ -61,14 +61,14 @@ struct IntegratorOptions {
 template <class T>
 class Integrator {
  public:
-  Integrator(const Model<T>& model, const Coupling& coupling, const IntegratorOptions& options)
+  Integrator(const Model<T>& model, const Observer& observer, const IntegratorOptions& options)
       : options_(options),
         model_(model),
         plain_model_(convert<double>(model)),
-        equations_(model_, coupling),
-        plain_(plain_model_, coupling, equations_.parts()),
+        equations_(model_, observer),
+        plain_(plain_model_, observer, equations_.parts()),
         step_(longest_step()),
-        bounded_(coupled() ? level_of(step_ / options.step - 1e-9) : 0) {}
+        bounded_(has_observer() ? level_of(step_ / options.step - 1e-9) : 0) {}
 
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
@@ -90,7 +90,7 @@ class Integrator {
     switch_mode(equations_.switched(mode_, y_, input_));
   }
 
-  /// From now on the coupling's target is `target` and moves with the rate `slope` per second.
+  /// From now on the observer's target is `target` and moves with the rate `slope` per second.
   void set_target(const Target& target, const Target& slope) {
     input_.target = {T(target.velocity), T(target.position)};
     copy_plain_input();
@@ -152,11 +152,11 @@ class Integrator {
     for (std::size_t i = 0; i < kStates; ++i) y[i] = value_of(y_[i]);
     return y;
   }
-  bool coupled() const { return equations_.coupling().active(); }
+  bool has_observer() const { return equations_.observer().active(); }
   bool affine() const { return !equations_.has_smooth_forces(); }
   /// Whether nothing but switches and events sets anything off.
-  bool left_alone() const { return affine() && !coupled(); }
-  const Ladder& ladder() const { return flow_->system.plain.ladder(); }
+  bool is_undisturbed() const { return affine() && !has_observer(); }
+  const StepLevels& step_levels() const { return flow_->system.plain.step_levels(); }
 
   void copy_plain_input() {
     plain_input_ = {value_of(input_.command),
@@ -186,24 +186,26 @@ class Integrator {
   /// Level at which a cubic follows the fastest oscillation that guards may show. Where nothing but
   /// switches sets any off, one is forgotten when it has died away to what a cubic does not follow
   /// either.
-  int followed() const {
+  int resolving_level() const {
     constexpr double kForgotten = 9.0;  // e^-9 = 1e-4
-    const double since = left_alone() ? value_of(input_.time) - switched_ : 0.0;
+    const double since = is_undisturbed() ? value_of(input_.time) - switched_ : 0.0;
     for (const auto& [oscillation, level] : flow_->system.oscillations)
       if (oscillation.damping * since < kForgotten) return level;
     return 0;
   }
   /// Level of the longest stretch between two looks at the guards: one radian to either side of its
-  /// middle, where they are looked at too. The target of a coupled axis turns at every sample and
-  /// sets off what a longer one does not see.
-  int stretch() const { return std::max(bounded_, followed() - 2); }
+  /// middle, where they are looked at too. The target of an axis with an observer turns at every
+  /// sample and sets off what a longer one does not see.
+  int check_level() const { return std::max(bounded_, resolving_level() - 2); }
   /// Level of the longest step: of few stretches where these are parts of a step, else of one.
-  int longest() const { return affine() ? std::max(0, stretch() - kMostStretches) : stretch(); }
+  int step_level() const {
+    return affine() ? std::max(0, check_level() - kMaxStretches) : check_level();
+  }
 
   void switch_mode(const Mode& mode);
   /// With B, exact and plain.
-  System& system_of(const Mode& mode, const Driven<State<T>>& exact_b,
-                    const Driven<State<double>>& plain_b);
+  System& system_of(const Mode& mode, const PerInput<State<T>>& exact_b,
+                    const PerInput<State<double>>& plain_b);
   Flow& flow_of(const Mode& mode);
 
   /// f(y), with smooth forces.
@@ -223,7 +225,7 @@ class Integrator {
       return f;
     }
   }
-  /// Of the coupling's target, in the order of the propagator's ramps.
+  /// Of the observer's target, in the order of the propagator's ramps.
   Slopes slopes() const { return {slope_.velocity, slope_.position}; }
 
   /// From the state y with the rate f.
@@ -235,16 +237,16 @@ class Integrator {
   }
 
   /// With tolerances.
-  Look look(const View<double>& view, const State<double>& y) const {
-    Look seen;
+  GuardValues guard_values(const View<double>& view, const State<double>& y) const {
+    GuardValues seen;
     visit_guards_and_rates(view, y, [&](Guard, double g, double rate, double scale) {
       seen.nodes[seen.count++] = {g, rate, 1e-12 * scale};
     });
     return seen;
   }
   /// As linear forms, without tolerances, where all is affine.
-  Look glance(const View<double>& view, const State<double>& y) const {
-    return affine() ? flow_->guards->look(y, view.input, slopes()) : look(view, y);
+  GuardValues guard_values_fast(const View<double>& view, const State<double>& y) const {
+    return affine() ? flow_->guards->guard_values(y, view.input, slopes()) : guard_values(view, y);
   }
   /// Tries a step of `length` on plain values; `level` is its place in the ladder, or past its end
   /// for a step by the series. Leaves the end in `to` and unless a guard is met the guards there.
@@ -274,7 +276,7 @@ class Integrator {
         });
   }
 
-  static constexpr int kMostStretches = 4;  // of a step, as a power of two
+  static constexpr int kMaxStretches = 4;  // of a step, as a power of two
 
   const IntegratorOptions options_;
   const Model<T> model_;
@@ -282,7 +284,7 @@ class Integrator {
   const Equations<T> equations_;
   const Equations<double> plain_;
   const double step_;      // s, at level 0
-  const int bounded_;      // level of the longest stretch because of the coupling
+  const int bounded_;      // level of the longest stretch because of the observer
   double switched_ = 0.0;  // s, time of the latest switch
   std::map<int, System> systems_;
   std::map<int, Flow> flows_;
@@ -294,7 +296,7 @@ class Integrator {
   Target slope_;
   Flow* flow_ = nullptr;
   int level_ = 0;  // of the longest step now allowed; falls to 0 as steps grow after an event
-  std::optional<Look> here_;  // the guards at the present state, while they are known
+  std::optional<GuardValues> here_;  // the guards at the present state, while they are known
   int events_ = 0;
   long steps_ = 0;
 };
@@ -306,14 +308,14 @@ void Integrator<T>::switch_mode(const Mode& mode) {
   mode_ = mode;
   here_.reset();
   flow_ = &flow_of(mode);
-  level_ = ladder().resolved;  // a switch may set off the fastest motions
+  level_ = step_levels().resolved;  // a switch may set off the fastest motions
   switched_ = value_of(input_.time);
 }
 
 template <class T>
 typename Integrator<T>::System& Integrator<T>::system_of(const Mode& mode,
-                                                         const Driven<State<T>>& exact_b,
-                                                         const Driven<State<double>>& plain_b) {
+                                                         const PerInput<State<T>>& exact_b,
+                                                         const PerInput<State<double>>& plain_b) {
   // The sign of a limit changes constants, not the matrix; those of contact, motion and load change
   // it where friction depends on them.
   const int contact = mode.contact == 0 ? 0 : equations_.signs_matter() ? mode.contact : 1;
@@ -321,24 +323,24 @@ typename Integrator<T>::System& Integrator<T>::system_of(const Mode& mode,
   const int key = (mode.v_c != 0) | (mode.v_m != 0) << 1 | (contact + 1) << 2 | (sliding + 1) << 4 |
                   (mode.load + 1) << 6;
   if (const auto found = systems_.find(key); found != systems_.end()) return found->second;
-  const Matrix<T> a = matrix_of(equations_, mode);
+  const Matrix<T> a = system_matrix(equations_, mode);
   // Below the shortest length smooth forces are frozen, and events are not told apart: even where
   // nothing is stiff it has to be short.
   const double shortest = std::ldexp(options_.step, -12);
   const Matrix<double> plain = axisfit::value_of(a);
-  const Ladder ladder = ladder_for(a, step_, level_of(step_ / shortest));
-  const auto ramps = [&]<class S>(const Driven<State<S>>& b) -> std::vector<State<S>> {
-    if (!coupled()) return {};
-    return {b[kByTargetVelocity], b[kByTargetPosition]};
+  const StepLevels step_levels = step_levels_for(a, step_, level_of(step_ / shortest));
+  const auto ramps = [&]<class S>(const PerInput<State<S>>& b) -> std::vector<State<S>> {
+    if (!has_observer()) return {};
+    return {b[kTargetVelocityInput], b[kTargetPositionInput]};
   };
   std::vector<std::pair<Oscillation, int>> followed;
   constexpr double kFollowed = 0.5;  // rad
   for (const Oscillation& o : oscillations(plain))
-    followed.emplace_back(o, level_of(o.frequency * step_ / kFollowed, ladder.last));
+    followed.emplace_back(o, level_of(o.frequency * step_ / kFollowed, step_levels.last));
   const std::size_t n = equations_.states();
   return systems_
-      .emplace(key, System{plain, Propagator<T>(a, ladder, ramps(exact_b), n),
-                           Propagator<double>(plain, ladder, ramps(plain_b), n), followed})
+      .emplace(key, System{plain, Propagator<T>(a, step_levels, ramps(exact_b), n),
+                           Propagator<double>(plain, step_levels, ramps(plain_b), n), followed})
       .first->second;
 }
 
@@ -347,8 +349,8 @@ typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
   const int key = (mode.contact + 1) | (mode.v_c + 1) << 2 | (mode.v_m + 1) << 4 |
                   (mode.sliding + 1) << 6 | (mode.load + 1) << 8 | mode.doublet << 10;
   if (const auto found = flows_.find(key); found != flows_.end()) return found->second;
-  const Driven<State<T>> exact = driven_by(equations_, mode);
-  const Driven<State<double>> plain = driven_by(plain_, mode);
+  const PerInput<State<T>> exact = input_matrix(equations_, mode);
+  const PerInput<State<double>> plain = input_matrix(plain_, mode);
   System& system = system_of(mode, exact, plain);
   std::optional<LinearGuards> guards;
   if (affine()) guards.emplace(plain_, mode, system.a, plain);
@@ -364,15 +366,15 @@ State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, const State
                              int level) const {
   Propagator<S>& p = view.propagator;
   const State<S> end = p.advance(y, f, slopes(), level);
-  if (!view.equations.has_smooth_forces() || level == p.ladder().last) return end;
+  if (!view.equations.has_smooth_forces() || level == p.step_levels().last) return end;
   // Classical Runge-Kutta for n(y) = N(y) - N(y at the start) in the frame that moves with the
   // affine flow.
-  const double h = p.ladder().length(level);
+  const double h = p.step_levels().length(level);
   const State<S> start = view.equations.smooth_rate(mode_, y, view.input);
   const auto n = [&](const State<S>& at, double delay) {
-    State<S> rest = view.equations.smooth_rate(mode_, at, moved(view.input, delay));
-    for (std::size_t i = 0; i < kStates; ++i) rest[i] -= start[i];
-    return rest;
+    State<S> remainder = view.equations.smooth_rate(mode_, at, moved(view.input, delay));
+    for (std::size_t i = 0; i < kStates; ++i) remainder[i] -= start[i];
+    return remainder;
   };
   const auto plus = [](State<S> a, double factor, const State<S>& b) {
     for (std::size_t i = 0; i < kStates; ++i) a[i] += factor * b[i];
@@ -382,7 +384,7 @@ State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, const State
   const State<S> k2 = n(middle, 0.5 * h);  // k1 = 0
   // Behind an event steps are so short that the midpoint rule is as good.
   constexpr int kShort = 4;
-  if (level >= stretch() + kShort) return plus(end, h, p.exponential(k2, level + 1));
+  if (level >= check_level() + kShort) return plus(end, h, p.exponential(k2, level + 1));
   const State<S> k3 = n(plus(middle, 0.5 * h, k2), 0.5 * h);
   const State<S> k4 = n(plus(end, h, p.exponential(k3, level + 1)), h);
   const State<S> inner = p.exponential(plus(k2, 1.0, k3), level + 1);
@@ -394,23 +396,23 @@ Crossing Integrator<T>::try_step(const State<double>& from, int level, double le
                                  State<double>& to) {
   ++steps_;  // also one that meets a guard: a search without end has to end
   const View<double> now = plain();
-  const bool by_series = level > ladder().last;
+  const bool by_series = level > step_levels().last;
   const State<double> f = rate(now, from);
   to = by_series ? now.propagator.series(from, f, slopes(), length).at(length)
                  : step(now, from, f, level);
   for (const double x : to)
     if (!std::isfinite(x)) return Crossing::none;  // to nowhere, which the caller sees
 
-  const int fine = by_series ? level : std::max(level, stretch());
-  const bool doubted = !by_series && fine < std::min(followed(), ladder().last);
+  const int fine = by_series ? level : std::max(level, check_level());
+  const bool doubted = !by_series && fine < std::min(resolving_level(), step_levels().last);
   const int halvings = fine - level + doubted;
   const Input<double> input = moved(now.input, length);
   const View<double> then{now.equations, now.propagator, input};
-  if (!here_) here_ = glance(now, from);
-  const Look end = glance(then, to);
+  if (!here_) here_ = guard_values_fast(now, from);
+  const GuardValues end = guard_values_fast(then, to);
   GuardCourse course(*here_, end, std::size_t{1} << halvings, length);
   std::array<double, kGuards> tolerance{};
-  const auto with_tolerances = [&](const Look& seen) {
+  const auto with_tolerances = [&](const GuardValues& seen) {
     for (std::size_t i = 0; i < seen.count; ++i)
       tolerance[i] = std::max(tolerance[i], seen.nodes[i].tolerance);
   };
@@ -419,8 +421,9 @@ Crossing Integrator<T>::try_step(const State<double>& from, int level, double le
       auto forms = flow_->forms.find({level, halvings});
       if (forms == flow_->forms.end())
         forms = flow_->forms
-                    .emplace(std::pair(level, halvings),
-                             GuardForms(*flow_->guards, now.propagator, level, halvings, coupled()))
+                    .emplace(
+                        std::pair(level, halvings),
+                        GuardForms(*flow_->guards, now.propagator, level, halvings, has_observer()))
                     .first;
       forms->second.follow(*here_, f, slopes(), course);
     }
@@ -429,15 +432,17 @@ Crossing Integrator<T>::try_step(const State<double>& from, int level, double le
       return Crossing::none;
     }
     // Nearly, at least: it may be within the tolerances.
-    for (const auto& [seen, instant] : {std::pair(look(now, from), std::size_t{0}),
-                                        std::pair(look(then, to), std::size_t{1} << halvings)}) {
+    for (const auto& [seen, instant] :
+         {std::pair(guard_values(now, from), std::size_t{0}),
+          std::pair(guard_values(then, to), std::size_t{1} << halvings)}) {
       course.set(instant, seen);
       with_tolerances(seen);
     }
   } else {
     if (doubted) {
       const Input<double> halfway = moved(now.input, 0.5 * length);
-      course.set(1, look({now.equations, now.propagator, halfway}, step(now, from, f, level + 1)));
+      course.set(
+          1, guard_values({now.equations, now.propagator, halfway}, step(now, from, f, level + 1)));
     }
     with_tolerances(end);
   }
@@ -461,8 +466,8 @@ std::optional<typename Integrator<T>::Hit> Integrator<T>::locate(const State<dou
         double low = 0.0, high = length, t = 0.0, newton = 0.0;
         for (int i = 0; i < 60 && high - low > 1e-15 * length; ++i) {
           const Input<double> input = moved(view.input, t);
-          const Look::Node node =
-              look({view.equations, view.propagator, input}, t > 0.0 ? path.at(t) : from)
+          const GuardValues::Node node =
+              guard_values({view.equations, view.propagator, input}, t > 0.0 ? path.at(t) : from)
                   .nodes[index];
           // A guard that rises from zero, as that of an arm which has just broken away, was not met
           // there. Within a step it may fall again: that is looked for.
@@ -478,7 +483,7 @@ std::optional<typename Integrator<T>::Hit> Integrator<T>::locate(const State<dou
           t = next;
         }
         // It may have been passed by less than the tolerance: back then.
-        const double shortest = ladder().length(ladder().last);
+        const double shortest = step_levels().length(step_levels().last);
         const double delay = high > 0.0 ? t : newton < 0.0 && newton > -shortest ? newton : 0.0;
         if (!first || delay < first->delay) first = Hit{guard, delay};
       });
@@ -510,7 +515,7 @@ void Integrator<T>::pass_event(const Hit& hit) {
   const Mode next = equations_.cross(mode_, hit.guard, y_, input_);
   copy_plain_input();
   switch_mode(next);
-  if (!affine()) level_ = ladder().last;  // another event may follow closely
+  if (!affine()) level_ = step_levels().last;  // another event may follow closely
 }
 
 template <class T>
@@ -525,21 +530,22 @@ bool Integrator<T>::advance_to(const T& end) {
   while (true) {
     const double remaining = last - value_of(input_.time);
     if (!(remaining > negligible)) break;
-    const Ladder& ladder = this->ladder();
-    int level = std::max({level_, search, longest()});
+    const StepLevels& step_levels = this->step_levels();
+    int level = std::max({level_, search, step_level()});
     // The last piece of an interval, of whatever length, is for the series, where that holds.
-    const double resolved = affine() ? ladder.length(ladder.resolved) : 0.0;
+    const double resolved = affine() ? step_levels.length(step_levels.resolved) : 0.0;
     const bool piece =
-        ladder.length(level) > remaining + negligible && search == 0 && remaining <= resolved;
-    while (level <= ladder.last && ladder.length(level) > remaining + negligible) ++level;
-    const bool shortest = level >= ladder.last;
-    const bool by_series = piece || level > ladder.last;
+        step_levels.length(level) > remaining + negligible && search == 0 && remaining <= resolved;
+    while (level <= step_levels.last && step_levels.length(level) > remaining + negligible) ++level;
+    const bool shortest = level >= step_levels.last;
+    const bool by_series = piece || level > step_levels.last;
     const double length =
-        piece ? remaining : std::min(remaining, ladder.length(std::min(level, ladder.last)));
+        piece ? remaining
+              : std::min(remaining, step_levels.length(std::min(level, step_levels.last)));
 
     const State<double> from = plain_state();
     State<double> to;
-    const Crossing course = try_step(from, by_series ? ladder.last + 1 : level, length, to);
+    const Crossing course = try_step(from, by_series ? step_levels.last + 1 : level, length, to);
     if (steps_ > options_.step_budget ||
         (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)))
       return false;
@@ -568,15 +574,15 @@ bool Integrator<T>::advance_to(const T& end) {
     }
     move_time(length);
     level_ = std::max(0, level_ - 1);
-    if (search > 0 && ++search > ladder.last + 1) search = 0;
+    if (search > 0 && ++search > step_levels.last + 1) search = 0;
   }
   // What is left is the derivatives of the two instants, and rounding.
-  const T rest = end - input_.time;
+  const T remainder = end - input_.time;
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::abs(last);
-  if (ScalarTraits<T>::has_derivative(rest) || std::abs(value_of(rest)) > rounding) {
+  if (ScalarTraits<T>::has_derivative(remainder) || std::abs(value_of(remainder)) > rounding) {
     const State<T> f = equations_.rate(mode_, y_, input_);
-    for (std::size_t i = 0; i < kStates; ++i) y_[i] += f[i] * rest;
-    input_ = moved(input_, rest);
+    for (std::size_t i = 0; i < kStates; ++i) y_[i] += f[i] * remainder;
+    input_ = moved(input_, remainder);
     here_.reset();
   }
   input_.time = end;

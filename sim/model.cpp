@@ -61,12 +61,12 @@ bool has_signal(Signal signal, const Structure& structure) {
   return false;
 }
 
-std::string refusal(const Model<double>& model) {
+std::string model_error(const Model<double>& model) {
   const Axis<double>& a = model.axis;
   const bool backlash = model.structure.transmission == Transmission::backlash;
   if (backlash && a.J_m <= 0.0)
-    return "J_m must be above zero where the gear has backlash: between the teeth nothing but J_m "
-           "carries the motor torque";
+    return "J_m must be above zero with backlash: while the teeth are apart, the motor torque acts "
+           "on J_m alone";
   return {};
 }
 

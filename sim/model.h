@@ -60,9 +60,9 @@ void visit_quantities(ModelOfT& model, Visitor&& visit) {
           instrument.gain);
     visit(entry.name, Quantity{"bias", entry.unit, "bias of the instrument", -1e9, 1e9, 0.0},
           instrument.bias);
-    visit(entry.name, Quantity{"lag", "s", "lag of the instrument, a bandwidth", 0, 1, 0.0},
+    visit(entry.name, Quantity{"lag", "s", "time constant of the instrument", 0, 1, 0.0},
           instrument.lag);
-    visit(entry.name, Quantity{"delay", "s", "offset of the instrument's clock", -1, 1, 0.0},
+    visit(entry.name, Quantity{"delay", "s", "delay of the instrument", -1, 1, 0.0},
           instrument.delay);
   }
   using enum UsedBy;
@@ -123,6 +123,6 @@ bool is_used(const QuantityEntry& entry, const Structure& structure);
 bool has_signal(Signal signal, const Structure& structure);
 
 /// Why a model of this structure cannot be simulated; empty when it can.
-std::string refusal(const Model<double>& model);
+std::string model_error(const Model<double>& model);
 
 }  // namespace axisfit

@@ -12,7 +12,7 @@
 namespace axisfit {
 
 /// How firmly the simulated axis is held to the measured one. All zero: free running.
-struct Coupling {
+struct Observer {
   /// 1/s. y1' += velocity (v - y1), v the measured velocity of the arm.
   double velocity = 0.0;
   /// 1/s. The whole axis moves with the rate position * e, e = measured - simulated encoder
@@ -24,11 +24,11 @@ struct Coupling {
   bool active() const { return velocity > 0.0 || position > 0.0 || acceleration > 0.0; }
 
   /// First order, bandwidth `rate` in 1/s, for a recorded velocity and, if recorded, position.
-  static Coupling to_velocity(double rate, bool and_position) {
+  static Observer of_velocity(double rate, bool and_position) {
     return {rate, and_position ? rate : 0.0, 0.0};
   }
   /// Second order, critically damped, natural frequency `rate` in rad/s, for position alone.
-  static Coupling to_position(double rate) { return {0.0, 2.0 * rate, rate * rate}; }
+  static Observer of_position(double rate) { return {0.0, 2.0 * rate, rate * rate}; }
 };
 
 /// What the simulation is held to, at one instant: measured arm velocity m/s and encoder position

@@ -34,7 +34,7 @@ Matrix<T> product(const Matrix<T>& a, const Matrix<T>& b, std::size_t n = kState
   Matrix<T> c{};
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t k = 0; k < n; ++k) {
-      if (!is_in_play(a[i][k])) continue;
+      if (!is_active(a[i][k])) continue;
       for (std::size_t j = 0; j < n; ++j) c[i][j] += a[i][k] * b[k][j];
     }
   return c;
@@ -66,12 +66,12 @@ class SparseMatrix {
   explicit SparseMatrix(const Matrix<T>& dense) {
     std::size_t size = 0;
     for (const State<T>& row : dense)
-      size += static_cast<std::size_t>(std::ranges::count_if(row, is_in_play<T>));
+      size += static_cast<std::size_t>(std::ranges::count_if(row, is_active<T>));
     columns_.reserve(size);
     values_.reserve(size);
     for (std::size_t i = 0; i < kStates; ++i) {
       for (std::size_t j = 0; j < kStates; ++j) {
-        if (!is_in_play(dense[i][j])) continue;
+        if (!is_active(dense[i][j])) continue;
         columns_.push_back(j);
         values_.push_back(dense[i][j]);
       }
@@ -105,7 +105,7 @@ Matrix<double> value_of(const Matrix<T>& a) {
 }
 
 /// The dyadic lengths into which a step h is divided for one matrix A.
-struct Ladder {
+struct StepLevels {
   double step;   ///< h, s
   int last;      ///< the shortest length is h / 2^last
   int resolved;  ///< at h / 2^resolved the fastest motion is resolved; at most `last`
@@ -117,7 +117,7 @@ struct Ladder {
 
 /// Enough halvings of `step` for the series to be exact to rounding, and at least `least`.
 template <class T>
-Ladder ladder_for(const Matrix<T>& a, double step, int least) {
+StepLevels step_levels_for(const Matrix<T>& a, double step, int least) {
   // ||A^8||^(1/8) is close to the spectral radius where ||A|| alone, with entries of many different
   // units, overestimates it by orders of magnitude.
   Matrix<double> power = value_of(a);
@@ -165,10 +165,10 @@ template <class T>
 class Propagator {
  public:
   /// `a` = df/dy, of which the first n states are in use. `ramps`: the vectors r of s, or none.
-  Propagator(const Matrix<T>& a, const Ladder& ladder, std::vector<State<T>> ramps = {},
+  Propagator(const Matrix<T>& a, const StepLevels& step_levels, std::vector<State<T>> ramps = {},
              std::size_t n = kStates)
-      : states_(n), ladder_(ladder), a_(a), ramps_(std::move(ramps)) {
-    const double h = ladder.length(ladder.last);
+      : states_(n), step_levels_(step_levels), a_(a), ramps_(std::move(ramps)) {
+    const double h = step_levels.length(step_levels.last);
     // Psi = h (I + hA/2 + (hA)^2/6 + ...)
     Matrix<T> psi{}, term{};
     for (std::size_t i = 0; i < n; ++i) psi[i][i] = term[i][i] = T(h);
@@ -193,7 +193,7 @@ class Propagator {
     push(psi, std::move(xi));
   }
 
-  const Ladder& ladder() const { return ladder_; }
+  const StepLevels& step_levels() const { return step_levels_; }
 
   /// A y
   State<T> a_times(const State<T>& y) const {
@@ -229,7 +229,7 @@ class Propagator {
     Series<T> result;
     result.terms[0] = y;
     State<T> derivative = f;
-    const double theta = length / ladder_.length(ladder_.resolved);
+    const double theta = length / step_levels_.length(step_levels_.resolved);
     double factor = 1.0;     // 1 / n!
     double largest = theta;  // of the term, theta^n / n!
     for (std::size_t n = 1;; ++n) {
@@ -255,13 +255,13 @@ class Propagator {
   };
 
   const Length& at(int level) {
-    while (ladder_.last - level >= static_cast<int>(lengths_.size())) double_length();
-    return lengths_[static_cast<std::size_t>(ladder_.last - level)];
+    while (step_levels_.last - level >= static_cast<int>(lengths_.size())) double_length();
+    return lengths_[static_cast<std::size_t>(step_levels_.last - level)];
   }
 
   void double_length() {
     const Length& half = lengths_.back();
-    const double h = ladder_.length(ladder_.last - static_cast<int>(lengths_.size()) + 1);
+    const double h = step_levels_.length(step_levels_.last - static_cast<int>(lengths_.size()) + 1);
     const SparseMatrix<T> e(e_);
     std::vector<State<T>> xi = half.xi;
     for (std::size_t r = 0; r < xi.size(); ++r) {
@@ -294,7 +294,7 @@ class Propagator {
   }
 
   std::size_t states_;
-  Ladder ladder_;
+  StepLevels step_levels_;
   SparseMatrix<T> a_;
   std::vector<State<T>> ramps_;
   Matrix<T> e_, psi_;            // of the longest length so far

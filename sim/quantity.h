@@ -22,12 +22,12 @@ enum class UsedBy {
 };
 
 struct Quantity {
-  std::string_view symbol;      ///< the paper's, for example "B_a"
-  std::string_view unit;        ///< SI, for example "N s/m"; "1" when dimensionless
-  std::string_view meaning;     ///< a few words
-  double lower;                 ///< smallest value that makes sense, in `unit`
-  double upper;                 ///< largest
-  double standard = kRequired;  ///< value when not given
+  std::string_view symbol;           ///< the paper's, for example "B_a"
+  std::string_view unit;             ///< SI, for example "N s/m"; "1" when dimensionless
+  std::string_view meaning;          ///< a few words
+  double lower;                      ///< smallest value that makes sense, in `unit`
+  double upper;                      ///< largest
+  double default_value = kRequired;  ///< value when not given
   UsedBy used_by = UsedBy::every_axis;
   /// Of an effect: gives it its shape (a period, a speed scale), not its strength. An effect whose
   /// strengths are all zero is as good as absent, whatever its shape.

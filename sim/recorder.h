@@ -25,7 +25,7 @@ class Recorder {
            std::span<const double> times)
       : instruments_(instruments), signals_(signals), raw_(signals.size()) {
     for (const Signal signal : signals)
-      if (is_late(signal)) pieces_ = 4;
+      if (has_lag_or_delay(signal)) substeps_ = 4;
     instants_ = refined(times);
     for (auto& values : raw_) values.reserve(instants_.size());
   }
@@ -36,15 +36,15 @@ class Recorder {
   std::vector<double> refined(std::span<const double> series) const {
     std::vector<double> fine;
     if (series.empty()) return fine;
-    fine.reserve((series.size() - 1) * pieces_ + 1);
+    fine.reserve((series.size() - 1) * substeps_ + 1);
     for (std::size_t i = 0; i + 1 < series.size(); ++i)
-      for (std::size_t k = 0; k < pieces_; ++k)
-        fine.push_back(series[i] + double(k) / double(pieces_) * (series[i + 1] - series[i]));
+      for (std::size_t k = 0; k < substeps_; ++k)
+        fine.push_back(series[i] + double(k) / double(substeps_) * (series[i + 1] - series[i]));
     fine.push_back(series.back());
     return fine;
   }
   /// Whether an instant is a sample.
-  bool is_sample(std::size_t instant) const { return instant % pieces_ == 0; }
+  bool is_sample(std::size_t instant) const { return instant % substeps_ == 0; }
 
   /// To be called at every instant.
   void read(const Integrator<T>& axis) {
@@ -58,20 +58,20 @@ class Recorder {
   std::vector<T> readings(std::size_t s) {
     const Instrument<T>& instrument = instruments_[index_of(signals_[s])];
     std::vector<T> fine = std::move(raw_[s]);
-    if (is_in_play(instrument.lag)) fine = lagging(fine, instrument.lag);
-    const bool delayed = is_in_play(instrument.delay);
-    if (pieces_ == 1 && !delayed) return fine;
+    if (is_active(instrument.lag)) fine = lagging(fine, instrument.lag);
+    const bool delayed = is_active(instrument.delay);
+    if (substeps_ == 1 && !delayed) return fine;
     std::vector<T> shown;
-    shown.reserve(fine.size() / pieces_ + 1);
-    for (std::size_t k = 0; k < fine.size(); k += pieces_)
+    shown.reserve(fine.size() / substeps_ + 1);
+    for (std::size_t k = 0; k < fine.size(); k += substeps_)
       shown.push_back(delayed ? at(fine, k, instrument.delay) : fine[k]);
     return shown;
   }
 
  private:
-  bool is_late(Signal signal) const {
+  bool has_lag_or_delay(Signal signal) const {
     const Instrument<T>& instrument = instruments_[index_of(signal)];
-    return is_in_play(instrument.lag) || is_in_play(instrument.delay);
+    return is_active(instrument.lag) || is_active(instrument.delay);
   }
 
   /// lag s' = u - s with u linear between the instants and s = u at the first.
@@ -100,7 +100,7 @@ class Recorder {
 
   const Instruments<T>& instruments_;
   std::span<const Signal> signals_;
-  std::size_t pieces_ = 1;
+  std::size_t substeps_ = 1;
   std::vector<double> instants_;
   std::vector<std::vector<T>> raw_;
 };

@@ -68,10 +68,10 @@ std::vector<Column> record(const Rig& rig, const Motion& motion, const Recording
     simulate<double>(rig.model, command, recorder.instants(), read, {}, {}, integrator);
   }
   if (reached + 1 != recorder.instants().size())
-    throw std::runtime_error(
-        "the motion cannot be simulated beyond " + std::to_string(recorder.instants()[reached]) +
-        " s: the state is not finite, or it swings too fast to be followed, or events follow each "
-        "other without end");
+    throw std::runtime_error("the motion cannot be simulated beyond " +
+                             std::to_string(recorder.instants()[reached]) +
+                             " s: the state is not finite, oscillates too fast to be resolved, or "
+                             "events accumulate without end");
 
   std::vector<Column> columns;
   columns.push_back({"time_s", times});

@@ -32,7 +32,7 @@ T derivative_part(const T& x) {
 
 /// Whether x can differ from zero: by its value, or because it is being differentiated.
 template <class T>
-bool is_in_play(const T& x) {
+bool is_active(const T& x) {
   return value_of(x) != 0.0 || ScalarTraits<T>::has_derivative(x);
 }
 

@@ -32,13 +32,13 @@ struct SignalInfo {
 };
 
 inline constexpr std::array<SignalInfo, kSignals> kSignalTable{{
-    {Signal::position, "position", "m", "r_g y2, by the encoder on the motor shaft"},
-    {Signal::velocity, "velocity", "m/s", "y1, of the arm"},
-    {Signal::acceleration, "acceleration", "m/s^2", "y1', by an accelerometer on the arm"},
+    {Signal::position, "position", "m", "r_g y2, from the encoder on the motor shaft"},
+    {Signal::velocity, "velocity", "m/s", "y1, arm velocity"},
+    {Signal::acceleration, "acceleration", "m/s^2", "y1', from an accelerometer on the arm"},
     {Signal::tachometer, "tachometer", "V", "K_t y3"},
     {Signal::motor_current, "motor_current", "A", "y6"},
-    {Signal::preamplifier_voltage, "V_c", "V", "preamplifier output behind its limit, (2)"},
-    {Signal::motor_voltage, "V_m", "V", "motor voltage behind its limit, (3)"},
+    {Signal::preamplifier_voltage, "V_c", "V", "preamplifier output after its limiter, (2)"},
+    {Signal::motor_voltage, "V_m", "V", "motor voltage after its limiter, (3)"},
     {Signal::drive_force, "drive_force", "N", "motor torque as a force at the rack"},
 }};
 

@@ -11,9 +11,9 @@
 
 namespace axisfit {
 
-/// What a coupled simulation is held to: measured values at the instants of the simulation, those
-/// of a curve as target_corners(). A series that the coupling does not use may be empty.
-struct Measured {
+/// What a tracking simulation is held to: measured values at the instants of the simulation, those
+/// of a curve as target_corners(). A series that the observer does not use may be empty.
+struct TargetSeries {
   std::span<const double> velocity;  ///< m/s
   std::span<const double> position;  ///< m
 
@@ -23,7 +23,7 @@ struct Measured {
 };
 
 /// How a simulation ended.
-struct SimulationOutcome {
+struct SimulationResult {
   bool finished = false;    ///< false: not finite, chattering, or swinging too fast to be followed
   std::size_t reached = 0;  ///< number of instants that were read
   int events = 0;
@@ -48,17 +48,17 @@ inline IntegratorOptions recording_options(std::span<const double> times, double
 /// Simulates from times[0] on and calls read(i, integrator) at every instant times[i] (s,
 /// increasing).
 ///
-/// A reading precedes a command that switches at the same instant. With a coupling, the target runs
-/// linearly between the measured values.
+/// A reading precedes a command that switches at the same instant. With an observer, the target
+/// runs linearly between the measured values.
 template <class T, class Read>
-SimulationOutcome simulate(const Model<T>& model, const Schedule& command,
-                           std::span<const double> times, Read&& read,
-                           const Coupling& coupling = {}, const Measured& measured = {},
-                           const IntegratorOptions& options = {}) {
-  SimulationOutcome outcome;
+SimulationResult simulate(const Model<T>& model, const Schedule& command,
+                          std::span<const double> times, Read&& read, const Observer& observer = {},
+                          const TargetSeries& measured = {},
+                          const IntegratorOptions& options = {}) {
+  SimulationResult simulation_result;
   IntegratorOptions even = options;
   if (times.size() > 1) even.interval = mean_interval(times);
-  Integrator<T> axis(model, coupling, even);
+  Integrator<T> axis(model, observer, even);
   std::size_t next = 0;
   T in_force(0.0);
   const T delay = axis.command_delay();
@@ -69,12 +69,12 @@ SimulationOutcome simulate(const Model<T>& model, const Schedule& command,
   axis.start(times.front(), in_force, measured.at(0));
   const auto reaches = [&](const T& instant) {
     const bool reached = axis.advance_to(instant);
-    outcome.events = axis.events();
-    outcome.steps = axis.steps();
+    simulation_result.events = axis.events();
+    simulation_result.steps = axis.steps();
     return reached;
   };
   for (std::size_t i = 0; i < times.size(); ++i) {
-    if (i > 0 && coupling.active()) {
+    if (i > 0 && observer.active()) {
       const double duration = times[i] - times[i - 1];
       const Target from = measured.at(i - 1), to = measured.at(i);
       axis.set_target(from, {(to.velocity - from.velocity) / duration,
@@ -83,15 +83,15 @@ SimulationOutcome simulate(const Model<T>& model, const Schedule& command,
     for (; next < command.times.size(); ++next) {
       const T instant = command.times[next] + delay;
       if (!(value_of(instant) < times[i])) break;
-      if (!reaches(instant)) return outcome;
+      if (!reaches(instant)) return simulation_result;
       axis.set_command(T(command.values[next]));
     }
-    if (!reaches(T(times[i]))) return outcome;
+    if (!reaches(T(times[i]))) return simulation_result;
     read(i, axis);
-    outcome.reached = i + 1;
+    simulation_result.reached = i + 1;
   }
-  outcome.finished = true;
-  return outcome;
+  simulation_result.finished = true;
+  return simulation_result;
 }
 
 }  // namespace axisfit

@@ -19,11 +19,11 @@ inline Rig x_axis() {
 
 class Evaluation {
  public:
-  /// With the first `parameters` of kParameters free. `rate`: 1/s, of the coupling; 0: none.
+  /// With the first `parameters` of kParameters free. `rate`: 1/s, of the observer; 0: none.
   Evaluation(const Rig& rig, std::size_t parameters, double duration, double rate = 0.0)
       : job_(job_of(rig, parameters, duration)),
         space_(job_),
-        cost_(job_, space_, 0, coupling_for(job_.recordings[0], rate)),
+        cost_(job_, space_, 0, observer_for(job_.recordings[0], rate)),
         residuals_(static_cast<std::size_t>(cost_.num_residuals())),
         jacobian_(residuals_.size() * parameters) {
     for (std::size_t i = 0; i < parameters; ++i)

@@ -100,7 +100,7 @@ class Axis {
   State<Jet<N>> rate(const State<Jet<N>>& y) const { return exact_.rate(mode_, y, exact_input_); }
 
   /// d rate / d y
-  Matrix<double> matrix() const { return matrix_of(plain_, mode_); }
+  Matrix<double> matrix() const { return system_matrix(plain_, mode_); }
 
   /// Calls visit(i, value) for the guards of the mode; returns their number. Values are moved by
   /// rounding, so that those behind an event begin inside.

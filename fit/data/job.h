@@ -32,7 +32,7 @@ enum class InitialState {
 enum class NoiseSource {
   given,
   differences,  ///< of the samples, see noise.h
-  rest,         ///< what the instrument shows at rest, see rest.h
+  standstill,   ///< what the instrument shows at rest, see rest.h
   fit,          ///< estimated together with the parameters, see estimate_with_noise
 };
 
@@ -44,9 +44,9 @@ struct Measurement {
   NoiseSource noise = NoiseSource::differences;
   bool fitted = true;  ///< false: compared and reported, not part of the fit
   /// Samples that are neither fitted nor judged, see rest.h; empty: none.
-  std::vector<bool> left_out;
+  std::vector<bool> excluded;
 
-  bool counts(std::size_t sample) const { return left_out.empty() || !left_out[sample]; }
+  bool counts(std::size_t sample) const { return excluded.empty() || !excluded[sample]; }
 };
 
 /// One recording. Samples run over `times`.
@@ -60,8 +60,8 @@ struct Recording {
   InitialState initial_state = InitialState::given;
   /// Samples at the start from which an initial state is taken.
   std::size_t initial_samples = 20;
-  bool score_initial_samples = true;  ///< false: errors are reported without them
-  bool acceleration_at_rest = false;  ///< whether it counts while the arm rests, see rest.h
+  bool score_initial_samples = true;        ///< false: errors are reported without them
+  bool acceleration_at_standstill = false;  ///< whether it counts while the arm rests, see rest.h
   /// Samples of a recording to be fitted that are only judged, as if they were another recording;
   /// empty: none.
   std::vector<bool> held_out;
@@ -97,8 +97,8 @@ struct FreeParameter {
   std::optional<Prior> prior;
 };
 
-/// How the simulation is held to the data while it is fitted, see coupling.h.
-enum class CouplingMode {
+/// How the simulation is held to the data while it is fitted, see observer.h.
+enum class ObserverMode {
   continuation,  ///< firmly at first, then ever more loosely, at last not at all
   fixed,         ///< at one rate to the end: a prediction-error fit
   none,          ///< never: plain least squares on the free-running simulation
@@ -107,10 +107,10 @@ enum class CouplingMode {
 enum class Loss { squares, huber };
 
 struct FitOptions {
-  CouplingMode coupling = CouplingMode::continuation;
-  /// 1/s (velocity recorded) or rad/s (position alone). Of the fixed coupling, or where the
+  ObserverMode observer = ObserverMode::continuation;
+  /// 1/s (velocity recorded) or rad/s (position alone). Of the fixed observer gain, or where the
   /// continuation starts; zero: from the sampling interval, see continuation.h.
-  double coupling_rate = 0.0;
+  double observer_gain = 0.0;
   Loss loss = Loss::squares;
   double huber_width = 3.0;  ///< residuals above this many sigma count linearly
   int max_iterations = 50;   ///< of each stage of the continuation

@@ -6,7 +6,7 @@
 
 namespace axisfit {
 
-double quantum(std::span<const double> values) {
+double resolution_of(std::span<const double> values) {
   double size = 0.0, step = 0.0;
   for (std::size_t i = 1; i < values.size(); ++i) {
     const double d = std::abs(values[i] - values[i - 1]);
@@ -40,7 +40,7 @@ double noise_from_differences(std::span<const double> values) {
   const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
   std::nth_element(d.begin(), middle, d.end());
   const double spread = *middle / 0.6745;  // median of |N(0, 1)|
-  return std::max(spread / std::sqrt(kGain), quantum(values) / std::sqrt(12.0));
+  return std::max(spread / std::sqrt(kGain), resolution_of(values) / std::sqrt(12.0));
 }
 
 }  // namespace axisfit

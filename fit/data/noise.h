@@ -14,6 +14,6 @@ namespace axisfit {
 double noise_from_differences(std::span<const double> values);
 
 /// The step of the grid on which the values lie; zero when they lie on none.
-double quantum(std::span<const double> values);
+double resolution_of(std::span<const double> values);
 
 }  // namespace axisfit

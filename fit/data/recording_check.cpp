@@ -13,7 +13,7 @@ namespace axisfit {
 namespace {
 
 /// Least samples in a run, or at a limit, that are worth a word.
-constexpr std::size_t kMany = 25;
+constexpr std::size_t kMinRun = 25;
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -35,9 +35,9 @@ RateRatio compared(Eigen::VectorXd a, Eigen::VectorXd b, bool about_means) {
 }
 
 /// The longest run of equal values while the arm does not rest.
-void find_frozen(const Recording& recording, const std::vector<double>& values,
-                 const std::vector<bool>& rest, ValueCheck& check) {
-  const auto moves = [&](std::size_t i) { return rest.empty() || !rest[i]; };
+void find_stuck(const Recording& recording, const std::vector<double>& values,
+                const std::vector<bool>& standstill, ValueCheck& check) {
+  const auto moves = [&](std::size_t i) { return standstill.empty() || !standstill[i]; };
   std::size_t pairs = 0, equal = 0, longest = 0, at = 0;
   for (std::size_t i = 1, run = 1; i < values.size(); ++i) {
     if (!moves(i) || !moves(i - 1)) {
@@ -55,46 +55,46 @@ void find_frozen(const Recording& recording, const std::vector<double>& values,
       at = i + 1 - run;
     }
   }
-  if (longest < kMany) return;
+  if (longest < kMinRun) return;
   // Outside of the run: so often a value is followed by its equal, for example on a coarse grid.
   const double usual = static_cast<double>(equal - (longest - 1) + 1) /
                        static_cast<double>(pairs - (longest - 1) + 2);
   if (static_cast<double>(longest) * std::log(usual) >
       std::log(1e-9 / static_cast<double>(values.size())))
     return;
-  check.frozen = longest;
-  check.frozen_at = recording.times[at];
+  check.stuck = longest;
+  check.stuck_at = recording.times[at];
 }
 
 /// Samples that stay at the end of the range while the arm does not rest.
-void find_clipped(const std::vector<double>& values, const std::vector<bool>& rest,
+void find_clipped(const std::vector<double>& values, const std::vector<bool>& standstill,
                   ValueCheck& check) {
   // A constant signal, or one whose noise is below its rounding, may well stay at its extreme.
-  if (!(check.high > check.low) || check.noise < 0.5 * check.grid) return;
+  if (!(check.high > check.low) || check.noise < 0.5 * check.resolution) return;
   for (const double limit : {check.low, check.high}) {
     std::size_t there = 0;
     for (std::size_t i = 0; i < values.size(); ++i)
-      there += values[i] == limit && (rest.empty() || !rest[i]) ? 1 : 0;
-    if (there < kMany || there <= check.clipped) continue;
+      there += values[i] == limit && (standstill.empty() || !standstill[i]) ? 1 : 0;
+    if (there < kMinRun || there <= check.clipped) continue;
     check.clipped = there;
     check.clipped_at = limit;
   }
 }
 
 ValueCheck check_values(const Recording& recording, const Measurement& measurement,
-                        const std::vector<bool>& rest) {
+                        const std::vector<bool>& standstill) {
   ValueCheck check;
   const std::vector<double>& values = measurement.values;
   std::tie(check.low, check.high) = std::pair(std::ranges::min(values), std::ranges::max(values));
   check.noise = noise_from_differences(values);
-  check.grid = quantum(values);
+  check.resolution = resolution_of(values);
   // A position that stays is an arm at rest, or at its stop; the voltages have limits of their own.
   const Signal signal = measurement.signal;
   if (signal == Signal::position || signal == Signal::preamplifier_voltage ||
       signal == Signal::motor_voltage)
     return check;
-  find_clipped(values, rest, check);
-  if (check.clipped == 0) find_frozen(recording, values, rest, check);
+  find_clipped(values, standstill, check);
+  if (check.clipped == 0) find_stuck(recording, values, standstill, check);
   return check;
 }
 
@@ -150,8 +150,8 @@ std::optional<RateRatio> rate_ratio(std::span<const double> times, std::span<con
   return best;
 }
 
-double telling_coupling(std::span<const double> times, std::span<const double> position,
-                        std::span<const double> velocity) {
+double suggested_observer_gain(std::span<const double> times, std::span<const double> position,
+                               std::span<const double> velocity) {
   constexpr double kMissing = 0.01, kAboveNoise = 10.0;
   const bool of_velocity = !velocity.empty();
   const std::span<const double> values = of_velocity ? velocity : position;
@@ -173,17 +173,17 @@ double telling_coupling(std::span<const double> times, std::span<const double> p
   const double rate =
       of_velocity ? kMissing * acceleration / moved : std::sqrt(kMissing * acceleration / moved);
   const Sampling found = sampling(times);
-  const double firmest = 0.3 / found.interval;
-  return std::isfinite(rate) ? std::clamp(rate, std::min(10.0 / found.duration, firmest), firmest)
-                             : firmest;
+  const double highest = 0.3 / found.interval;
+  return std::isfinite(rate) ? std::clamp(rate, std::min(10.0 / found.duration, highest), highest)
+                             : highest;
 }
 
 RecordingCheck check_recording(const Recording& recording) {
   RecordingCheck check;
   check.sampling = sampling(recording.times);
-  const std::vector<bool> rest = resting(recording);
+  const std::vector<bool> standstill = at_standstill(recording);
   for (const Measurement& m : recording.measurements)
-    check.measurements.push_back(check_values(recording, m, rest));
+    check.measurements.push_back(check_values(recording, m, standstill));
 
   // The command in force from the first sample on.
   const Schedule& command = recording.command;
@@ -204,7 +204,7 @@ RecordingCheck check_recording(const Recording& recording) {
     }
     if (std::abs(value) == largest) held += until - std::max(begin, command.times[k]);
   }
-  check.at_largest = largest > 0.0 && end > begin ? held / (end - begin) : 0.0;
+  check.at_maximum = largest > 0.0 && end > begin ? held / (end - begin) : 0.0;
 
   for (const auto& [rate, of] : {std::pair(Signal::velocity, Signal::position),
                                  std::pair(Signal::acceleration, Signal::velocity)}) {

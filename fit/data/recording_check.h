@@ -25,12 +25,12 @@ Sampling sampling(std::span<const double> times);
 /// What the values of a signal look like, in its unit.
 struct ValueCheck {
   double low = 0.0, high = 0.0;
-  double noise = 0.0;  ///< white part, from differences (noise.h)
-  double grid = 0.0;   ///< step between the values; zero: none
+  double noise = 0.0;       ///< white part, from differences (noise.h)
+  double resolution = 0.0;  ///< step between the values; zero: none
   /// The longest run of equal values that neither a rest of the arm nor rounding explains: a sensor
   /// that hangs. Zero samples where there is none.
-  std::size_t frozen = 0;
-  double frozen_at = 0.0;  ///< s, where it begins
+  std::size_t stuck = 0;
+  double stuck_at = 0.0;  ///< s, where it begins
   /// Samples at exactly the lowest or the highest value while the arm moves, more than noise would
   /// ever put there: a range that the signal left. Zero where there are none.
   std::size_t clipped = 0;
@@ -54,13 +54,13 @@ struct RateRatio {
 std::optional<RateRatio> rate_ratio(std::span<const double> times, std::span<const double> values,
                                     std::span<const double> rate);
 
-/// How firmly to hold a simulation to the recording (a fixed coupling, job.h) so that what its
+/// How firmly to hold a simulation to the recording (a fixed observer gain, job.h) so that what its
 /// model lacks shows: at this rate a hundredth of the acceleration that the axis usually has would
 /// move it by ten times the noise. A firmer hold hides more and feeds the noise into the
 /// simulation; a looser one lets it drift. 1/s to the velocity, or where that is empty rad/s to the
 /// position.
-double telling_coupling(std::span<const double> times, std::span<const double> position,
-                        std::span<const double> velocity);
+double suggested_observer_gain(std::span<const double> times, std::span<const double> position,
+                               std::span<const double> velocity);
 
 /// Two signals of a recording of which one is the rate of the other.
 struct RateCheck {
@@ -72,7 +72,7 @@ struct RecordingCheck {
   Sampling sampling;
   ValueCheck command;                    ///< of its values: low and high alone
   std::size_t switches = 0;              ///< changes of the command
-  double at_largest = 0.0;               ///< share of the time the command is at its largest size
+  double at_maximum = 0.0;               ///< share of the time the command is at its largest size
   std::vector<ValueCheck> measurements;  ///< in the recording's order
   std::vector<RateCheck> rates;          ///< those that are related
   double speed = 0.0;                    ///< m/s, largest, either way; zero where none is recorded

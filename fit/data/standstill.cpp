@@ -7,7 +7,7 @@
 
 namespace axisfit {
 
-std::vector<bool> resting(const Recording& recording) {
+std::vector<bool> at_standstill(const Recording& recording) {
   constexpr std::size_t kHalf = 12, kWidth = 2 * kHalf + 1;
   const std::size_t n = recording.times.size();
   const Measurement* velocity = recording.find(Signal::velocity);
@@ -45,27 +45,27 @@ std::vector<bool> resting(const Recording& recording) {
   return still;
 }
 
-double noise_at_rest(const Recording& recording, const Measurement& measurement) {
-  const std::vector<bool> rest = resting(recording);
-  double sum = 0.0, freedom = 0.0;
-  for (auto begin = std::ranges::find(rest, true); begin != rest.end();) {
-    const auto end = std::find(begin, rest.end(), false);
+double noise_at_standstill(const Recording& recording, const Measurement& measurement) {
+  const std::vector<bool> standstill = at_standstill(recording);
+  double sum = 0.0, degrees_of_freedom = 0.0;
+  for (auto begin = std::ranges::find(standstill, true); begin != standstill.end();) {
+    const auto end = std::find(begin, standstill.end(), false);
     const std::span values = std::span(measurement.values)
-                                 .subspan(static_cast<std::size_t>(begin - rest.begin()),
+                                 .subspan(static_cast<std::size_t>(begin - standstill.begin()),
                                           static_cast<std::size_t>(end - begin));
     const double n = static_cast<double>(values.size());
     const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
     for (const double x : values) sum += (x - mean) * (x - mean);
-    freedom += n - 1.0;
-    begin = std::find(end, rest.end(), true);
+    degrees_of_freedom += n - 1.0;
+    begin = std::find(end, standstill.end(), true);
   }
-  return freedom > 0.0 ? std::sqrt(sum / freedom) : 0.0;
+  return degrees_of_freedom > 0.0 ? std::sqrt(sum / degrees_of_freedom) : 0.0;
 }
 
-void leave_out_acceleration_at_rest(Recording& recording) {
-  const std::vector<bool> rest = resting(recording);
+void exclude_acceleration_at_standstill(Recording& recording) {
+  const std::vector<bool> standstill = at_standstill(recording);
   for (Measurement& m : recording.measurements)
-    if (m.signal == Signal::acceleration) m.left_out = rest;
+    if (m.signal == Signal::acceleration) m.excluded = standstill;
 }
 
 }  // namespace axisfit

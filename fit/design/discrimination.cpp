@@ -20,23 +20,23 @@ struct Trial {
   std::vector<double> times;
 };
 
-struct Course {
-  bool allowed = false;  ///< finished, and within the limits
+struct SimulatedSignals {
+  bool feasible = false;  ///< finished, and within the limits
   std::vector<std::vector<double>> readings;
 };
 
-Course simulated(const Model<double>& model, const Trial& trial, std::span<const Signal> signals,
-                 const MachineLimits& limits) {
+SimulatedSignals simulated(const Model<double>& model, const Trial& trial,
+                           std::span<const Signal> signals, const MachineLimits& limits) {
   Recorder<double> recorder(model.instruments, signals, trial.times);
-  Course course;
+  SimulatedSignals course;
   bool within = true;
-  const auto outcome = simulate(
+  const auto simulation_result = simulate(
       model, trial.command, recorder.instants(), [&](std::size_t, const Integrator<double>& axis) {
         recorder.read(axis);
         within = within && is_within(limits, axis.state()[0], axis.state()[1]);
       });
-  course.allowed = outcome.finished && (within || trial.recorded != nullptr);
-  for (std::size_t s = 0; s < signals.size() && course.allowed; ++s)
+  course.feasible = simulation_result.finished && (within || trial.recorded != nullptr);
+  for (std::size_t s = 0; s < signals.size() && course.feasible; ++s)
     course.readings.push_back(recorder.readings(s));
   return course;
 }
@@ -50,10 +50,10 @@ double noise_of(const Job& job, Signal signal, const std::vector<double>& values
 
 }  // namespace
 
-Separation what_separates(const ClosedLoop& loop, const Rivals& rivals,
-                          const ControllerSettings& controller, const MachineLimits& limits) {
-  const Job& job = loop.result.job;
-  const MachineLimits within = completed_limits(limits, job, loop.result.fit, controller);
+Discrimination discriminate(const EffectSelection& selection, const UndecidedPair& rivals,
+                            const ControllerSettings& controller, const MachineLimits& limits) {
+  const Job& job = selection.result.job;
+  const MachineLimits within = complete_limits(limits, job, selection.result.fit, controller);
   std::vector<Signal> signals;
   for (const SignalInfo& signal : kSignalTable)
     if (has_signal(signal.signal, job.model.structure)) signals.push_back(signal.signal);
@@ -61,21 +61,21 @@ Separation what_separates(const ClosedLoop& loop, const Rivals& rivals,
   std::vector<Trial> trials;
   for (const Recording& r : job.recordings)
     trials.push_back({"the motion of " + r.name, &r, nullptr, r.command, r.times});
-  const std::vector<double> times = sampling_of_next(job);
-  const std::vector<Experiment> family =
-      experiment_family(job.model.structure, within, times.back());
-  for (const Experiment& experiment : family)
-    trials.push_back({experiment.words, nullptr, &experiment,
+  const std::vector<double> times = next_sampling_times(job);
+  const std::vector<Experiment> candidates =
+      candidate_motions(job.model.structure, within, times.back());
+  for (const Experiment& experiment : candidates)
+    trials.push_back({experiment.description, nullptr, &experiment,
                       commands_of(experiment, rivals.with_chosen, controller, times), times});
 
   const Crew crew(job.options.threads);
-  std::vector<Separation> found(trials.size());
+  std::vector<Discrimination> found(trials.size());
   parallel_for(trials.size(), [&](std::size_t i) {
     if (is_set(job.options.stop)) throw Interrupted();
     const Trial& trial = trials[i];
-    const Course a = simulated(rivals.with_chosen, trial, signals, within),
-                 b = simulated(rivals.with_rival, trial, signals, within);
-    if (!a.allowed || !b.allowed) return;
+    const SimulatedSignals a = simulated(rivals.with_chosen, trial, signals, within),
+                           b = simulated(rivals.with_rival, trial, signals, within);
+    if (!a.feasible || !b.feasible) return;
     for (std::size_t s = 0; s < signals.size(); ++s) {
       if (trial.recorded != nullptr && trial.recorded->find(signals[s]) != nullptr) continue;
       double sum = 0.0;
@@ -88,16 +88,17 @@ Separation what_separates(const ClosedLoop& loop, const Rivals& rivals,
       found[i].signal = signals[s];
     }
   });
-  const auto best = std::ranges::max_element(found, {}, &Separation::size);
+  const auto best = std::ranges::max_element(found, {}, &Discrimination::size);
   const Trial& trial = trials[static_cast<std::size_t>(best - found.begin())];
   const std::string equal =
       fmt::format("{} and {} explain these recordings equally well; ", rivals.chosen, rivals.rival);
   constexpr double kVisible = 0.1;
   if (!best->signal || best->size < kVisible)
-    return {equal + "no motion that was tried tells them apart.", {}, {}, best->size};
+    return {equal + "no motion tried discriminates between them.", {}, {}, best->size};
   if (trial.experiment != nullptr) best->experiment = *trial.experiment;
-  best->words = fmt::format("{}they differ most in the {} during {}: by {:.2g} times its noise.",
-                            equal, info(*best->signal).name, trial.motion, best->size);
+  best->description =
+      fmt::format("{}they differ most in the {} during {}: by {:.2g} times its noise.", equal,
+                  info(*best->signal).name, trial.motion, best->size);
   return *best;
 }
 

@@ -6,8 +6,8 @@
 
 namespace axisfit {
 
-struct Separation {
-  std::string words;  ///< one sentence for the user
+struct Discrimination {
+  std::string description;  ///< one sentence for the user
   std::optional<Experiment>
       experiment;                ///< the motion; none where a known one will do, or none does
   std::optional<Signal> signal;  ///< in which they differ most
@@ -19,7 +19,7 @@ struct Separation {
 /// (completed as for suggest_experiment, by the final fit). Differences are counted in the job's
 /// noise of a signal, or, where it has none, in thousandths of its range. The models are taken as
 /// fitted: that their parameters may be fitted anew makes the difference smaller.
-Separation what_separates(const ClosedLoop& loop, const Rivals& rivals,
-                          const ControllerSettings& controller, const MachineLimits& limits);
+Discrimination discriminate(const EffectSelection& selection, const UndecidedPair& rivals,
+                            const ControllerSettings& controller, const MachineLimits& limits);
 
 }  // namespace axisfit

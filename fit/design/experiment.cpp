@@ -33,7 +33,7 @@ Job with_next(const Job& job, const std::vector<ResidualSeries>& residuals) {
   const Recording& like = first_fitted(job);
   Recording recording;
   recording.name = "next";
-  recording.times = sampling_of_next(job);
+  recording.times = next_sampling_times(job);
   const std::size_t start = find_quantity("initial.y0")->index;
   for (const auto& [quantity, value] : like.overrides)
     if (quantity == start) recording.overrides.emplace_back(quantity, value);
@@ -48,41 +48,42 @@ Job with_next(const Job& job, const std::vector<ResidualSeries>& residuals) {
   return next;
 }
 
-bool keeps_to(const MachineLimits& limits, const Prediction& prediction) {
-  return prediction.finished && std::ranges::all_of(prediction.samples, [&](const Sample& s) {
+bool is_feasible(const MachineLimits& limits, const SimulatedRecording& simulation) {
+  return simulation.finished && std::ranges::all_of(simulation.samples, [&](const Sample& s) {
            return is_within(limits, s.position, s.velocity);
          });
 }
 
 /// What each experiment would show; not finite where it does not keep to the limits.
-std::vector<Linearization> shown_by(const std::vector<Experiment>& family, const Job& next,
-                                    const FitResult& fit, const ControllerSettings& controller,
-                                    const MachineLimits& limits,
-                                    const std::function<void(int done, int of)>& progress) {
+std::vector<Linearization> sensitivities_of(const std::vector<Experiment>& candidates,
+                                            const Job& next, const FitResult& fit,
+                                            const ControllerSettings& controller,
+                                            const MachineLimits& limits,
+                                            const std::function<void(int done, int of)>& progress) {
   const std::size_t added = next.recordings.size() - 1;
   const Model<double> model = fitted_model(next, fit);
   const ParameterSpace space(next);
   const Eigen::VectorXd u = space.internal(values_of(fit));
   const Crew crew(next.options.threads);
-  std::vector<Linearization> shown(family.size());
+  std::vector<Linearization> sensitivities(candidates.size());
   std::mutex mutex;
   int done = 0;
-  parallel_for(family.size(), [&](std::size_t i) {
+  parallel_for(candidates.size(), [&](std::size_t i) {
     if (is_set(next.options.stop)) throw Interrupted();
     Job trial = next;
     Recording& recording = trial.recordings[added];
-    recording.command = commands_of(family[i], model, controller, recording.times);
-    const Prediction prediction = predict(trial, space, added, u.data(), {});
-    if (keeps_to(limits, prediction)) {
+    recording.command = commands_of(candidates[i], model, controller, recording.times);
+    const SimulatedRecording simulation = simulate_recording(trial, space, added, u.data(), {});
+    if (is_feasible(limits, simulation)) {
       for (std::size_t m = 0; m < recording.measurements.size(); ++m)
-        recording.measurements[m].values = prediction.simulated[m];
-      shown[i] = linearize(trial, space, u, fit.coupling_rate);
-      shown[i].residuals.setZero();  // of rounding, which has a colour
+        recording.measurements[m].values = simulation.simulated[m];
+      sensitivities[i] = linearize(trial, space, u, fit.observer_gain);
+      sensitivities[i].residuals.setZero();  // of rounding, which has a colour
     }
     const std::lock_guard lock(mutex);
-    if (progress) progress(++done, static_cast<int>(family.size()));
+    if (progress) progress(++done, static_cast<int>(candidates.size()));
   });
-  return shown;
+  return sensitivities;
 }
 
 /// Without those of priors.
@@ -127,11 +128,11 @@ Eigen::MatrixXd normal_of(const Job& job, const Linearization& at,
 
 }  // namespace
 
-MachineLimits completed_limits(MachineLimits limits, const Job& job, const FitResult& fit,
-                               const ControllerSettings& controller) {
+MachineLimits complete_limits(MachineLimits limits, const Job& job, const FitResult& fit,
+                              const ControllerSettings& controller) {
   double lowest = INFINITY, highest = -INFINITY, speed = 0.0, force = 0.0;
   for (const RecordingResult& r : fit.recordings)
-    for (const Sample& s : r.prediction.samples) {
+    for (const Sample& s : r.free_running.samples) {
       lowest = std::min(lowest, s.position);
       highest = std::max(highest, s.position);
       speed = std::max(speed, std::abs(s.velocity));
@@ -155,11 +156,11 @@ bool is_within(const MachineLimits& limits, double position, double velocity) {
          std::abs(velocity) <= *limits.speed * (1.0 + kTouch);
 }
 
-std::vector<Experiment> experiment_family(const Structure& structure, const MachineLimits& limits,
+std::vector<Experiment> candidate_motions(const Structure& structure, const MachineLimits& limits,
                                           double duration) {
-  std::vector<Experiment> family;
-  const auto add = [&](const Motion& motion, std::string words) {
-    family.push_back({motion, duration, std::move(words)});
+  std::vector<Experiment> candidates;
+  const auto add = [&](const Motion& motion, std::string description) {
+    candidates.push_back({motion, duration, std::move(description)});
   };
   for (const double share : {1.0, 0.5, 0.2, 0.1, 0.05})
     for (const double sign : {1.0, -1.0}) {
@@ -182,10 +183,10 @@ std::vector<Experiment> experiment_family(const Structure& structure, const Mach
         add(SineMotion{u, 0.5, f}, fmt::format("a chirp of {} from 0.5 to {:g} Hz", volts, f));
       for (const double bit : {0.01, 0.025, 0.05, 0.1, 0.2})
         add(PrbsMotion{u, bit, 0.0, 1},
-            fmt::format("a pseudo-random sequence of +-{:.3g} V, a new choice every {:g} s",
+            fmt::format("a pseudo-random binary sequence of +-{:.3g} V with a bit period of {:g} s",
                         std::abs(u), bit));
     }
-  if (structure.drive == Drive::force_source) return family;  // no set-velocity input
+  if (structure.drive == Drive::force_source) return candidates;  // no set-velocity input
   for (const double part : {0.9, 0.5, 0.2, -0.9, -0.5, -0.2})
     for (const double share : {0.9, 0.5, 0.2}) {
       const MoveMotion move{part * (*limits.highest - *limits.lowest), share * *limits.speed,
@@ -194,7 +195,7 @@ std::vector<Experiment> experiment_family(const Structure& structure, const Mach
       add(move, fmt::format("a move of {:.3g} m at {:.3g} m/s and {:.3g} m/s^2", move.distance,
                             move.speed, move.acceleration));
     }
-  return family;
+  return candidates;
 }
 
 Schedule commands_of(const Experiment& experiment, const Model<double>& model,
@@ -207,12 +208,12 @@ Schedule commands_of(const Experiment& experiment, const Model<double>& model,
   return simulate_controlled(model, unit, times, [](std::size_t, const Integrator<double>&) {});
 }
 
-std::vector<double> sampling_of_next(const Job& job) {
+std::vector<double> next_sampling_times(const Job& job) {
   const std::vector<double>& like = first_fitted(job).times;
-  constexpr double kLongest = 10.0;  // s; longer motions repeat themselves
+  constexpr double kMaxDuration = 10.0;  // s; longer motions repeat themselves
   const double interval = mean_interval(like);
   std::vector<double> times;
-  for (std::size_t i = 0; i < like.size() && static_cast<double>(i) * interval <= kLongest; ++i)
+  for (std::size_t i = 0; i < like.size() && static_cast<double>(i) * interval <= kMaxDuration; ++i)
     times.push_back(static_cast<double>(i) * interval);
   return times;
 }
@@ -222,13 +223,13 @@ std::optional<Suggestion> suggest_experiment(
     const MachineLimits& limits, const std::function<void(int done, int of)>& progress) {
   if (!fit.usable || job.free.empty()) return std::nullopt;
   Suggestion suggestion;
-  suggestion.limits = completed_limits(limits, job, fit, controller);
+  suggestion.limits = complete_limits(limits, job, fit, controller);
   const std::vector<ResidualSeries> residuals = residual_series(job, fit);
   const Job next = with_next(job, residuals);
-  const std::vector<Experiment> family = experiment_family(job.model.structure, suggestion.limits,
-                                                           next.recordings.back().times.back());
-  const std::vector<Linearization> shown =
-      shown_by(family, next, fit, controller, suggestion.limits, progress);
+  const std::vector<Experiment> candidates = candidate_motions(
+      job.model.structure, suggestion.limits, next.recordings.back().times.back());
+  const std::vector<Linearization> sensitivities =
+      sensitivities_of(candidates, next, fit, controller, suggestion.limits, progress);
 
   const auto worst_of = [&](const Eigen::VectorXd& errors) {
     std::pair<std::size_t, double> worst{0, -1.0};
@@ -243,17 +244,17 @@ std::optional<Suggestion> suggest_experiment(
   suggestion.parameter = worst_of(errors_of(normal)).first;
   const Linearization* best = nullptr;
   double least = INFINITY;
-  for (std::size_t i = 0; i < family.size(); ++i) {
-    if (!shown[i].finite) continue;
-    ++suggestion.allowed;
-    const auto rows = shown[i].jacobian.topRows(rows_of(shown[i]));
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (!sensitivities[i].finite) continue;
+    ++suggestion.feasible;
+    const auto rows = sensitivities[i].jacobian.topRows(rows_of(sensitivities[i]));
     const double worst = worst_of(errors_of(normal + rows.transpose() * rows)).second;
     if (!(worst < least)) continue;
     least = worst;
-    best = &shown[i];
-    suggestion.experiment = family[i];
+    best = &sensitivities[i];
+    suggestion.experiment = candidates[i];
   }
-  suggestion.tried = static_cast<int>(family.size());
+  suggestion.tried = static_cast<int>(candidates.size());
   if (best == nullptr) return std::nullopt;
 
   // As the fit itself will judge.

@@ -14,8 +14,8 @@
 namespace axisfit {
 
 /// Limits all of which are given.
-MachineLimits completed_limits(MachineLimits limits, const Job& job, const FitResult& fit,
-                               const ControllerSettings& controller);
+MachineLimits complete_limits(MachineLimits limits, const Job& job, const FitResult& fit,
+                              const ControllerSettings& controller);
 
 /// Whether a place (m) and a speed (m/s) of the arm are within complete limits.
 bool is_within(const MachineLimits& limits, double position, double velocity);
@@ -23,15 +23,15 @@ bool is_within(const MachineLimits& limits, double position, double velocity);
 /// A motion from rest, and for how long.
 struct Experiment {
   Motion motion;
-  double duration = 0.0;  ///< s
-  std::string words{};    ///< "a step of 10 V"
+  double duration = 0.0;      ///< s
+  std::string description{};  ///< "a step of 10 V"
 };
 
 /// Steps, levels, sines, chirps, pseudo-random sequences, each at several amplitudes up to the
 /// voltage and either way, and moves up to the travel and the speed where the axis has a
 /// set-velocity input. Limits are complete; whether a motion keeps to them is for its simulation to
 /// say.
-std::vector<Experiment> experiment_family(const Structure& structure, const MachineLimits& limits,
+std::vector<Experiment> candidate_motions(const Structure& structure, const MachineLimits& limits,
                                           double duration);
 
 /// The commands of an experiment over the times (s) from zero; those of a move as the controller
@@ -41,7 +41,7 @@ Schedule commands_of(const Experiment& experiment, const Model<double>& model,
 
 /// The sampling times (s) of one more recording: those of the first one that is fitted, from zero
 /// and for at most 10 s.
-std::vector<double> sampling_of_next(const Job& job);
+std::vector<double> next_sampling_times(const Job& job);
 
 struct Suggestion {
   Experiment experiment;
@@ -50,7 +50,7 @@ struct Suggestion {
   Uncertainty predicted;      ///< after one more recording, of that motion
   MachineLimits limits;       ///< as they were taken, all given
   int tried = 0;              ///< motions of the family
-  int allowed = 0;            ///< those that kept to the limits
+  int feasible = 0;           ///< those that kept to the limits
 };
 
 /// Of all motions that keep to the limits in simulation, the one after which the least determined

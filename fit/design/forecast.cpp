@@ -11,18 +11,18 @@ Forecast forecast(const Job& job, const std::vector<double>& values) {
   Forecast result;
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values);
-  Linearization at = linearize(job, space, u, last_coupling_rate(job));
+  Linearization at = linearize(job, space, u, final_observer_gain(job));
   result.finite = at.finite;
   if (!at.finite) return result;
   at.residuals.setZero();  // what the data are does not matter, only where they would be
   result.uncertainty = uncertainty(space, u, at);
-  result.together = identifiability(space, u, at, 1.0);
+  result.identifiability = identifiability(space, u, at, 1.0);
   result.series = std::move(at.series);
-  result.shown.resize(at.jacobian.cols(), static_cast<Eigen::Index>(result.series.size()));
-  for (Eigen::Index s = 0; s < result.shown.cols(); ++s) {
+  result.sensitivity.resize(at.jacobian.cols(), static_cast<Eigen::Index>(result.series.size()));
+  for (Eigen::Index s = 0; s < result.sensitivity.cols(); ++s) {
     const SeriesRows& rows = result.series[static_cast<std::size_t>(s)];
-    result.shown.col(s) = at.jacobian.middleRows(rows.first, rows.count).colwise().norm() /
-                          std::sqrt(static_cast<double>(rows.count));
+    result.sensitivity.col(s) = at.jacobian.middleRows(rows.first, rows.count).colwise().norm() /
+                                std::sqrt(static_cast<double>(rows.count));
   }
   return result;
 }
@@ -62,7 +62,7 @@ std::string_view excitation_needed(std::string_view quantity) {
       {"directional_friction.dB_a", kBothWays},
       {"directional_friction.dF_c", kBothWays},
       {"stribeck_friction.F_st", "slow motion, and speeds well above it"},
-      {"quadratic_drag.c", "speeds up to the highest"},
+      {"quadratic_drag.c", "motion up to the highest speed"},
       {"added_mass.dM", kAcceleration}};
   for (const auto& [name, need] : kNeeds)
     if (name == quantity) return need;

@@ -10,17 +10,17 @@ namespace axisfit {
 
 /// Were the axis as `values` say, and the noise white and of the stated size.
 struct Forecast {
-  bool finite = false;       ///< false: the simulation does not get through
-  Uncertainty uncertainty;   ///< that the fit will have
-  Identifiability together;  ///< of the parameters
+  bool finite = false;              ///< false: the simulation does not get through
+  Uncertainty uncertainty;          ///< that the fit will have
+  Identifiability identifiability;  ///< of the parameters
   /// How much of each parameter the series show: rms change of the simulated signal, in units of
   /// its noise, for an e-fold of a logarithmic parameter or the magnitude of a linear one.
   /// Parameters by series.
-  Eigen::MatrixXd shown;
+  Eigen::MatrixXd sensitivity;
   std::vector<SeriesRows> series;  ///< the columns
 };
 
-/// Of the recordings that are to be fitted, free running, or at the rate of a fixed coupling.
+/// Of the recordings that are to be fitted, free running, or at the rate of a fixed observer gain.
 Forecast forecast(const Job& job, const std::vector<double>& values);
 
 /// What a motion must do for a parameter to be seen, in words that follow "needs"; empty where

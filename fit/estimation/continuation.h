@@ -4,7 +4,7 @@
 // A free-running simulation of a ringing axis has local minima everywhere; one that is held firmly
 // is nearly linear in the parameters and has one. Literature: homotopy and synchronisation-based
 // parameter identification, e.g. C. P. Vyasarayani et al., Nonlinear Dynamics 67 (2012); H. D. I.
-// Abarbanel, Predicting the Future (2013). docs/decisions/0002-coupling-continuation.md.
+// Abarbanel, Predicting the Future (2013). docs/decisions/0002-observer-continuation.md.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ namespace axisfit {
 
 /// One solved stage of the continuation.
 struct Stage {
-  double coupling_rate = 0.0;  ///< 1/s, zero at the end
+  double observer_gain = 0.0;  ///< 1/s, zero at the end
   double reduced_cost = 0.0;   ///< 2 cost / number of residuals
   int iterations = 0;
   bool accepted = true;  ///< false: the step in rate was too long, a shorter one followed
@@ -28,17 +28,17 @@ struct ContinuationResult {
 
 /// The rate at which the continuation starts unless the job says otherwise: as firm as the sampling
 /// allows, 1 per sample interval for a recorded velocity and 0.3 for position alone.
-double first_coupling_rate(const Job& job);
+double initial_observer_gain(const Job& job);
 
-/// The rate at which the fit ends: zero unless the job fixes the coupling.
-double last_coupling_rate(const Job& job);
+/// The rate at which the fit ends: zero unless the job fixes the observer gain.
+double final_observer_gain(const Job& job);
 
-/// Whether a coupling that lasts to the end takes this quantity to be zero: the lag or delay of a
+/// Whether an observer that lasts to the end takes this quantity to be zero: the lag or delay of a
 /// position or velocity. A simulation that is held to a late signal is late itself.
-bool is_ignored(const QuantityEntry& entry, CouplingMode coupling);
+bool is_ignored(const QuantityEntry& entry, ObserverMode observer);
 
-/// Fits from u, through all stages of job.options.coupling. `progress` is told of every stage.
-ContinuationResult continue_to_free(const Job& job, const ParameterSpace& space,
+/// Fits from u, through all stages of job.options.observer. `progress` is told of every stage.
+ContinuationResult run_continuation(const Job& job, const ParameterSpace& space,
                                     const Eigen::VectorXd& u,
                                     const std::function<void(const Stage&)>& progress = {});
 

@@ -14,7 +14,7 @@
 namespace axisfit {
 namespace {
 
-struct Trial {
+struct StartRun {
   std::vector<double> from;
   bool interrupted = false;
   ContinuationResult result;
@@ -22,28 +22,28 @@ struct Trial {
 
 /// Where the only start of a fit is.
 Progress progress_of(const Stage& stage) {
-  return {.phase = stage.coupling_rate > 0.0
-                       ? fmt::format("fitting, held to the data at {:.3g} 1/s", stage.coupling_rate)
-                       : "fitting, running free",
+  return {.phase = stage.observer_gain > 0.0
+                       ? fmt::format("fitting, observer gain {:.3g} 1/s", stage.observer_gain)
+                       : "fitting, free-running",
           .best = stage.reduced_cost};
 }
 
 /// All starts, spread over threads; every one is independent of the others.
-std::vector<Trial> run_starts(const Job& job, const ParameterSpace& space,
-                              const ProgressReport& progress) {
+std::vector<StartRun> run_starts(const Job& job, const ParameterSpace& space,
+                                 const ProgressReport& progress) {
   const int starts = std::max(1, job.options.starts);
-  std::vector<Trial> trials(static_cast<std::size_t>(starts));
+  std::vector<StartRun> trials(static_cast<std::size_t>(starts));
   std::mutex mutex;
   Progress all{.phase = "starts", .of = starts};
   if (progress && starts > 1) progress(all);
   parallel_for(trials.size(), [&](std::size_t i) {
-    Trial& trial = trials[i];
+    StartRun& trial = trials[i];
     trial.interrupted = is_set(job.options.stop);
     if (trial.interrupted) return;  // a million starts would take their time to throw
     trial.from = draw_start(job, static_cast<int>(i));
     try {
       trial.result =
-          continue_to_free(job, space, space.internal(trial.from), [&](const Stage& stage) {
+          run_continuation(job, space, space.internal(trial.from), [&](const Stage& stage) {
             if (progress && starts == 1) progress(progress_of(stage));
           });
     } catch (const Interrupted&) {
@@ -78,13 +78,14 @@ double standard_deviation(const std::vector<double>& values) {
   return std::sqrt(sum / n);
 }
 
-RecordingResult judge(const Job& job, const ParameterSpace& space, std::size_t index,
-                      const Eigen::VectorXd& u, double coupling_rate) {
+RecordingResult evaluate_recording(const Job& job, const ParameterSpace& space, std::size_t index,
+                                   const Eigen::VectorXd& u, double observer_gain) {
   const Recording& recording = job.recordings[index];
   RecordingResult result;
-  result.prediction = predict(job, space, index, u.data(), {});
-  const Coupling coupling = coupling_for(recording, coupling_rate);
-  if (coupling.active()) result.held = predict(job, space, index, u.data(), coupling);
+  result.free_running = simulate_recording(job, space, index, u.data(), {});
+  const Observer observer = observer_for(recording, observer_gain);
+  if (observer.active())
+    result.tracking = simulate_recording(job, space, index, u.data(), observer);
   const std::size_t first = recording.score_initial_samples ? 0 : recording.initial_samples;
   for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
     const Measurement& measurement = recording.measurements[m];
@@ -93,17 +94,18 @@ RecordingResult judge(const Job& job, const ParameterSpace& space, std::size_t i
     error.fitted = measurement.fitted && recording.role == Role::fit;
     error.sigma = measurement.sigma;
     error.noise = measurement.noise;
-    if (result.prediction.finished) {
+    if (result.free_running.finished) {
       const double mean_square =
-          mean_square_error(measurement, result.prediction.simulated[m], first);
+          mean_square_error(measurement, result.free_running.simulated[m], first);
       const auto [low, high] = std::ranges::minmax(measurement.values);
       error.rmse = std::sqrt(mean_square);
       const double percent = 100.0 * error.rmse / (high - low);
       error.nrmse_percent = std::isfinite(percent) ? percent : 0.0;
       error.reduced_chi_square = mean_square / (measurement.sigma * measurement.sigma);
     }
-    if (result.held && result.held->finished) {
-      const double mean_square = mean_square_error(measurement, result.held->simulated[m], first);
+    if (result.tracking && result.tracking->finished) {
+      const double mean_square =
+          mean_square_error(measurement, result.tracking->simulated[m], first);
       error.prediction_rmse = std::sqrt(mean_square);
       error.prediction_reduced_chi_square = mean_square / (measurement.sigma * measurement.sigma);
     }
@@ -113,12 +115,12 @@ RecordingResult judge(const Job& job, const ParameterSpace& space, std::size_t i
 }
 
 /// A fitted signal that the model follows no better than a constant would: then there is no fit.
-std::string hopeless_signal(const Job& job, const FitResult& result) {
+std::string unexplained_signal(const Job& job, const FitResult& result) {
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     for (std::size_t m = 0; m < result.recordings[r].signals.size(); ++m) {
       const SignalError& e = result.recordings[r].signals[m];
       if (!e.fitted) continue;
-      if (!e.prediction_rmse && !result.recordings[r].prediction.finished)
+      if (!e.prediction_rmse && !result.recordings[r].free_running.finished)
         return fmt::format("{} of {}", info(e.signal).name, job.recordings[r].name);
       const double rmse = e.prediction_rmse.value_or(e.rmse);
       const double chi_square = e.prediction_reduced_chi_square.value_or(e.reduced_chi_square);
@@ -131,7 +133,7 @@ std::string hopeless_signal(const Job& job, const FitResult& result) {
   return {};
 }
 
-std::string open_parameters(const FitResult& result) {
+std::string undetermined_parameters(const FitResult& result) {
   std::string names;
   for (const ParameterResult& p : result.parameters)
     if (!p.uncertainty.determined && !p.uncertainty.at_bound)
@@ -140,14 +142,14 @@ std::string open_parameters(const FitResult& result) {
 }
 
 /// Sets status, usable and verdict.
-void conclude(const Job& job, const SolveResult& solved, FitResult& result) {
+void set_verdict(const Job& job, const SolveResult& solved, FitResult& result) {
   result.status = !solved.usable     ? Status::failed
                   : solved.converged ? Status::converged
                                      : Status::not_converged;
   if (result.status == Status::failed) {
     result.verdict =
-        "No usable fit: the simulation cannot be carried through at the initial values. "
-        "Check them, and the axis file, for impossible values.";
+        "No usable fit: the simulation does not finish at the initial values. Check them and the "
+        "axis file for impossible values.";
     return;
   }
   if (result.status == Status::not_converged) {
@@ -157,20 +159,21 @@ void conclude(const Job& job, const SolveResult& solved, FitResult& result) {
         job.options.max_iterations);
     return;
   }
-  if (const std::string hopeless = hopeless_signal(job, result); !hopeless.empty()) {
+  if (const std::string unexplained = unexplained_signal(job, result); !unexplained.empty()) {
     result.verdict = fmt::format(
         "No usable fit: the model follows the {} no better than a constant would. Try other "
         "initial "
         "values, --starts 20, or check units and signs of the columns.",
-        hopeless);
+        unexplained);
     return;
   }
   result.usable = true;
   // Whether it explains everything is for the test of the residuals to say.
-  result.verdict = fmt::format("Usable fit: reduced chi-square {:.4g} of what was fitted.",
+  result.verdict = fmt::format("Usable fit: reduced chi-square {:.4g} on the fitted data.",
                                result.reduced_chi_square);
-  const std::string open = open_parameters(result);
-  if (!open.empty()) result.verdict += " These recordings do not determine " + open + ".";
+  const std::string undetermined = undetermined_parameters(result);
+  if (!undetermined.empty())
+    result.verdict += " These recordings do not determine " + undetermined + ".";
 }
 
 }  // namespace
@@ -197,48 +200,49 @@ std::vector<double> draw_start(const Job& job, int start) {
 FitResult estimate(const Job& job, const ProgressReport& progress) {
   const Crew crew(job.options.threads);
   const ParameterSpace space(job);
-  std::vector<Trial> trials = run_starts(job, space, progress);
-  const bool interrupted = std::erase_if(trials, [](const Trial& t) { return t.interrupted; }) > 0;
+  std::vector<StartRun> trials = run_starts(job, space, progress);
+  const bool interrupted =
+      std::erase_if(trials, [](const StartRun& t) { return t.interrupted; }) > 0;
   if (trials.empty()) throw Interrupted();
-  const auto better = [](const Trial& a, const Trial& b) {
+  const auto better = [](const StartRun& a, const StartRun& b) {
     if (a.result.last.usable != b.result.last.usable) return a.result.last.usable;
     return a.result.last.cost < b.result.last.cost;
   };
-  const Trial& best = *std::ranges::min_element(trials, better);
+  const StartRun& best = *std::ranges::min_element(trials, better);
   const SolveResult& solved = best.result.last;
 
   FitResult result;
   result.interrupted = interrupted;
-  for (const Trial& trial : trials)
+  for (const StartRun& trial : trials)
     result.starts.push_back({trial.from, space.values(trial.result.last.u),
                              trial.result.last.usable, trial.result.last.reduced_cost});
   result.message = solved.message;
   result.iterations = solved.iterations;
   result.stages = best.result.stages;
-  result.coupling_rate = last_coupling_rate(job);
+  result.observer_gain = final_observer_gain(job);
   result.recordings.resize(job.recordings.size());
   parallel_for(job.recordings.size(), [&](std::size_t r) {
-    result.recordings[r] = judge(job, space, r, solved.u, result.coupling_rate);
+    result.recordings[r] = evaluate_recording(job, space, r, solved.u, result.observer_gain);
   });
 
   result.at_solution =
-      std::make_shared<const Linearization>(linearize(job, space, solved.u, result.coupling_rate));
+      std::make_shared<const Linearization>(linearize(job, space, solved.u, result.observer_gain));
   const Linearization& at_solution = *result.at_solution;
-  const double freedom =
+  const double degrees_of_freedom =
       static_cast<double>(at_solution.residuals.size()) - static_cast<double>(space.size());
-  if (at_solution.finite && freedom > 0.0)
-    result.reduced_chi_square = at_solution.residuals.squaredNorm() / freedom;
+  if (at_solution.finite && degrees_of_freedom > 0.0)
+    result.reduced_chi_square = at_solution.residuals.squaredNorm() / degrees_of_freedom;
   Uncertainty found = uncertainty(space, solved.u, at_solution);
   const std::vector<double> values = space.values(solved.u);
   for (std::size_t i = 0; i < space.size(); ++i)
     result.parameters.push_back({space.name(i), values[i], found.parameters[i]});
   result.correlation = std::move(found.correlation);
-  result.freedom = found.freedom;
-  result.colour = found.colour;
-  result.identifiability =
-      identifiability(space, solved.u, at_solution,
-                      std::sqrt(found.colour * std::max(1.0, result.reduced_chi_square)));
-  conclude(job, solved, result);
+  result.degrees_of_freedom = found.degrees_of_freedom;
+  result.autocorrelation_time = found.autocorrelation_time;
+  result.identifiability = identifiability(
+      space, solved.u, at_solution,
+      std::sqrt(found.autocorrelation_time * std::max(1.0, result.reduced_chi_square)));
+  set_verdict(job, solved, result);
   return result;
 }
 
@@ -247,8 +251,8 @@ FitResult estimate_with_noise(Job& job, const ProgressReport& progress) {
   Job again = job;
   again.options.starts = 1;
   // It is at the minimum already, and follows it.
-  if (again.options.coupling == CouplingMode::continuation)
-    again.options.coupling = CouplingMode::none;
+  if (again.options.observer == ObserverMode::continuation)
+    again.options.observer = ObserverMode::none;
   constexpr int kTurns = 20;
   constexpr double kStays = 1e-4;
   for (int turn = 0; turn < kTurns && result.usable; ++turn) {

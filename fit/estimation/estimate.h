@@ -30,18 +30,18 @@ struct SignalError {
   double sigma = 0.0;          ///< of the noise
   NoiseSource noise = NoiseSource::differences;
   double reduced_chi_square = 0.0;  ///< (rmse / sigma)^2
-  /// The same with the coupling at which the fit ended; only where that is not zero.
+  /// The same with the observer at which the fit ended; only where that is not zero.
   std::optional<double> prediction_rmse, prediction_reduced_chi_square;
 };
 
 struct RecordingResult {
-  Prediction prediction;  ///< free running
-  /// With the coupling at which the fit ended; only where that is not zero.
-  std::optional<Prediction> held;
+  SimulatedRecording free_running;  ///< free running
+  /// With the observer at which the fit ended; only where that is not zero.
+  std::optional<SimulatedRecording> tracking;
   std::vector<SignalError> signals;
 
   /// The prediction in the way the recording was fitted.
-  const Prediction& judged() const { return held ? *held : prediction; }
+  const SimulatedRecording& as_fitted() const { return tracking ? *tracking : free_running; }
 };
 
 struct ParameterResult {
@@ -81,10 +81,11 @@ struct FitResult {
   /// Where nothing was fitted, not finite. Shared between copies, for it is large.
   std::shared_ptr<const Linearization> at_solution;
   Eigen::MatrixXd correlation;      ///< of the estimates, see uncertainty.h
-  double freedom = 0.0;             ///< independent samples, parameters subtracted
-  double colour = 1.0;              ///< samples per independent sample, of the most coloured signal
+  double degrees_of_freedom = 0.0;  ///< independent samples, parameters subtracted
+  double autocorrelation_time =
+      1.0;                          ///< samples per independent sample, of the most coloured signal
   Identifiability identifiability;  ///< at the solution
-  double coupling_rate = 0.0;       ///< of the last stage
+  double observer_gain = 0.0;       ///< of the last stage
   int iterations = 0;               ///< of the best start, all stages
   std::vector<Stage> stages;        ///< of the best start
   std::vector<StartResult> starts;

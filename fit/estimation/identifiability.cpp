@@ -70,7 +70,7 @@ Identifiability identifiability(const ParameterSpace& space, const Eigen::Vector
 
     const auto name = [&](std::size_t i) { return space.name(weak.parts[i].parameter); };
     if (weak.parts.size() == 1) {
-      weak.words = fmt::format("{} is hardly seen in these recordings.", name(0));
+      weak.description = fmt::format("{} hardly affects these recordings.", name(0));
       continue;
     }
     const std::size_t a = weak.parts[0].parameter, b = weak.parts[1].parameter;
@@ -90,15 +90,16 @@ Identifiability identifiability(const ParameterSpace& space, const Eigen::Vector
       c.standard_error = c.value * error;
       // Unless another weak direction hides it, too.
       if (error < 1.0 && std::isfinite(c.value)) {
-        weak.words = fmt::format("Of {} and {} only {} is seen.", name(0), name(1), c.name);
+        weak.description =
+            fmt::format("{} and {} are determined only as {}.", name(0), name(1), c.name);
         result.combinations.push_back(std::move(c));
         continue;
       }
     }
     std::vector<std::string> changes;
     for (const WeakDirection::Part& part : weak.parts) changes.push_back(change_of(space, part));
-    weak.words =
-        fmt::format("These can change together, hardly seen: {}.", fmt::join(changes, ", "));
+    weak.description = fmt::format("These can change jointly with hardly any effect: {}.",
+                                   fmt::join(changes, ", "));
   }
   return result;
 }

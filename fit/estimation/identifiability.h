@@ -17,7 +17,7 @@ struct WeakDirection {
     double change = 0.0;
   };
   std::vector<Part> parts;  ///< largest first
-  std::string words;        ///< a sentence for the user
+  std::string description;  ///< a sentence for the user
 };
 
 /// What is determined of two parameters of which neither is: a b^exponent.

@@ -9,19 +9,23 @@
 namespace axisfit {
 namespace {
 
+/// What is hashed by its bytes.
+template <class T>
+concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
 class Hash {
  public:
   Hash() { XXH3_128bits_reset(state_.get()); }
 
-  template <class T>
-  requires std::is_arithmetic_v<T> || std::is_enum_v<T> Hash& operator<<(T value) {
+  template <Plain T>
+  Hash& operator<<(T value) {
     return add(&value, 1);
   }
   Hash& operator<<(const Eigen::VectorXd& values) {
     return *this << values.size(), add(values.data(), static_cast<std::size_t>(values.size()));
   }
-  template <class T>
-  requires std::is_arithmetic_v<T> Hash& operator<<(const std::vector<T>& values) {
+  template <Plain T>
+  Hash& operator<<(const std::vector<T>& values) {
     *this << values.size();
     if constexpr (std::is_same_v<T, bool>)
       for (const bool value : values) *this << value;
@@ -62,7 +66,7 @@ void add_recording(Hash& hash, const Recording& r) {
   for (const auto& [quantity, value] : r.overrides) hash << quantity << value;
   hash << r.measurements.size();
   for (const Measurement& m : r.measurements)
-    hash << m.signal << m.values << m.sigma << m.fitted << m.left_out;
+    hash << m.signal << m.values << m.sigma << m.fitted << m.excluded;
 }
 
 void add_parameter(Hash& hash, const FreeParameter& p) {
@@ -73,7 +77,7 @@ void add_parameter(Hash& hash, const FreeParameter& p) {
 
 }  // namespace
 
-ProblemKey problem_key(const Job& job, const Eigen::VectorXd& u, double coupling_rate,
+ProblemKey problem_key(const Job& job, const Eigen::VectorXd& u, double observer_gain,
                        const SolveOptions& options) {
   Hash hash;
   add_model(hash, job.model);
@@ -82,8 +86,8 @@ ProblemKey problem_key(const Job& job, const Eigen::VectorXd& u, double coupling
   hash << job.free.size();
   for (const FreeParameter& p : job.free) add_parameter(hash, p);
   hash << job.options.loss << job.options.huber_width << job.options.step;
-  hash << u << coupling_rate << options.max_iterations << options.function_tolerance
-       << options.parameter_tolerance << options.keep_to_start << options.fixed;
+  hash << u << observer_gain << options.max_iterations << options.function_tolerance
+       << options.parameter_tolerance << options.penalize_distance_from_start << options.fixed;
   return hash.key();
 }
 

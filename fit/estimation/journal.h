@@ -20,7 +20,7 @@ namespace axisfit {
 using ProblemKey = std::array<std::uint64_t, 2>;
 
 /// Of what solve() is given.
-ProblemKey problem_key(const Job& job, const Eigen::VectorXd& u, double coupling_rate,
+ProblemKey problem_key(const Job& job, const Eigen::VectorXd& u, double observer_gain,
                        const SolveOptions& options);
 
 /// Solutions of problems. Called from several threads at once.
@@ -28,7 +28,7 @@ class Journal {
  public:
   virtual ~Journal() = default;
   virtual std::optional<SolveResult> find(const ProblemKey& key) = 0;
-  virtual void keep(const ProblemKey& key, const SolveResult& solution) = 0;
+  virtual void store(const ProblemKey& key, const SolveResult& solution) = 0;
 };
 
 }  // namespace axisfit

@@ -45,9 +45,9 @@ class PriorCost : public ceres::CostFunction {
 };
 
 /// u - start
-class KeepCost : public ceres::CostFunction {
+class StartPenalty : public ceres::CostFunction {
  public:
-  explicit KeepCost(Eigen::VectorXd start) : start_(std::move(start)) {
+  explicit StartPenalty(Eigen::VectorXd start) : start_(std::move(start)) {
     set_num_residuals(static_cast<int>(start_.size()));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(start_.size()));
   }
@@ -68,9 +68,9 @@ class KeepCost : public ceres::CostFunction {
 
 /// Keeps what another cost gave last. A solver with bounds asks for the Jacobian at a point that it
 /// tries, then for the residuals there, and if it takes it for the Jacobian once more.
-class KeptCost : public ceres::CostFunction {
+class CachedCost : public ceres::CostFunction {
  public:
-  explicit KeptCost(std::unique_ptr<ceres::CostFunction> cost)
+  explicit CachedCost(std::unique_ptr<ceres::CostFunction> cost)
       : cost_(std::move(cost)),
         size_(static_cast<std::size_t>(cost_->parameter_block_sizes().front())) {
     set_num_residuals(cost_->num_residuals());
@@ -107,17 +107,17 @@ class KeptCost : public ceres::CostFunction {
 };
 
 /// Computes costs side by side, at a point where a solver is about to ask for one after the other.
-class SideBySide : public ceres::EvaluationCallback {
+class ParallelEvaluation : public ceres::EvaluationCallback {
  public:
-  explicit SideBySide(const double* u) : u_(u) {}
-  void add(const KeptCost* cost) { costs_.push_back(cost); }
+  explicit ParallelEvaluation(const double* u) : u_(u) {}
+  void add(const CachedCost* cost) { costs_.push_back(cost); }
   void PrepareForEvaluation(bool with_jacobian, bool) override {
     parallel_for(costs_.size(), [&](std::size_t i) { costs_[i]->compute(u_, with_jacobian); });
   }
 
  private:
   const double* u_;
-  std::vector<const KeptCost*> costs_;
+  std::vector<const CachedCost*> costs_;
 };
 
 Costs priors_of(const ParameterSpace& space) {
@@ -129,10 +129,10 @@ Costs priors_of(const ParameterSpace& space) {
 
 /// The point of a solution between its bounds. Knows which parameters are at one, and which of
 /// these are held there.
-class BoundedPoint {
+class BoundConstraints {
  public:
-  BoundedPoint(const ParameterSpace& space, const std::vector<std::size_t>& fixed, double* u,
-               ceres::Problem& problem)
+  BoundConstraints(const ParameterSpace& space, const std::vector<std::size_t>& fixed, double* u,
+                   ceres::Problem& problem)
       : u_(u), problem_(problem), fixed_(space.size(), false) {
     for (const std::size_t i : fixed) fixed_[i] = true;
     for (std::size_t i = 0; i < space.size(); ++i) {
@@ -142,7 +142,7 @@ class BoundedPoint {
       problem.SetParameterLowerBound(u, static_cast<int>(i), lower_[i]);
       problem.SetParameterUpperBound(u, static_cast<int>(i), upper_[i]);
     }
-    held_ = fixed_;
+    pinned_ = fixed_;
     changes_.assign(space.size(), 0);
   }
 
@@ -150,7 +150,7 @@ class BoundedPoint {
     return !fixed_[i] && (u_[i] <= lower_[i] || u_[i] >= upper_[i]);
   }
   bool any_at_bound() const {
-    for (std::size_t i = 0; i < held_.size(); ++i)
+    for (std::size_t i = 0; i < pinned_.size(); ++i)
       if (at_bound(i)) return true;
     return false;
   }
@@ -161,13 +161,13 @@ class BoundedPoint {
     std::vector<double> gradient;
     if (!problem_.Evaluate({}, nullptr, nullptr, &gradient, nullptr)) return false;
     bool changed = false;
-    for (std::size_t i = 0; i < held_.size(); ++i) {
+    for (std::size_t i = 0; i < pinned_.size(); ++i) {
       if (fixed_[i]) continue;
       const bool outwards = u_[i] <= lower_[i] ? gradient[i] > 0.0 : gradient[i] < 0.0;
       const bool hold = at_bound(i) && outwards;
       constexpr int kChanges = 4;  // held and let go twice
-      if (hold == held_[i] || ++changes_[i] > kChanges) continue;
-      held_[i] = hold;
+      if (hold == pinned_[i] || ++changes_[i] > kChanges) continue;
+      pinned_[i] = hold;
       changed = true;
     }
     return changed;
@@ -176,28 +176,28 @@ class BoundedPoint {
   /// Makes constant what is held; false when nothing is left to vary.
   bool apply() {
     std::vector<int> constant;
-    for (std::size_t i = 0; i < held_.size(); ++i)
-      if (held_[i]) constant.push_back(static_cast<int>(i));
-    if (constant.size() == held_.size()) return false;
-    problem_.SetManifold(
-        u_, constant.empty() ? nullptr
-                             : new ceres::SubsetManifold(static_cast<int>(held_.size()), constant));
+    for (std::size_t i = 0; i < pinned_.size(); ++i)
+      if (pinned_[i]) constant.push_back(static_cast<int>(i));
+    if (constant.size() == pinned_.size()) return false;
+    problem_.SetManifold(u_, constant.empty() ? nullptr
+                                              : new ceres::SubsetManifold(
+                                                    static_cast<int>(pinned_.size()), constant));
     return true;
   }
 
  private:
   double* u_;
   ceres::Problem& problem_;
-  std::vector<bool> fixed_, held_;
+  std::vector<bool> fixed_, pinned_;
   std::vector<double> lower_, upper_;
   std::vector<int> changes_;
 };
 
 /// Ends a solution as soon as a step arrives at a bound at which it did not begin, or it is to
 /// stop.
-class EarlyEnd : public ceres::IterationCallback {
+class EarlyTermination : public ceres::IterationCallback {
  public:
-  EarlyEnd(const BoundedPoint& point, std::size_t size, const StopFlag* stop)
+  EarlyTermination(const BoundConstraints& point, std::size_t size, const StopFlag* stop)
       : point_(point), stop_(stop) {
     for (std::size_t i = 0; i < size; ++i) began_there_.push_back(point.at_bound(i));
   }
@@ -210,7 +210,7 @@ class EarlyEnd : public ceres::IterationCallback {
   }
 
  private:
-  const BoundedPoint& point_;
+  const BoundConstraints& point_;
   const StopFlag* stop_;
   std::vector<bool> began_there_;
 };
@@ -225,17 +225,18 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
   SolveResult result;
   result.u = start;
   double* u = result.u.data();
-  SideBySide side_by_side(u);
+  ParallelEvaluation parallel_evaluation(u);
   ceres::Problem::Options of_problem;
-  of_problem.evaluation_callback = &side_by_side;
+  of_problem.evaluation_callback = &parallel_evaluation;
   ceres::Problem problem(of_problem);
   for (auto& cost : costs) {
-    auto* kept = new KeptCost(std::move(cost));  // the problem's
-    problem.AddResidualBlock(kept, nullptr, u);
-    side_by_side.add(kept);
+    auto* cached = new CachedCost(std::move(cost));  // the problem's
+    problem.AddResidualBlock(cached, nullptr, u);
+    parallel_evaluation.add(cached);
   }
   for (auto& cost : priors_of(space)) problem.AddResidualBlock(cost.release(), nullptr, u);
-  if (options.keep_to_start) problem.AddResidualBlock(new KeepCost(start), nullptr, u);
+  if (options.penalize_distance_from_start)
+    problem.AddResidualBlock(new StartPenalty(start), nullptr, u);
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.num_threads = 1;
@@ -248,7 +249,7 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
   // parameters as if it had got there, and at a bound it gets no further. So a parameter that is
   // pushed against its bound is held there while the others are fitted, and let go when it is not
   // pushed any more.
-  BoundedPoint point(space, options.fixed, u, problem);
+  BoundConstraints point(space, options.fixed, u, problem);
   if (point.any_at_bound()) point.review();
   for (;;) {
     if (!point.apply()) {  // the point itself is the solution
@@ -256,7 +257,7 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
           problem.Evaluate({}, &result.cost, nullptr, nullptr, nullptr);
       break;
     }
-    EarlyEnd end(point, space.size(), options.stop);
+    EarlyTermination end(point, space.size(), options.stop);
     solver.callbacks = {&end};
     solver.max_num_iterations = std::max(1, options.max_iterations - result.iterations);
     ceres::Solver::Summary summary;

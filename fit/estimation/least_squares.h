@@ -21,7 +21,7 @@ struct SolveOptions {
   double parameter_tolerance = 1e-9;  ///< relative change of the parameters at which to stop
   /// Whether to keep to the start, with the weight of one residual per e-fold of a parameter: what
   /// the data do not show then stays where it is instead of running off to a bound.
-  bool keep_to_start = false;
+  bool penalize_distance_from_start = false;
   std::vector<std::size_t> fixed;  ///< parameters that stay as they are
   const StopFlag* stop = nullptr;  ///< ends the solution, which is not usable then
 };

@@ -27,7 +27,7 @@ class Walk {
         direction_(direction),
         u_(space_.internal(values_of(fit))),
         cost_(0.5 * fit.at_solution->residuals.squaredNorm()),
-        wanted_(student_95(fit.freedom)) {
+        wanted_(student_95(fit.degrees_of_freedom)) {
     const FreeParameter& p = space_[parameter];
     bound_ = space_.internal(parameter, direction > 0.0 ? p.upper : p.lower);
   }
@@ -83,7 +83,7 @@ class Walk {
     options.fixed = {parameter_};
     Eigen::VectorXd start = latest_.value_or(u_);
     start[index_] = u;
-    const SolveResult solved = solve(job_, space_, start, fit_.coupling_rate, options);
+    const SolveResult solved = solve(job_, space_, start, fit_.observer_gain, options);
     if (!solved.usable) {
       failed_ = true;
       return INFINITY;
@@ -138,7 +138,7 @@ std::vector<Profile> profiles(const Job& job, const FitResult& fit,
     Side &below = sides[2 * k], &above = sides[2 * k + 1];
     Profile& profile = list.emplace_back();
     profile.parameter = parameters[k];
-    profile.threshold = std::pow(student_95(fit.freedom), 2);
+    profile.threshold = std::pow(student_95(fit.degrees_of_freedom), 2);
     profile.lower = below.end;
     profile.upper = above.end;
     profile.points = std::move(below.points);

@@ -12,9 +12,9 @@ namespace {
 /// Runs a recording through a model, read by a recorder of these signals; `also` sees the axis at
 /// every sample.
 template <class T, class Also>
-SimulationOutcome run(const Job& job, const Recording& recording, const Model<T>& model,
-                      const Coupling& coupling, Recorder<T>& recorder, Also&& also,
-                      std::vector<ModeChange>* modes = nullptr, const StopFlag* stop = nullptr) {
+SimulationResult run(const Job& job, const Recording& recording, const Model<T>& model,
+                     const Observer& observer, Recorder<T>& recorder, Also&& also,
+                     std::vector<ModeChange>* modes = nullptr, const StopFlag* stop = nullptr) {
   IntegratorOptions options = recording_options(recording.times, job.options.step);
   options.modes = modes;
   options.stop = stop;
@@ -22,7 +22,7 @@ SimulationOutcome run(const Job& job, const Recording& recording, const Model<T>
   // are the curve.
   const bool curved_velocity = model.structure.drive != Drive::force_source;
   const auto series = [&](Signal signal) {
-    const Measurement* m = coupling.active() ? recording.find(signal) : nullptr;
+    const Measurement* m = observer.active() ? recording.find(signal) : nullptr;
     if (m == nullptr) return std::vector<double>{};
     const bool curved = signal == Signal::position || curved_velocity;
     return recorder.refined(curved ? target_corners(recording.times, m->values) : m->values);
@@ -35,7 +35,7 @@ SimulationOutcome run(const Job& job, const Recording& recording, const Model<T>
         recorder.read(axis);
         if (recorder.is_sample(i)) also(axis);
       },
-      coupling, {velocity, position}, options);
+      observer, {velocity, position}, options);
 }
 
 /// sign(r) sqrt(rho(r^2)) for Huber's rho of width k, and its derivative.
@@ -48,55 +48,56 @@ std::pair<double, double> robust(double r, double k) {
 
 }  // namespace
 
-Coupling coupling_for(const Recording& recording, double rate) {
+Observer observer_for(const Recording& recording, double rate) {
   if (!(rate > 0.0)) return {};
   const bool position = recording.find(Signal::position) != nullptr;
-  if (recording.find(Signal::velocity) != nullptr) return Coupling::to_velocity(rate, position);
-  if (position) return Coupling::to_position(rate);
+  if (recording.find(Signal::velocity) != nullptr) return Observer::of_velocity(rate, position);
+  if (position) return Observer::of_position(rate);
   return {};
 }
 
-Prediction predict(const Job& job, const ParameterSpace& space, std::size_t index, const double* u,
-                   const Coupling& coupling) {
+SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& space,
+                                      std::size_t index, const double* u,
+                                      const Observer& observer) {
   const Recording& recording = job.recordings[index];
   std::vector<Signal> signals;
   for (const Measurement& m : recording.measurements) signals.push_back(m.signal);
   const Model<double> model = model_at(job, space, u, index);
   Recorder<double> recorder(model.instruments, signals, recording.times);
-  Prediction prediction;
+  SimulatedRecording simulation;
   // The force is the sample's: that of the target is periodic between samples, and not zero at
   // them.
   const auto measured = [&](Signal signal) {
     const Measurement* m = recording.find(signal);
-    return m == nullptr ? 0.0 : m->values[prediction.samples.size()];
+    return m == nullptr ? 0.0 : m->values[simulation.samples.size()];
   };
-  const SimulationOutcome outcome = run(
-      job, recording, model, coupling, recorder,
+  const SimulationResult simulation_result = run(
+      job, recording, model, observer, recorder,
       [&](const Integrator<double>& axis) {
         const Equations<double>& equations = axis.equations();
         const State<double>& y = axis.state();
         const double drive = equations.drive_force(axis.mode(), y, axis.input());
-        prediction.samples.push_back(
+        simulation.samples.push_back(
             {axis.input().command, y[0], y[1], y[2],
              equations.current(axis.mode(), y, axis.input()), drive,
              model.structure.transmission == Transmission::rigid
                  ? drive
                  : equations.gear_force(axis.mode(), y),
-             coupling.active() ? equations.coupling_force(y, Target{measured(Signal::velocity),
+             observer.active() ? equations.observer_force(y, Target{measured(Signal::velocity),
                                                                     measured(Signal::position)})
                                : 0.0});
       },
-      &prediction.modes);
+      &simulation.modes);
   for (std::size_t m = 0; m < signals.size(); ++m)
-    prediction.simulated.push_back(recorder.readings(m));
-  prediction.finished = outcome.finished;
-  prediction.events = outcome.events;
-  return prediction;
+    simulation.simulated.push_back(recorder.readings(m));
+  simulation.finished = simulation_result.finished;
+  simulation.events = simulation_result.events;
+  return simulation;
 }
 
 RecordingCost::RecordingCost(const Job& job, const ParameterSpace& space, std::size_t recording,
-                             const Coupling& coupling, const StopFlag* stop)
-    : job_(job), space_(space), recording_(recording), coupling_(coupling), stop_(stop) {
+                             const Observer& observer, const StopFlag* stop)
+    : job_(job), space_(space), recording_(recording), observer_(observer), stop_(stop) {
   const Recording& r = job.recordings[recording];
   int residuals = 0;
   for (std::size_t m = 0; m < r.measurements.size(); ++m) {
@@ -125,7 +126,7 @@ bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobia
   }
   Recorder<T> recorder(model.instruments, signals_, recording.times);
   if (!run(
-           job_, recording, model, coupling_, recorder, [](const Integrator<T>&) {}, nullptr, stop_)
+           job_, recording, model, observer_, recorder, [](const Integrator<T>&) {}, nullptr, stop_)
            .finished)
     return false;
   bool finite = true;
@@ -167,10 +168,10 @@ bool RecordingCost::evaluate_with_jacobian(const double* u, double* residuals,
   // One pass for all parameters, in the narrowest dual number that holds them; more than the widest
   // holds take several passes.
   constexpr std::size_t kWidest = 24;
-  std::span<const std::size_t> rest = applicable_;
+  std::span<const std::size_t> remaining = applicable_;
   do {
-    const auto columns = rest.first(std::min(rest.size(), kWidest));
-    rest = rest.subspan(columns.size());
+    const auto columns = remaining.first(std::min(remaining.size(), kWidest));
+    remaining = remaining.subspan(columns.size());
     const std::size_t n = columns.size();
     const bool finished =
         n <= 2    ? evaluate<ceres::Jet<double, 2>>(u, residuals, jacobian, columns)
@@ -180,7 +181,7 @@ bool RecordingCost::evaluate_with_jacobian(const double* u, double* residuals,
         : n <= 12 ? evaluate<ceres::Jet<double, 12>>(u, residuals, jacobian, columns)
                   : evaluate<ceres::Jet<double, 24>>(u, residuals, jacobian, columns);
     if (!finished) return false;
-  } while (!rest.empty());
+  } while (!remaining.empty());
   return true;
 }
 

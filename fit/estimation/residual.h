@@ -20,11 +20,11 @@ struct Sample {
   double current = 0.0;         ///< A
   double drive_force = 0.0;     ///< N
   double gear_force = 0.0;      ///< N; of a rigid transmission the drive force
-  double coupling_force = 0.0;  ///< N, zero when uncoupled
+  double observer_force = 0.0;  ///< N, zero when free-running
 };
 
 /// What the simulation says of a recording.
-struct Prediction {
+struct SimulatedRecording {
   bool finished = false;
   /// Per measurement, in the recording's order, one value per sample, in the signal's unit.
   std::vector<std::vector<double>> simulated;
@@ -34,11 +34,12 @@ struct Prediction {
 };
 
 /// Simulates a recording with the parameters at u.
-Prediction predict(const Job& job, const ParameterSpace& space, std::size_t recording,
-                   const double* u, const Coupling& coupling);
+SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& space,
+                                      std::size_t recording, const double* u,
+                                      const Observer& observer);
 
-/// The coupling of a recording at a rate: to its velocity, or else to its position, or none.
-Coupling coupling_for(const Recording& recording, double rate);
+/// The observer of a recording at a rate: to its velocity, or else to its position, or none.
+Observer observer_for(const Recording& recording, double rate);
 
 /// Residuals (measured - simulated) / sigma of all fitted measurements of a recording, measurement
 /// by measurement, without the samples that are left out. One parameter block: the whole vector u
@@ -52,7 +53,7 @@ class RecordingCost : public ceres::CostFunction {
   /// Job and space must outlive the cost, and stay as they are. When `stop` is set no point
   /// finishes any more.
   RecordingCost(const Job& job, const ParameterSpace& space, std::size_t recording,
-                const Coupling& coupling, const StopFlag* stop = nullptr);
+                const Observer& observer, const StopFlag* stop = nullptr);
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
@@ -66,7 +67,7 @@ class RecordingCost : public ceres::CostFunction {
   const Job& job_;
   const ParameterSpace& space_;
   std::size_t recording_;
-  Coupling coupling_;
+  Observer observer_;
   const StopFlag* stop_;
   std::vector<std::size_t> fitted_;      // indices of measurements
   std::vector<Signal> signals_;          // their signals

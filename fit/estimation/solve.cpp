@@ -6,41 +6,41 @@
 namespace axisfit {
 namespace {
 
-Costs recording_costs(const Job& job, const ParameterSpace& space, double coupling_rate,
+Costs recording_costs(const Job& job, const ParameterSpace& space, double observer_gain,
                       const StopFlag* stop) {
   Costs list;
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     if (job.recordings[r].role == Role::fit)
       list.push_back(std::make_unique<RecordingCost>(
-          job, space, r, coupling_for(job.recordings[r], coupling_rate), stop));
+          job, space, r, observer_for(job.recordings[r], observer_gain), stop));
   return list;
 }
 
 }  // namespace
 
 SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
-                  double coupling_rate, SolveOptions options) {
+                  double observer_gain, SolveOptions options) {
   options.stop = job.options.stop;
   if (is_set(options.stop)) throw Interrupted();
   Journal* const journal = job.options.journal;
   const ProblemKey key =
-      journal != nullptr ? problem_key(job, u, coupling_rate, options) : ProblemKey{};
+      journal != nullptr ? problem_key(job, u, observer_gain, options) : ProblemKey{};
   if (journal != nullptr) {
     // Files can be forged, and what is read beyond a vector's end is anything.
     std::optional<SolveResult> known = journal->find(key);
     if (known && known->u.size() == u.size()) return *std::move(known);
   }
   SolveResult result =
-      minimize(space, recording_costs(job, space, coupling_rate, options.stop), u, options);
+      minimize(space, recording_costs(job, space, observer_gain, options.stop), u, options);
   if (is_set(options.stop)) throw Interrupted();
-  if (journal != nullptr) journal->keep(key, result);
+  if (journal != nullptr) journal->store(key, result);
   return result;
 }
 
 Linearization linearize(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
-                        double coupling_rate) {
+                        double observer_gain) {
   // To its end, for a result that was found before a stop needs it.
-  Linearization result = linearize(space, recording_costs(job, space, coupling_rate, nullptr), u);
+  Linearization result = linearize(space, recording_costs(job, space, observer_gain, nullptr), u);
   // As RecordingCost has them: recording by recording, measurement by measurement.
   result.series.clear();
   Eigen::Index row = 0;

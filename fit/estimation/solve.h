@@ -1,20 +1,20 @@
-// The least-squares problem that a job poses at one coupling.
+// The least-squares problem that a job poses at one observer gain.
 #pragma once
 
 #include "fit/estimation/least_squares.h"
 
 namespace axisfit {
 
-/// Minimises over all `fit` recordings, from u, within the bounds, with the coupling's rate
-/// (coupling_for each recording). The same for any number of threads, so that a solution which the
+/// Minimises over all `fit` recordings, from u, within the bounds, with the observer gain
+/// (observer_for each recording). The same for any number of threads, so that a solution which the
 /// job's journal knows is taken from there, and others are put into it. Throws Interrupted when the
 /// job's stop flag is set.
 SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
-                  double coupling_rate, SolveOptions options);
+                  double observer_gain, SolveOptions options);
 
 /// Residuals of all fit recordings and then of the priors at u, and their Jacobian with respect to
 /// u.
 Linearization linearize(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
-                        double coupling_rate);
+                        double observer_gain);
 
 }  // namespace axisfit

@@ -23,15 +23,15 @@ class NormalInverse {
     const Eigen::VectorXd& s = svd.singularValues();
     const Eigen::MatrixXd& v = svd.matrixV();
     constexpr double kRounding = 1e-9, kPart = 0.1;
-    open_.assign(static_cast<std::size_t>(j.cols()), false);
+    undetermined_.assign(static_cast<std::size_t>(j.cols()), false);
     matrix_.setZero(j.cols(), j.cols());
     for (Eigen::Index m = 0; m < s.size(); ++m) {
       if (s[m] > kRounding * s[0]) matrix_ += v.col(m) * v.col(m).transpose() / (s[m] * s[m]);
       for (Eigen::Index k = 0; k < j.cols() && s[m] <= kRounding * s[0]; ++k)
-        if (std::abs(v(k, m)) > kPart) open_[static_cast<std::size_t>(k)] = true;
+        if (std::abs(v(k, m)) > kPart) undetermined_[static_cast<std::size_t>(k)] = true;
     }
     for (Eigen::Index k = 0; k < j.cols(); ++k) {
-      if (!(length_[k] > 0.0)) open_[static_cast<std::size_t>(k)] = true;
+      if (!(length_[k] > 0.0)) undetermined_[static_cast<std::size_t>(k)] = true;
       const double back = length_[k] > 0.0 ? 1.0 / length_[k] : 0.0;
       matrix_.row(k) *= back;
       matrix_.col(k) *= back;
@@ -39,25 +39,27 @@ class NormalInverse {
   }
   const Eigen::MatrixXd& matrix() const { return matrix_; }
   /// Whether the k-th parameter can change with no effect, alone or together with others.
-  bool is_open(Eigen::Index k) const { return open_[static_cast<std::size_t>(k)]; }
-  bool has_open() const { return std::ranges::find(open_, true) != open_.end(); }
+  bool is_undetermined(Eigen::Index k) const { return undetermined_[static_cast<std::size_t>(k)]; }
+  bool has_undetermined() const {
+    return std::ranges::find(undetermined_, true) != undetermined_.end();
+  }
 
  private:
   Eigen::VectorXd length_;
   Eigen::MatrixXd matrix_;
-  std::vector<bool> open_;
+  std::vector<bool> undetermined_;
 };
 
 /// Autocovariances of the residuals of every series.
-struct Colours {
+struct Autocovariances {
   std::vector<std::vector<double>> autocovariance;
   double independent = 0.0;  ///< samples
-  double colour = 1.0;
+  double autocorrelation_time = 1.0;
   double inflation = 1.0;  ///< of what white noise of the stated size contributes, at most
 };
 
-Colours colours_of(const Linearization& at, std::size_t parameters) {
-  Colours result;
+Autocovariances autocovariances_of(const Linearization& at, std::size_t parameters) {
+  Autocovariances result;
   double samples = 0.0;
   for (const SeriesRows& rows : at.series) samples += static_cast<double>(rows.count);
   const double spent = samples / std::max(1.0, samples - static_cast<double>(parameters));
@@ -69,29 +71,30 @@ Colours colours_of(const Linearization& at, std::size_t parameters) {
     for (double& x : g) x *= scale;
     if (!(g[0] > 0.0)) g[0] = 1.0;
     const double sum = std::accumulate(g.begin() + 1, g.end(), 0.0);
-    const double colour = std::max(1.0, 1.0 + 2.0 * sum / g[0]);
-    result.colour = std::max(result.colour, colour);
-    result.inflation = std::max(result.inflation, std::sqrt(g[0] * colour));
-    result.independent += static_cast<double>(rows.count) / colour;
+    const double autocorrelation_time = std::max(1.0, 1.0 + 2.0 * sum / g[0]);
+    result.autocorrelation_time = std::max(result.autocorrelation_time, autocorrelation_time);
+    result.inflation = std::max(result.inflation, std::sqrt(g[0] * autocorrelation_time));
+    result.independent += static_cast<double>(rows.count) / autocorrelation_time;
     result.autocovariance.push_back(std::move(g));
   }
   return result;
 }
 
 /// J'G J; the rows after the last series are those of priors, whose variance is one.
-Eigen::MatrixXd meat(const Linearization& at, const Colours& colours, const Eigen::MatrixXd& j) {
+Eigen::MatrixXd sandwich_middle(const Linearization& at, const Autocovariances& autocovariances,
+                                const Eigen::MatrixXd& j) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(j.cols(), j.cols());
   Eigen::Index end = 0;
   for (std::size_t s = 0; s < at.series.size(); ++s) {
     const SeriesRows& rows = at.series[s];
     const auto block = j.middleRows(rows.first, rows.count);
-    const std::vector<double>& g = colours.autocovariance[s];
+    const std::vector<double>& g = autocovariances.autocovariance[s];
     Eigen::MatrixXd spread = g[0] * block;
     for (std::size_t i = 1; i < g.size(); ++i) {
       const auto lag = static_cast<Eigen::Index>(i);
-      const Eigen::Index rest = rows.count - lag;
-      spread.topRows(rest) += g[i] * block.bottomRows(rest);
-      spread.bottomRows(rest) += g[i] * block.topRows(rest);
+      const Eigen::Index overlap = rows.count - lag;
+      spread.topRows(overlap) += g[i] * block.bottomRows(overlap);
+      spread.bottomRows(overlap) += g[i] * block.topRows(overlap);
     }
     sum += block.transpose() * spread;
     end = rows.first + rows.count;
@@ -102,8 +105,8 @@ Eigen::MatrixXd meat(const Linearization& at, const Colours& colours, const Eige
 
 }  // namespace
 
-double student_95(double freedom) {
-  return quantile(boost::math::students_t(std::max(1.0, freedom)), 0.975);
+double student_95(double degrees_of_freedom) {
+  return quantile(boost::math::students_t(std::max(1.0, degrees_of_freedom)), 0.975);
 }
 
 Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
@@ -123,19 +126,19 @@ Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
   }
   if (!at_solution.finite) return result;
 
-  const Colours colours = colours_of(at_solution, inside.size());
-  result.colour = colours.colour;
-  result.freedom = colours.independent - static_cast<double>(inside.size());
-  for (ParameterUncertainty& p : result.parameters) p.inflation = colours.inflation;
-  const double t = student_95(result.freedom);
+  const Autocovariances autocovariances = autocovariances_of(at_solution, inside.size());
+  result.autocorrelation_time = autocovariances.autocorrelation_time;
+  result.degrees_of_freedom = autocovariances.independent - static_cast<double>(inside.size());
+  for (ParameterUncertainty& p : result.parameters) p.inflation = autocovariances.inflation;
+  const double t = student_95(result.degrees_of_freedom);
 
   if (!inside.empty()) {
     const Eigen::MatrixXd j = at_solution.jacobian(Eigen::all, inside);
     const NormalInverse inverse(j);
     const Eigen::MatrixXd covariance =
-        inverse.matrix() * meat(at_solution, colours, j) * inverse.matrix();
+        inverse.matrix() * sandwich_middle(at_solution, autocovariances, j) * inverse.matrix();
     for (Eigen::Index k = 0; k < j.cols(); ++k) {
-      if (inverse.is_open(k)) continue;
+      if (inverse.is_undetermined(k)) continue;
       const auto i = static_cast<std::size_t>(inside[static_cast<std::size_t>(k)]);
       const double error = std::sqrt(covariance(k, k));
       const double here = u[inside[static_cast<std::size_t>(k)]];
@@ -164,9 +167,10 @@ Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
 
   if (inside.size() == space.size()) return result;
   const NormalInverse inverse(at_solution.jacobian);
-  if (inverse.has_open()) return result;
+  if (inverse.has_undetermined()) return result;
   const Eigen::MatrixXd covariance =
-      inverse.matrix() * meat(at_solution, colours, at_solution.jacobian) * inverse.matrix();
+      inverse.matrix() * sandwich_middle(at_solution, autocovariances, at_solution.jacobian) *
+      inverse.matrix();
   // Where the minimum would be if there were no bounds.
   const Eigen::VectorXd step =
       -inverse.matrix() * (at_solution.jacobian.transpose() * at_solution.residuals);

@@ -28,13 +28,14 @@ struct Uncertainty {
   std::vector<ParameterUncertainty> parameters;
   /// Of the estimates of u; not a number where a parameter has no standard error.
   Eigen::MatrixXd correlation;
-  double freedom = 0.0;  ///< independent samples, parameters subtracted
-  double colour = 1.0;   ///< samples per independent sample, of the most coloured signal
+  double degrees_of_freedom = 0.0;  ///< independent samples, parameters subtracted
+  double autocorrelation_time =
+      1.0;  ///< samples per independent sample, of the most coloured signal
 };
 
 /// The factor of a standard error that makes half of a 95 % interval, for so many degrees of
 /// freedom (at least one is assumed): Student's quantile.
-double student_95(double freedom);
+double student_95(double degrees_of_freedom);
 
 /// Assumes a model that is linear over the intervals, and residuals that are, signal by signal,
 /// stationary with the variance and the autocorrelation that they show, never less than the stated

@@ -8,8 +8,8 @@ namespace axisfit {
 std::vector<double> modelled_autocovariance(std::span<const double> values) {
   const std::size_t n = values.size();
   // Few samples show a colour by chance too often.
-  constexpr std::size_t kFewest = 50;
-  const std::size_t most = n < kFewest ? 0 : std::min<std::size_t>(40, n / 10);
+  constexpr std::size_t kMinSamples = 50;
+  const std::size_t most = n < kMinSamples ? 0 : std::min<std::size_t>(40, n / 10);
   std::vector<double> covariance(most + 1, 0.0);
   for (std::size_t lag = 0; lag <= most; ++lag) {
     for (std::size_t i = lag; i < n; ++i) covariance[lag] += values[i] * values[i - lag];

@@ -67,7 +67,7 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
     const double noise = series.noise_known ? 1.0 : noise_from_differences(series.values);
     test.unexplained_percent =
         100.0 * std::sqrt(std::max(0.0, 1.0 - noise * noise / test.reduced_chi_square));
-    const auto& samples = result.recordings[series.recording].judged().samples;
+    const auto& samples = result.recordings[series.recording].as_fitted().samples;
     const Recording& recording = job.recordings[series.recording];
     const auto& times = recording.times;
     std::vector<double> instants;
@@ -78,7 +78,7 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
     std::erase_if(test.outliers,
                   [&](std::size_t i) { return std::abs(series.values[i]) < kNoise; });
     test.drift = drift(instants, series.values);
-    test.grid = quantum(recording.measurements[series.measurement].values);
+    test.resolution = resolution_of(recording.measurements[series.measurement].values);
     for (const Regressor& regressor : regressors()) {
       std::vector<double> x;
       for (const std::size_t i : series.samples)
@@ -98,19 +98,19 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
       double between = 0.0;
       for (const auto& [_, r] : ranges) between += r.count * (r.mean - mean) * (r.mean - mean);
       // Noise is what is left: what depends on x would look like slow noise.
-      std::vector<double> rest = series.values;
-      for (std::size_t i = 0; i < x.size(); ++i) rest[i] -= ranges[range[i]].mean;
-      const double time = autocorrelation_time(rest);
-      const double freedom = n / time - static_cast<double>(ranges.size());
-      if (!(freedom > 3.0 && mean_square(rest) > 0.0)) continue;
-      const double worth = mean_square(rest) * n / freedom;
+      std::vector<double> residual = series.values;
+      for (std::size_t i = 0; i < x.size(); ++i) residual[i] -= ranges[range[i]].mean;
+      const double time = autocorrelation_time(residual);
+      const double degrees_of_freedom = n / time - static_cast<double>(ranges.size());
+      if (!(degrees_of_freedom > 3.0 && mean_square(residual) > 0.0)) continue;
+      const double residual_variance = mean_square(residual) * n / degrees_of_freedom;
       const double groups = static_cast<double>(ranges.size() - 1);
-      const boost::math::fisher_f_distribution<> by_chance(groups, freedom);
-      const double p = cdf(complement(by_chance, between / groups / worth));
+      const boost::math::fisher_f_distribution<> by_chance(groups, degrees_of_freedom);
+      const double p = cdf(complement(by_chance, between / groups / residual_variance));
       if (p < kSignificant)
         test.dependences.push_back({regressor.name, between / (n * test.reduced_chi_square), p});
     }
-    std::ranges::stable_sort(test.dependences, std::greater{}, &Dependence::share);
+    std::ranges::stable_sort(test.dependences, std::greater{}, &Dependence::fraction);
     test.series = std::move(series);
     tests.push_back(std::move(test));
   }

@@ -15,10 +15,10 @@
 namespace axisfit {
 
 struct Dependence {
-  std::string on;        ///< "command", "velocity", "direction", "position", "motor angle" ...
-  double share = 0.0;    ///< of the residual's mean square, explained by its mean over each of 12
-                         ///< equally frequented ranges of the variable
-  double p_value = 1.0;  ///< of that share or more, were there no dependence
+  std::string on;         ///< "command", "velocity", "direction", "position", "motor angle" ...
+  double fraction = 0.0;  ///< of the residual's mean square, explained by its mean over each of 12
+                          ///< equally frequented ranges of the variable
+  double p_value = 1.0;   ///< of that share or more, were there no dependence
 };
 
 /// The verdict on one series.
@@ -31,7 +31,7 @@ struct SeriesTest {
   std::vector<Dependence> dependences;  ///< significant ones (p < 0.001), strongest first
   std::vector<std::size_t> outliers;    ///< places in the series, beyond four sigma
   Drift drift;                          ///< of the residual over sigma
-  double grid = 0.0;                    ///< step between recorded values; zero: none
+  double resolution = 0.0;              ///< step between recorded values; zero: none
 };
 
 /// Tests every series of a fit. The p-values count one independent sample for each autocorrelation

@@ -34,12 +34,12 @@ double rms(const std::vector<double>& values, std::size_t first) {
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, values.size() - first)));
 }
 
-/// N rms of the low-passed coupling force that white noise of the measurement makes: the hold
+/// N rms of the low-passed observer force that white noise of the measurement makes: the hold
 /// follows a velocity like k / (s + k), a position like (2 w s + w^2) / (s + w)^2.
-double noise_floor(const Recording& recording, const Coupling& coupling, double mass,
+double noise_floor(const Recording& recording, const Observer& observer, double mass,
                    double interval, double cutoff) {
   const Measurement* m =
-      recording.find(coupling.velocity > 0.0 ? Signal::velocity : Signal::position);
+      recording.find(observer.velocity > 0.0 ? Signal::velocity : Signal::position);
   double power = 0.0;
   constexpr int kPoints = 400;
   const double nyquist = 0.5 / interval, df = nyquist / kPoints;
@@ -47,11 +47,11 @@ double noise_floor(const Recording& recording, const Coupling& coupling, double 
     const double f = (i + 0.5) * df;
     const std::complex<double> s(0.0, 2.0 * kPi * f);
     std::complex<double> h;
-    if (coupling.velocity > 0.0) {
-      h = coupling.velocity * s / (s + coupling.velocity);
+    if (observer.velocity > 0.0) {
+      h = observer.velocity * s / (s + observer.velocity);
     } else {
-      const double w = std::sqrt(coupling.acceleration);
-      h = coupling.acceleration * s * s / ((s + w) * (s + w));
+      const double w = std::sqrt(observer.acceleration);
+      h = observer.acceleration * s * s / ((s + w) * (s + w));
     }
     const double low = 1.0 / (1.0 + std::pow(f / cutoff, 8));  // amplitude of both runs
     power += std::norm(h) * low * low * df / nyquist;
@@ -82,7 +82,8 @@ std::vector<double> low_pass(std::vector<double> values, double interval, double
 MissingForce missing_force(const Job& job, const FitResult& result, std::size_t index) {
   MissingForce missing;
   const Recording& recording = job.recordings[index];
-  if (!coupling_for(recording, 1.0).active() || result.recordings[index].prediction.samples.empty())
+  if (!observer_for(recording, 1.0).active() ||
+      result.recordings[index].free_running.samples.empty())
     return missing;
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values_of(result));
@@ -90,25 +91,25 @@ MissingForce missing_force(const Job& job, const FitResult& result, std::size_t 
   const double mass = Equations<double>(model).moving_mass();
   const double interval = mean_interval(recording.times);
   double largest = 0.0;
-  for (const Sample& s : result.recordings[index].prediction.samples)
+  for (const Sample& s : result.recordings[index].free_running.samples)
     largest = std::max(largest, std::abs(s.drive_force));
   missing.cutoff = std::min(40.0, 0.1 / interval);
-  const auto coupling = [&] { return coupling_for(recording, 2.0 * kPi * missing.cutoff); };
+  const auto observer = [&] { return observer_for(recording, 2.0 * kPi * missing.cutoff); };
   const auto floor = [&] {
-    return noise_floor(recording, coupling(), mass, interval, missing.cutoff);
+    return noise_floor(recording, observer(), mass, interval, missing.cutoff);
   };
   while (missing.cutoff > 5.0 && floor() > 0.01 * largest) missing.cutoff *= 0.5;
   missing.noise = floor();
 
-  const Prediction held = predict(job, space, index, u.data(), coupling());
-  if (!held.finished) return missing;
+  const SimulatedRecording tracking = simulate_recording(job, space, index, u.data(), observer());
+  if (!tracking.finished) return missing;
   std::vector<double> force, drive;
-  for (const Sample& s : held.samples) {
-    force.push_back(s.coupling_force);
+  for (const Sample& s : tracking.samples) {
+    force.push_back(s.observer_force);
     drive.push_back(s.drive_force);
   }
   missing.force = low_pass(std::move(force), interval, missing.cutoff);
-  missing.samples = held.samples;
+  missing.samples = tracking.samples;
   const std::size_t first = recording.score_initial_samples ? 0 : recording.initial_samples;
   missing.rms = rms(missing.force, first);
   missing.drive_rms = rms(low_pass(std::move(drive), interval, missing.cutoff), first);

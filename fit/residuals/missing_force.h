@@ -1,7 +1,7 @@
-// The force that the model lacks, seen through the coupling.
+// The force that the model lacks, seen through the observer.
 //
 // A simulation that is held to the recording needs a force for it wherever the model alone would go
-// elsewhere: M y1' of the coupling (coupling.h). Below the bandwidth of the hold that is the force
+// elsewhere: M y1' of the observer (observer.h). Below the bandwidth of the hold that is the force
 // on the arm that the model lacks, together with what noise the measurement feeds in.
 #pragma once
 

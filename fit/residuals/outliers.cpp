@@ -8,7 +8,7 @@
 namespace axisfit {
 namespace {
 
-constexpr std::size_t kLeast = 30;
+constexpr std::size_t kMinSamples = 30;
 constexpr std::size_t kNeighbours = 10;  // on either side
 constexpr std::size_t kPhase = 50;       // samples over which the scatter is one and the same
 constexpr std::size_t kBurst = 3;
@@ -59,9 +59,9 @@ double rounding_error(std::span<const double> values) {
 double threshold(std::size_t deviations) {
   const double n = static_cast<double>(deviations);
   const double q = normal_magnitude();
-  const double freedom =
+  const double degrees_of_freedom =
       n * 2.0 * std::pow(q * pdf(boost::math::normal(), q), 2) / (kShare * (1.0 - kShare));
-  return quantile(complement(boost::math::students_t(freedom), 0.5 * kFalseAlarms / n));
+  return quantile(complement(boost::math::students_t(degrees_of_freedom), 0.5 * kFalseAlarms / n));
 }
 
 /// Whether a sample departs from `level` and returns, within a burst, and next to nothing around
@@ -85,7 +85,7 @@ bool is_alone(std::span<const double> values, std::size_t at, double level) {
 
 std::vector<std::size_t> outliers(std::span<const double> residuals) {
   const std::size_t n = residuals.size();
-  if (n < kLeast) return {};
+  if (n < kMinSamples) return {};
   std::vector<double> level(n), magnitude(n), neighbours;
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t begin = i - std::min(i, kNeighbours);

@@ -11,24 +11,24 @@ std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& res
   std::vector<ResidualSeries> list;
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     const Recording& recording = job.recordings[r];
-    const Prediction& prediction = result.recordings[r].judged();
-    if (!prediction.finished) continue;
+    const SimulatedRecording& simulation = result.recordings[r].as_fitted();
+    if (!simulation.finished) continue;
     for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
       const Measurement& measurement = recording.measurements[m];
       if (!measurement.fitted) continue;
-      ResidualSeries fitted, judged;
+      ResidualSeries fitted, unfitted;
       static_cast<SeriesKey&>(fitted) = {r, m, true};
-      static_cast<SeriesKey&>(judged) = {r, m, false};
+      static_cast<SeriesKey&>(unfitted) = {r, m, false};
       fitted.noise_known = measurement.noise != NoiseSource::fit;
       const std::size_t first = recording.score_initial_samples ? 0 : recording.initial_samples;
       for (std::size_t i = first; i < recording.times.size(); ++i) {
         if (!measurement.counts(i)) continue;
-        ResidualSeries& series = recording.fits(measurement, i) ? fitted : judged;
+        ResidualSeries& series = recording.fits(measurement, i) ? fitted : unfitted;
         series.samples.push_back(i);
-        series.values.push_back((measurement.values[i] - prediction.simulated[m][i]) /
+        series.values.push_back((measurement.values[i] - simulation.simulated[m][i]) /
                                 measurement.sigma);
       }
-      for (ResidualSeries* series : {&fitted, &judged})
+      for (ResidualSeries* series : {&fitted, &unfitted})
         if (!series->values.empty()) list.push_back(std::move(*series));
     }
   }
@@ -69,9 +69,9 @@ void allow_for_parameters(const Job& job, const FitResult& result,
   for (Recording& r : other.recordings) r.role = r.role == Role::fit ? Role::validate : Role::fit;
   const ParameterSpace space(other);
   const Linearization& fitted = *result.at_solution;
-  const Linearization judged =
-      linearize(other, space, space.internal(values_of(result)), result.coupling_rate);
-  if (!fitted.finite || !judged.finite || judged.jacobian.rows() == 0) return;
+  const Linearization unfitted =
+      linearize(other, space, space.internal(values_of(result)), result.observer_gain);
+  if (!fitted.finite || !unfitted.finite || unfitted.jacobian.rows() == 0) return;
   // Columns of equal length, and what is not determined to one part in a thousand left out: an
   // undetermined parameter must not excuse everything.
   Eigen::VectorXd length = fitted.jacobian.colwise().norm().cwiseMax(1e-300);
@@ -80,9 +80,9 @@ void allow_for_parameters(const Job& job, const FitResult& result,
   Eigen::MatrixXd root = eigen.eigenvectors();
   for (Eigen::Index k = 0; k < root.cols(); ++k)
     root.col(k) *= eigen.eigenvalues()[k] > 1e-6 ? 1.0 / std::sqrt(eigen.eigenvalues()[k]) : 0.0;
-  const Eigen::MatrixXd shown = judged.jacobian * length.cwiseInverse().asDiagonal() * root;
+  const Eigen::MatrixXd shown = unfitted.jacobian * length.cwiseInverse().asDiagonal() * root;
   const double excess = std::max(1.0, result.reduced_chi_square);
-  for (const SeriesRows& rows : judged.series)
+  for (const SeriesRows& rows : unfitted.series)
     if (ResidualSeries* series = find_series(list, {rows.recording, rows.measurement, false}))
       series->allowance = shown.middleRows(rows.first, rows.count).squaredNorm() /
                           static_cast<double>(rows.count) * excess;

@@ -35,8 +35,8 @@ struct ResidualSeries : SeriesKey {
 };
 
 /// The residuals that a fit is judged by: of the simulation in the way it was fitted, free running
-/// or held at a fixed coupling. A signal that is only compared is left out, and so is everything of
-/// a recording whose simulation did not finish.
+/// or held at a fixed observer gain. A signal that is only compared is left out, and so is
+/// everything of a recording whose simulation did not finish.
 std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& result);
 
 /// Mean square.

@@ -12,7 +12,7 @@
 namespace axisfit {
 namespace {
 
-constexpr std::size_t kFewest = 32;
+constexpr std::size_t kMinSamples = 32;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 }  // namespace
@@ -29,7 +29,7 @@ std::vector<double> autocorrelation(std::span<const double> values, std::size_t 
 
 Spectrum power_spectrum(std::span<const double> values, double interval) {
   Spectrum spectrum;
-  if (values.size() < kFewest) return spectrum;
+  if (values.size() < kMinSamples) return spectrum;
   const std::size_t n = std::bit_floor(values.size() / 4);
   std::vector<double> window(n), segment(n);
   for (std::size_t i = 0; i < n; ++i)
@@ -56,7 +56,7 @@ Spectrum spatial_spectrum(std::span<const double> values, std::span<const double
                           int cycles) {
   Spectrum spectrum;
   const auto n = static_cast<Eigen::Index>(values.size());
-  if (values.size() < kFewest) return spectrum;
+  if (values.size() < kMinSamples) return spectrum;
   const auto [low, high] = std::ranges::minmax(positions);
   const double stroke = high - low;
   if (!(stroke > 0.0)) return spectrum;

@@ -12,7 +12,7 @@ namespace axisfit {
 namespace {
 
 /// Mean square times autocorrelation time: what one independent sample contributes.
-double worth(const ResidualSeries& series) {
+double variance_per_independent_sample(const ResidualSeries& series) {
   return mean_square(series.values) * autocorrelation_time(series.values);
 }
 
@@ -29,7 +29,7 @@ Improvement improvement(const std::vector<ResidualSeries>& before,
   for (const ResidualSeries& old : before) {
     const ResidualSeries* now = find_series(after, old);
     if (now == nullptr) return result;
-    const double unit = worth(*now);
+    const double unit = variance_per_independent_sample(*now);
     if (old.fitted) {
       result.fit_gain += (sum_of_squares(old) - sum_of_squares(*now)) / unit;
       result.samples += static_cast<double>(now->values.size()) / autocorrelation_time(now->values);
@@ -53,13 +53,14 @@ Improvement improvement(const std::vector<ResidualSeries>& before,
   return result;
 }
 
-double disadvantage(const std::vector<ResidualSeries>& best, std::size_t best_parameters,
-                    const std::vector<ResidualSeries>& other, std::size_t other_parameters) {
+double bic_difference(const std::vector<ResidualSeries>& best, std::size_t best_parameters,
+                      const std::vector<ResidualSeries>& other, std::size_t other_parameters) {
   double loss = 0.0, samples = 0.0;
   for (const ResidualSeries& series : best) {
     const ResidualSeries* rival = find_series(other, series);
     if (rival == nullptr) return INFINITY;
-    loss += (sum_of_squares(*rival) - sum_of_squares(series)) / worth(series);
+    loss +=
+        (sum_of_squares(*rival) - sum_of_squares(series)) / variance_per_independent_sample(series);
     samples += static_cast<double>(series.values.size()) / autocorrelation_time(series.values);
   }
   return loss + (static_cast<double>(other_parameters) - static_cast<double>(best_parameters)) *
@@ -75,7 +76,8 @@ Determination determination(const Job& job, const FitResult& result, const Candi
   for (std::size_t i = first; i < job.free.size(); ++i) {
     const ParameterResult& p = result.parameters[i];
     if (p.uncertainty.at_bound && d.at_bound.empty()) d.at_bound = p.name;
-    if (i >= first + strengths && !p.uncertainty.determined && d.open.empty()) d.open = p.name;
+    if (i >= first + strengths && !p.uncertainty.determined && d.undetermined.empty())
+      d.undetermined = p.name;
   }
   constexpr double kByChance = 3e-4;
   const boost::math::chi_squared_distribution<> by_chance(static_cast<double>(strengths));
@@ -107,39 +109,41 @@ Determination determination(const Job& job, const FitResult& result, const Candi
       mark - at.jacobian.middleCols(static_cast<Eigen::Index>(first),
                                     static_cast<Eigen::Index>(strengths)) *
                  zero;
-  Eigen::VectorXd rest = shown;
+  Eigen::VectorXd residual = shown;
   if (others.cols() > 0) {
     const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(others);
-    rest -= others * solver.solve(shown);
+    residual -= others * solver.solve(shown);
   }
-  d.distinct = shown.squaredNorm() > 0.0 ? rest.squaredNorm() / shown.squaredNorm() : 0.0;
+  d.distinct = shown.squaredNorm() > 0.0 ? residual.squaredNorm() / shown.squaredNorm() : 0.0;
   for (const SeriesRows& rows : at.series)
     if (const auto* series = find_series(residuals, {rows.recording, rows.measurement, true}))
-      d.wald += rest.segment(rows.first, rows.count).squaredNorm() / worth(*series);
+      d.wald += residual.segment(rows.first, rows.count).squaredNorm() /
+                variance_per_independent_sample(*series);
   return d;
 }
 
-std::string refusal(const Candidate& candidate, const Improvement& gain,
-                    const Determination& determined, std::size_t tried, double chance) {
-  if (!gain.comparable) return "with it the simulation does not get through all recordings";
+std::string rejection_reason(const Candidate& candidate, const Improvement& gain,
+                             const Determination& determined, std::size_t tried, double chance) {
+  if (!gain.comparable) return "with it the simulation does not finish for all recordings";
   // Schwarz's criterion, with the price of having been chosen among many.
-  const double price = static_cast<double>(candidate.parameters()) * std::log(gain.samples) +
-                       2.0 * std::log(static_cast<double>(std::max<std::size_t>(1, tried)));
-  if (gain.fit_gain < price)
+  const double bic_penalty = static_cast<double>(candidate.parameters()) * std::log(gain.samples) +
+                             2.0 * std::log(static_cast<double>(std::max<std::size_t>(1, tried)));
+  if (gain.fit_gain < bic_penalty)
     return fmt::format(
-        "explains no more than chance: the fit gains {:.3g} where {} of {} effects must gain "
+        "no better than chance: the sum of squares falls by {:.3g}, where {} of {} effects needs "
         "{:.3g}",
-        std::max(0.0, gain.fit_gain), "the best", tried, price);
-  constexpr double kLeastPercent = 0.5;
+        std::max(0.0, gain.fit_gain), "the best", tried, bic_penalty);
+  constexpr double kMinPercent = 0.5;
   if (gain.p_value > chance)
-    return fmt::format("does not help on what was not fitted (p = {:.2g})", gain.p_value);
-  if (gain.validate_percent < kLeastPercent)
-    return fmt::format("hardly helps on what was not fitted: {:.2g} % less error",
-                       gain.validate_percent);
-  if (!determined.at_bound.empty()) return determined.at_bound + " ends at its bound";
-  if (!determined.open.empty()) return "the recordings do not determine " + determined.open;
+    return fmt::format("does not lower the validation error (p = {:.2g})", gain.p_value);
+  if (gain.validate_percent < kMinPercent)
+    return fmt::format("hardly lowers the validation error, by {:.2g} %", gain.validate_percent);
+  if (!determined.at_bound.empty()) return determined.at_bound + " is at its bound";
+  if (!determined.undetermined.empty())
+    return "the recordings do not determine " + determined.undetermined;
   constexpr double kAlias = 1e-10;  // below is rounding
-  if (determined.distinct < kAlias) return "the other parameters imitate it wholly";
+  if (determined.distinct < kAlias)
+    return "it cannot be distinguished from a change of the other parameters";
   if (determined.wald < determined.required)
     return fmt::format("its strength is not determined: {:.2g} standard errors from zero",
                        std::sqrt(determined.wald));

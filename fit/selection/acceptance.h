@@ -29,18 +29,18 @@ Improvement improvement(const std::vector<ResidualSeries>& before,
 /// How much worse `other` explains all recordings than `best`, in the same units, each parameter
 /// beyond those of `best` at the price of Schwarz's criterion, log of the number of samples.
 /// Negative when `other` is better after all.
-double disadvantage(const std::vector<ResidualSeries>& best, std::size_t best_parameters,
-                    const std::vector<ResidualSeries>& other, std::size_t other_parameters);
+double bic_difference(const std::vector<ResidualSeries>& best, std::size_t best_parameters,
+                      const std::vector<ResidualSeries>& other, std::size_t other_parameters);
 
 /// What the fit says of a candidate's own parameters, the last of the job's.
 struct Determination {
   /// Sum of squares that would be lost with strengths of zero, in units as above: the square of
   /// value over standard error where there is one strength.
   double wald = 0.0;
-  double required = 0.0;  ///< the least that counts as determined
-  double distinct = 0.0;  ///< part of the strengths' effect that no other parameter can imitate
-  std::string at_bound;   ///< a parameter held by a bound; empty: none
-  std::string open;       ///< a shape that the data leave open; empty: none
+  double required = 0.0;     ///< the least that counts as determined
+  double distinct = 0.0;     ///< part of the strengths' effect that no other parameter can imitate
+  std::string at_bound;      ///< a parameter held by a bound; empty: none
+  std::string undetermined;  ///< a shape that the data leave open; empty: none
 };
 
 Determination determination(const Job& job, const FitResult& result, const Candidate& candidate,
@@ -51,7 +51,8 @@ constexpr double kChance = 1e-3;
 
 /// Why the candidate must be refused; empty when it may stay.
 /// `tried` is the number of candidates and settings among which it was chosen.
-std::string refusal(const Candidate& candidate, const Improvement& gain,
-                    const Determination& determined, std::size_t tried, double chance = kChance);
+std::string rejection_reason(const Candidate& candidate, const Improvement& gain,
+                             const Determination& determined, std::size_t tried,
+                             double chance = kChance);
 
 }  // namespace axisfit

@@ -21,7 +21,7 @@ std::vector<std::vector<double>> geometric(double a, double b, int n) {
 
 struct Entry {
   std::string_view name;
-  std::string_view slot;
+  std::string_view acts_on;
   std::vector<std::string_view> strengths;  // quantities of the effect, or full names
   std::vector<std::string_view> shapes = {};
   std::vector<std::vector<double>> settings = {{}};
@@ -74,7 +74,7 @@ std::vector<Entry> entries(const Scales& s, double pinion_radius) {
 }
 
 /// Whether a quantity is estimated, or given to a single recording: then there is a value of it.
-bool is_taken(const Job& job, std::size_t quantity) {
+bool has_value(const Job& job, std::size_t quantity) {
   return std::ranges::any_of(job.free, [&](const auto& p) { return p.quantity == quantity; }) ||
          std::ranges::any_of(job.recordings, [&](const Recording& r) {
            return std::ranges::any_of(r.overrides,
@@ -83,7 +83,7 @@ bool is_taken(const Job& job, std::size_t quantity) {
 }
 
 double neutral(const Quantity& quantity) {
-  return std::isnan(quantity.standard) ? 0.0 : quantity.standard;
+  return std::isnan(quantity.default_value) ? 0.0 : quantity.default_value;
 }
 
 /// The structure of a job's model with the effect of a quantity switched on.
@@ -101,7 +101,7 @@ bool is_absent(const Job& job, const std::vector<std::size_t>& strengths) {
     const QuantityEntry& entry = quantity_list()[q];
     const auto effect = effect_named(entry.group);
     const bool written = effect && !job.model.structure.effects[*effect];
-    return is_used(entry, extended(job.model.structure, q)) && !is_taken(job, q) &&
+    return is_used(entry, extended(job.model.structure, q)) && !has_value(job, q) &&
            (written || *member[q] == neutral(entry.quantity));
   });
 }
@@ -133,9 +133,9 @@ std::vector<double> ends_of(std::string_view curve, const Scales& s) {
 Candidate curve(std::string_view name, const Scales& scales) {
   Candidate candidate;
   candidate.name = name;
-  candidate.slot = "arm force";
+  candidate.acts_on = "arm force";
   candidate.meaning = meaning_of(name);
-  candidate.unnamed = true;
+  candidate.is_curve = true;
   candidate.shapes_are_free = false;
   candidate.settings = {ends_of(name, scales)};
   for (const QuantityEntry& entry : quantity_list()) {
@@ -161,16 +161,16 @@ std::vector<double> neutral_strengths(const Candidate& candidate) {
 
 std::vector<Candidate> catalogue(const Job& job, const Scales& scales) {
   std::vector<Candidate> list;
-  const auto offer = [&](Candidate candidate) {
+  const auto add_if_absent = [&](Candidate candidate) {
     if (!candidate.settings.empty() && is_absent(job, candidate.strengths))
       list.push_back(std::move(candidate));
   };
   const std::vector<double> later{2.0 * scales.interval, 8.0 * scales.interval};
-  const std::vector<double> either_way{-2.0 * scales.interval, 2.0 * scales.interval};
+  const std::vector<double> both_signs{-2.0 * scales.interval, 2.0 * scales.interval};
   for (const Entry& entry : entries(scales, job.model.axis.r_g)) {
     Candidate candidate;
     candidate.name = entry.name;
-    candidate.slot = entry.slot;
+    candidate.acts_on = entry.acts_on;
     candidate.meaning = meaning_of(entry.name);
     for (const auto symbol : entry.strengths)
       candidate.strengths.push_back(
@@ -186,28 +186,28 @@ std::vector<Candidate> catalogue(const Job& job, const Scales& scales) {
     // The offset of a force source is a constant force by another name: no recording decides.
     if (entry.name == "command_offset" && job.model.structure.drive == Drive::force_source)
       continue;
-    offer(std::move(candidate));
+    add_if_absent(std::move(candidate));
   }
   Candidate dead_time{"dead_time", "drive", "dead time of the command", {}, {}, {{}}};
   dead_time.strengths = {index_of_quantity("T_d")};
   dead_time.probes = later;
-  offer(std::move(dead_time));
+  add_if_absent(std::move(dead_time));
   for (const SignalInfo& signal : kSignalTable) {
     if (!is_recorded(job, signal.signal)) continue;
     for (const std::string_view part : {"bias", "gain", "lag", "delay"}) {
       const std::string name = std::string(signal.name) + "." + std::string(part);
       const QuantityEntry* entry = find_quantity(name);
-      if (is_ignored(*entry, job.options.coupling)) continue;
+      if (is_ignored(*entry, job.options.observer)) continue;
       Candidate candidate{name,           "sensor", std::string(entry->quantity.meaning),
                           {entry->index}, {},       {{}}};
       if (part == "lag") candidate.probes = later;
-      if (part == "delay") candidate.probes = either_way;
-      offer(std::move(candidate));
+      if (part == "delay") candidate.probes = both_signs;
+      add_if_absent(std::move(candidate));
     }
   }
   for (const std::string_view name :
        {"force_over_velocity", "force_over_position", "force_over_motor_angle", "force_over_time"})
-    offer(curve(name, scales));
+    add_if_absent(curve(name, scales));
   return list;
 }
 

@@ -14,7 +14,8 @@ namespace axisfit {
 /// One effect that is absent from a job's model, as something that could be added to it.
 struct Candidate {
   std::string name;  ///< "coulomb_friction", "acceleration.bias"
-  std::string slot;  ///< where it acts: "arm force", "friction", "inertia", "drive", "sensor" ...
+  std::string
+      acts_on;  ///< where it acts: "arm force", "friction", "inertia", "drive", "sensor" ...
   std::string meaning;  ///< a few words
   /// Quantities (indices in quantity_list()) that are estimated, and neutral while it is absent.
   std::vector<std::size_t> strengths;
@@ -26,7 +27,7 @@ struct Candidate {
   /// Strengths at which the score test looks instead of at zero, where the derivative there says
   /// little: that of a lag or delay holds while it is shorter than anything else. Empty: none.
   std::vector<double> probes = {};
-  bool unnamed = false;  ///< a curve: it fits whatever no other effect explains
+  bool is_curve = false;  ///< a curve: it fits whatever no other effect explains
 
   std::size_t parameters() const {
     return strengths.size() + (shapes_are_free ? shapes.size() : 0);

@@ -14,16 +14,18 @@ Diagnosis diagnose(const Job& job, const FitResult& result) {
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     diagnosis.forces.push_back(missing_force(job, result, r));
   if (diagnosis.explained || !result.usable) return diagnosis;
-  const ScoreTest test = score_test(job, values_of(result), score_rates(job).front());
+  const ScoreTest test = score_test(job, values_of(result), score_gains(job).front());
   constexpr std::size_t kSuspects = 5;
-  constexpr double kLeastShare = 0.02;
+  constexpr double kMinFraction = 0.02;
   for (const Score& score : test.scores) {
     const Candidate& candidate = test.candidates[score.candidate];
-    const double share = score.gain / test.sum_of_squares;
-    if (diagnosis.suspects.size() == kSuspects || !(share >= kLeastShare)) break;
+    const double fraction = score.gain / test.sum_of_squares;
+    if (diagnosis.suspected_effects.size() == kSuspects || !(fraction >= kMinFraction)) break;
     const bool known = std::ranges::any_of(
-        diagnosis.suspects, [&](const Suspect& s) { return same_effect(s.candidate, candidate); });
-    if (!known) diagnosis.suspects.push_back({candidate, score.shapes, score.strengths, share});
+        diagnosis.suspected_effects,
+        [&](const SuspectedEffect& s) { return same_effect(s.candidate, candidate); });
+    if (!known)
+      diagnosis.suspected_effects.push_back({candidate, score.shapes, score.strengths, fraction});
   }
   return diagnosis;
 }

@@ -10,17 +10,17 @@
 namespace axisfit {
 
 /// An effect that the residual speaks for; a suspicion, not a finding.
-struct Suspect {
+struct SuspectedEffect {
   Candidate candidate;
   std::vector<double> shapes, strengths;  ///< as the score test sees them
-  double share = 0.0;  ///< of the sum of squares of the held simulation, that it would explain
+  double fraction = 0.0;  ///< of the sum of squares of the held simulation, that it would explain
 };
 
 struct Diagnosis {
-  std::vector<SeriesTest> tests;     ///< of every signal of every recording
-  std::vector<MissingForce> forces;  ///< of every recording
-  bool explained = false;            ///< every series shows no more than its noise
-  std::vector<Suspect> suspects;     ///< strongest first, none when explained
+  std::vector<SeriesTest> tests;                   ///< of every signal of every recording
+  std::vector<MissingForce> forces;                ///< of every recording
+  bool explained = false;                          ///< every series shows no more than its noise
+  std::vector<SuspectedEffect> suspected_effects;  ///< strongest first, none when explained
 };
 
 /// Looks at a usable fit. The suspects take one score test of the catalogue.

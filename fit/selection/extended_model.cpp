@@ -14,8 +14,8 @@ FitResult refit(const Job& job) {
   quick.options.max_iterations = std::min(job.options.max_iterations, 25);
   // Smooth effects are then a few parts in a hundred thousand off, and twice as quick.
   quick.options.step = 2.0 * job.options.step;
-  if (job.options.coupling == CouplingMode::continuation)
-    quick.options.coupling_rate = score_rates(job).front();
+  if (job.options.observer == ObserverMode::continuation)
+    quick.options.observer_gain = score_gains(job).front();
   return estimate(quick);
 }
 
@@ -25,9 +25,11 @@ FitResult refit_from(Job job, const std::vector<double>& values) {
   return refit(job);
 }
 
-Extension extend(const Job& job, const Candidate& candidate, const std::vector<double>& values,
-                 const std::vector<double>& strengths, const std::vector<double>& shapes) {
-  Extension e;
+ExtendedModel fit_extended_model(const Job& job, const Candidate& candidate,
+                                 const std::vector<double>& values,
+                                 const std::vector<double>& strengths,
+                                 const std::vector<double>& shapes) {
+  ExtendedModel e;
   e.candidate = candidate;
   e.job = with_candidate(job, candidate, values, strengths, shapes);
   e.fit = refit(e.job);
@@ -35,18 +37,20 @@ Extension extend(const Job& job, const Candidate& candidate, const std::vector<d
   return e;
 }
 
-OwnValues own_values(const Job& job, const FitResult& fit, const Candidate& candidate) {
+CandidateValues candidate_values(const Job& job, const FitResult& fit, const Candidate& candidate) {
   Model<double> fitted = fitted_model(job, fit);
   const auto member = members(fitted);
-  OwnValues own;
+  CandidateValues own;
   for (const std::size_t q : candidate.strengths) own.strengths.push_back(*member[q]);
   for (const std::size_t q : candidate.shapes) own.shapes.push_back(*member[q]);
   return own;
 }
 
-double advantage(const Extension& a, const Extension& b) {
-  const double of_a = disadvantage(a.residuals, a.job.free.size(), b.residuals, b.job.free.size());
-  const double of_b = disadvantage(b.residuals, b.job.free.size(), a.residuals, a.job.free.size());
+double bic_advantage(const ExtendedModel& a, const ExtendedModel& b) {
+  const double of_a =
+      bic_difference(a.residuals, a.job.free.size(), b.residuals, b.job.free.size());
+  const double of_b =
+      bic_difference(b.residuals, b.job.free.size(), a.residuals, a.job.free.size());
   return of_a > 0.0 ? of_a : -of_b;
 }
 

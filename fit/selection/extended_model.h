@@ -8,14 +8,14 @@
 
 namespace axisfit {
 
-struct Extension {
+struct ExtendedModel {
   Candidate candidate;
   Job job;  ///< the candidate's parameters are its last
   FitResult fit;
   std::vector<ResidualSeries> residuals;
-  double score = 0.0;   ///< gain that the score test promised
-  Improvement gain;     ///< against the model before
-  std::string refusal;  ///< by the gate; empty: it may stay
+  double score = 0.0;            ///< gain that the score test promised
+  Improvement gain;              ///< against the model before
+  std::string rejection_reason;  ///< by the gate; empty: it may stay
 };
 
 /// Fits from close by, content with less than a final fit: one start, one continuation.
@@ -25,16 +25,18 @@ FitResult refit(const Job& job);
 FitResult refit_from(Job job, const std::vector<double>& values);
 
 /// Adds a candidate, started from these strengths and shapes, and refits.
-Extension extend(const Job& job, const Candidate& candidate, const std::vector<double>& values,
-                 const std::vector<double>& strengths, const std::vector<double>& shapes);
+ExtendedModel fit_extended_model(const Job& job, const Candidate& candidate,
+                                 const std::vector<double>& values,
+                                 const std::vector<double>& strengths,
+                                 const std::vector<double>& shapes);
 
 /// What a candidate's quantities are in a fitted model that has it.
-struct OwnValues {
+struct CandidateValues {
   std::vector<double> strengths, shapes;
 };
-OwnValues own_values(const Job& job, const FitResult& fit, const Candidate& candidate);
+CandidateValues candidate_values(const Job& job, const FitResult& fit, const Candidate& candidate);
 
-/// By how much a explains all recordings better than b, parameters counted, see disadvantage().
-double advantage(const Extension& a, const Extension& b);
+/// By how much a explains all recordings better than b, parameters counted, see bic_difference().
+double bic_advantage(const ExtendedModel& a, const ExtendedModel& b);
 
 }  // namespace axisfit

@@ -12,17 +12,17 @@ namespace axisfit {
 namespace {
 
 /// What the recorded signals show of a force f(t) = exp(i q(t)) on a rigid axis of unit mass that
-/// is held by the coupling, whitened, in the order of RecordingCost.
+/// is held by the observer, whitened, in the order of RecordingCost.
 Eigen::VectorXcd response(const Recording& recording, const std::vector<std::complex<double>>& f,
-                          const Coupling& coupling) {
+                          const Observer& observer) {
   const std::size_t n = recording.times.size();
   std::vector<std::complex<double>> position(n), velocity(n);
   for (std::size_t i = 0; i + 1 < n; ++i) {
-    // Implicit midpoint: stable however firm the coupling.
+    // Implicit midpoint: stable however high the observer gain.
     const double h = recording.times[i + 1] - recording.times[i];
     const std::complex<double> force = 0.5 * (f[i] + f[i + 1]), p = position[i], v = velocity[i];
-    const double a = 0.5 * h * coupling.position, b = 0.5 * h * coupling.velocity,
-                 c = 0.5 * h * coupling.acceleration;
+    const double a = 0.5 * h * observer.position, b = 0.5 * h * observer.velocity,
+                 c = 0.5 * h * observer.acceleration;
     const std::complex<double> p0 = (1.0 - a) * p + 0.5 * h * v;
     const std::complex<double> v0 = (1.0 - b) * v - c * p + h * force;
     const double determinant = (1.0 + a) * (1.0 + b) + 0.5 * h * c;
@@ -46,14 +46,14 @@ Eigen::VectorXcd response(const Recording& recording, const std::vector<std::com
 
 }  // namespace
 
-std::vector<double> periods_in(const Recording& recording, const Prediction& prediction,
-                               const Coupling& coupling, const Eigen::VectorXd& residuals,
+std::vector<double> periods_in(const Recording& recording, const SimulatedRecording& simulation,
+                               const Observer& observer, const Eigen::VectorXd& residuals,
                                const Eigen::MatrixXd& basis, std::size_t most, bool of_drive,
                                const StopFlag* stop) {
-  const std::size_t n = prediction.samples.size();
+  const std::size_t n = simulation.samples.size();
   if (n < 16 || n != recording.times.size()) return {};
   double low = INFINITY, high = -INFINITY, speed = 0.0;
-  for (const Sample& s : prediction.samples) {
+  for (const Sample& s : simulation.samples) {
     low = std::min(low, s.position);
     high = std::max(high, s.position);
     speed = std::max(speed, std::abs(s.velocity));
@@ -67,20 +67,20 @@ std::vector<double> periods_in(const Recording& recording, const Prediction& pre
     double period, gain;
   };
   std::vector<Line> spectrum;
-  const Eigen::VectorXd rest = residuals - basis * (basis.transpose() * residuals);
+  const Eigen::VectorXd residual = residuals - basis * (basis.transpose() * residuals);
   const double spacing = 0.25 / stroke;  // 1/m, a quarter of a cycle over the stroke
   for (double wave = 2.0 * spacing; wave < 1.0 / shortest; wave += spacing) {
     if (is_set(stop)) throw Interrupted();
     std::vector<std::complex<double>> force(n);
     for (std::size_t i = 0; i < n; ++i)
-      force[i] = std::polar(1.0, 2.0 * std::numbers::pi * wave * prediction.samples[i].position) *
-                 (of_drive ? prediction.samples[i].drive_force : 1.0);
-    const Eigen::VectorXcd d = response(recording, force, coupling);
+      force[i] = std::polar(1.0, 2.0 * std::numbers::pi * wave * simulation.samples[i].position) *
+                 (of_drive ? simulation.samples[i].drive_force : 1.0);
+    const Eigen::VectorXcd d = response(recording, force, observer);
     Eigen::MatrixXd columns(d.size(), 2);
     columns << d.real(), d.imag();
     columns -= basis * (basis.transpose() * columns);
     const Eigen::Matrix2d gram = columns.transpose() * columns;
-    const Eigen::Vector2d right = columns.transpose() * rest;
+    const Eigen::Vector2d right = columns.transpose() * residual;
     const Eigen::Vector2d solution = gram.completeOrthogonalDecomposition().solve(right);
     spectrum.push_back({1.0 / wave, right.dot(solution)});
   }

@@ -17,10 +17,10 @@ namespace axisfit {
 ///
 /// Throws Interrupted when the stop flag is set.
 ///
-/// A spectrum in space. The response to the force is that of a rigid axis held by the coupling:
+/// A spectrum in space. The response to the force is that of a rigid axis held by the observer:
 /// good enough to find a period, not to judge it.
-std::vector<double> periods_in(const Recording& recording, const Prediction& prediction,
-                               const Coupling& coupling, const Eigen::VectorXd& residuals,
+std::vector<double> periods_in(const Recording& recording, const SimulatedRecording& simulation,
+                               const Observer& observer, const Eigen::VectorXd& residuals,
                                const Eigen::MatrixXd& basis, std::size_t most, bool of_drive,
                                const StopFlag* stop = nullptr);
 

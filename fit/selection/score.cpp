@@ -49,9 +49,9 @@ Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::Vecto
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     const Recording& recording = job.recordings[r];
     if (recording.role != Role::fit) continue;
-    const Coupling coupling = coupling_for(recording, rate);
-    const Prediction prediction = predict(job, space, r, u.data(), coupling);
-    for (const Sample& sample : prediction.samples) {
+    const Observer observer = observer_for(recording, rate);
+    const SimulatedRecording simulation = simulate_recording(job, space, r, u.data(), observer);
+    for (const Sample& sample : simulation.samples) {
       s.position_low = std::min(s.position_low, sample.position);
       s.position_high = std::max(s.position_high, sample.position);
       s.velocity_low = std::min(s.velocity_low, sample.velocity);
@@ -60,12 +60,12 @@ Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::Vecto
     s.start = std::min(s.start, recording.times.front());
     s.end = std::max(s.end, recording.times.back());
     s.interval = std::max(s.interval, mean_interval(recording.times));
-    const Eigen::Index rows = RecordingCost(job, space, r, coupling).num_residuals();
+    const Eigen::Index rows = RecordingCost(job, space, r, observer).num_residuals();
     constexpr std::size_t kPeriods = 3;
     for (const bool of_drive : {false, true}) {
       auto& periods = of_drive ? s.drive_periods : s.periods;
       for (const double period :
-           periods_in(recording, prediction, coupling, base.residuals.segment(row, rows),
+           periods_in(recording, simulation, observer, base.residuals.segment(row, rows),
                       basis.middleRows(row, rows), kPeriods, of_drive, job.options.stop))
         periods.push_back(period);
     }
@@ -84,24 +84,24 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   SolveOptions options;
   options.max_iterations = 15;
   options.function_tolerance = 1e-6;
-  const SolveResult held = solve(job, space, space.internal(values), rate, options);
-  if (!held.usable) return test;
-  const std::vector<double> held_values = space.values(held.u);
-  const Linearization base = linearize(job, space, held.u, rate);
+  const SolveResult tracking = solve(job, space, space.internal(values), rate, options);
+  if (!tracking.usable) return test;
+  const std::vector<double> tracking_values = space.values(tracking.u);
+  const Linearization base = linearize(job, space, tracking.u, rate);
   if (!base.finite) return test;
   const Eigen::MatrixXd basis = basis_of(base.jacobian);
-  const Eigen::VectorXd rest = base.residuals - basis * (basis.transpose() * base.residuals);
-  test.sum_of_squares = rest.squaredNorm();
+  const Eigen::VectorXd residual = base.residuals - basis * (basis.transpose() * base.residuals);
+  test.sum_of_squares = residual.squaredNorm();
   test.usable = std::isfinite(test.sum_of_squares);  // squares may overflow
   if (!test.usable) return test;
-  test.candidates = catalogue(job, scales_of(job, space, held.u, rate, base, basis));
-  std::erase_if(test.candidates, [&](const Candidate& c) { return c.unnamed != curves; });
+  test.candidates = catalogue(job, scales_of(job, space, tracking.u, rate, base, basis));
+  std::erase_if(test.candidates, [&](const Candidate& c) { return c.is_curve != curves; });
   for (std::size_t c = 0; c < test.candidates.size(); ++c)
     for (const auto& setting : test.candidates[c].settings)
-      test.scores.push_back({c, setting, {}, held_values, 0.0});
+      test.scores.push_back({c, setting, {}, tracking_values, 0.0});
 
   const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> base_solver(base.jacobian);
-  const Job fixed = fixed_at(job, held_values);
+  const Job fixed = fixed_at(job, tracking_values);
   parallel_for(test.scores.size(), [&](std::size_t i) {
     if (is_set(job.options.stop)) throw Interrupted();
     Score& score = test.scores[i];
@@ -121,20 +121,20 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
       for (Eigen::Index k = 0; k < columns.cols(); ++k)
         if (columns.col(k).norm() < 1e-4 * derivatives.col(k).norm()) return;
       const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(columns);
-      const Eigen::VectorXd step = solver.solve(-rest);
+      const Eigen::VectorXd step = solver.solve(-residual);
       if (!step.allFinite()) return;
       const std::vector<double> reached = strengths.values(u + step);
       for (std::size_t k = 0; k < reached.size(); ++k) {
         const Quantity& q = quantity_list()[candidate.strengths[k]].quantity;
         if (reached.size() == 1 && (reached[k] < q.lower || reached[k] > q.upper)) return;
       }
-      const double gain = test.sum_of_squares - (rest + columns * step).squaredNorm();
+      const double gain = test.sum_of_squares - (residual + columns * step).squaredNorm();
       if (!(gain > score.gain)) return;
       score.gain = gain;
       score.strengths = reached;
       // The free parameters give way to the effect; no further than a linear step can be believed.
       const Eigen::VectorXd way = base_solver.solve(-(base.residuals + derivatives * step));
-      score.values = space.values(held.u + way.cwiseMax(-0.7).cwiseMin(0.7));
+      score.values = space.values(tracking.u + way.cwiseMax(-0.7).cwiseMin(0.7));
     };
     if (candidate.probes.empty()) consider(d.jacobian);
     for (const double probe : candidate.probes) {
@@ -147,9 +147,9 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   return test;
 }
 
-std::vector<double> score_rates(const Job& job) {
-  const double first = first_coupling_rate(job);
-  if (job.options.coupling == CouplingMode::fixed || !std::isfinite(first)) return {first};
+std::vector<double> score_gains(const Job& job) {
+  const double first = initial_observer_gain(job);
+  if (job.options.observer == ObserverMode::fixed || !std::isfinite(first)) return {first};
   return {first / 30.0, first / 100.0};
 }
 

@@ -1,9 +1,9 @@
 // Which effect would explain the residual: the score test of every candidate at strength zero.
 //
-// The simulation is held to the data at a moderate coupling, so that it stays on the measured path
-// although the model lacks something, and the free parameters are fitted there. With r the whitened
-// residuals, J their Jacobian, D the derivatives with respect to a candidate's strengths and P the
-// projection off the columns of J, the candidate would lower the sum of squares by
+// The simulation is held to the data at a moderate observer gain, so that it stays on the measured
+// path although the model lacks something, and the free parameters are fitted there. With r the
+// whitened residuals, J their Jacobian, D the derivatives with respect to a candidate's strengths
+// and P the projection off the columns of J, the candidate would lower the sum of squares by
 //
 //   gain = | projection of P r on the columns of P D |^2
 //
@@ -35,11 +35,11 @@ struct ScoreTest {
 };
 
 /// Scores all named effects of the catalogue, or all curves, from a fit with the given values of
-/// the free parameters. `coupling_rate` as in coupling_for().
-ScoreTest score_test(const Job& job, const std::vector<double>& values, double coupling_rate,
+/// the free parameters. `observer_gain` as in observer_for().
+ScoreTest score_test(const Job& job, const std::vector<double>& values, double observer_gain,
                      bool curves = false);
 
-/// The coupling rates (1/s) at which a job's residual is scored.
-std::vector<double> score_rates(const Job& job);
+/// The observer gains (1/s) at which a job's residual is scored.
+std::vector<double> score_gains(const Job& job);
 
 }  // namespace axisfit

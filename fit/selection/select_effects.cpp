@@ -20,12 +20,12 @@ namespace {
 
 /// Advantages below this, in units of the sum of squares, are no ground for a preference: two
 /// natural logarithms of a hundred.
-constexpr double kUndecided = 9.2;
+constexpr double kIndistinguishable = 9.2;
 
-class Loop {
+class EffectSelector {
  public:
-  Loop(const Job& job, const FitResult& first, const CloseLoopOptions& options,
-       const ProgressReport& progress)
+  EffectSelector(const Job& job, const FitResult& first, const SelectionOptions& options,
+                 const ProgressReport& progress)
       : options_(options), first_(first), progress_(progress) {
     result_.models.push_back({"", job, first});
     if (std::ranges::none_of(job.recordings,
@@ -35,18 +35,18 @@ class Loop {
     }
   }
 
-  ClosedLoop run() {
-    safe_ = path();
+  EffectSelection run() {
+    last_valid_ = snapshot();
     if (current().fit.usable) {
       try {
-        find();
-        safe_ = path();
-        take_away();
-        note_rivals();
-        leave_out_undecided();
+        search();
+        last_valid_ = snapshot();
+        eliminate_backward();
+        record_rivals();
+        drop_undecided();
       } catch (const Interrupted&) {
         result_.interrupted = true;
-        take(std::move(safe_));
+        restore(std::move(last_valid_));
       }
     }
     finish();
@@ -56,7 +56,7 @@ class Loop {
  private:
   struct Rival {
     Candidate candidate;
-    OwnValues values;
+    CandidateValues values;
   };
   struct Accepted {
     Candidate candidate;
@@ -64,96 +64,96 @@ class Loop {
   };
 
   /// An accepted effect (its place) and another that explains the data as well.
-  struct Rivalry {
+  struct RivalPair {
     std::size_t place = 0;
     Candidate rival;
     Model<double> model;  ///< fitted with the rival in its place
   };
 
   /// Where a search stands.
-  struct Path {
-    std::vector<LoopModel> models;
+  struct SearchState {
+    std::vector<SelectionStep> models;
     std::vector<EffectTrial> effects;
     std::vector<Accepted> accepted;
   };
 
-  LoopModel& current() { return result_.models.back(); }
+  SelectionStep& current() { return result_.models.back(); }
 
   /// Named effects as long as one passes. Where they do not suffice, once more while the simulation
   /// is held, and then with a curve before them: of what is in no catalogue, named effects may have
   /// imitated a part.
-  void find() {
-    find_named();
+  void search() {
+    search_named();
     if (explained()) return;
-    Path unheld = path();
+    SearchState free_running = snapshot();
     provisional_ = true;
-    find_held();
+    search_tracking();
     provisional_ = false;
-    if (!is_better(current(), unheld.models.back())) take(std::move(unheld));
-    safe_ = path();
+    if (!is_better(current(), free_running.models.back())) restore(std::move(free_running));
+    last_valid_ = snapshot();
     if (explained()) return;
-    const Path named = path();
+    const SearchState named = snapshot();
     while (has_room() && round(true)) {
     }
-    const Path appended = path();
+    const SearchState appended = snapshot();
     const bool appends = accepted_.size() > named.accepted.size();
     if (named.accepted.empty()) return;
     provisional_ = true;
     restart();
-    if (!round(true)) return take(appended);
-    find_named();
-    take_away();
+    if (!round(true)) return restore(appended);
+    search_named();
+    eliminate_backward();
     const double loss = loss_of(appended.models.back(), current());
-    if (loss > 0.0 && (appends || loss > kUndecided)) take(appended);
+    if (loss > 0.0 && (appends || loss > kIndistinguishable)) restore(appended);
   }
 
   /// By how much b explains the recordings worse than a, parameters counted.
-  static double loss_of(const LoopModel& a, const LoopModel& b) {
-    return disadvantage(residual_series(a.job, a.fit), a.job.free.size(),
-                        residual_series(b.job, b.fit), b.job.free.size());
+  static double loss_of(const SelectionStep& a, const SelectionStep& b) {
+    return bic_difference(residual_series(a.job, a.fit), a.job.free.size(),
+                          residual_series(b.job, b.fit), b.job.free.size());
   }
-  static bool is_better(const LoopModel& a, const LoopModel& b) {
-    return a.fit.usable && loss_of(a, b) > kUndecided;
+  static bool is_better(const SelectionStep& a, const SelectionStep& b) {
+    return a.fit.usable && loss_of(a, b) > kIndistinguishable;
   }
 
   /// Several effects that are large hide each other: a simulation that runs free drifts away from
   /// the data whatever is added, and little can be told from what is left. Held to the data it
   /// stays near. So they are looked for, and judged, by a simulation that is held to the end, and
   /// are let go together; what is not needed then is taken away.
-  void find_held() {
-    const LoopModel declared = result_.models.front();
-    if (declared.job.options.coupling != CouplingMode::continuation) return;
+  void search_tracking() {
+    const SelectionStep declared = result_.models.front();
+    if (declared.job.options.observer != ObserverMode::continuation) return;
     restart();
-    LoopModel& held = result_.models.front();
-    held.job.options.coupling = CouplingMode::fixed;
-    held.job.options.coupling_rate = score_rates(declared.job).front();
-    held.fit = refit_from(held.job, values_of(declared.fit));
+    SelectionStep& tracking = result_.models.front();
+    tracking.job.options.observer = ObserverMode::fixed;
+    tracking.job.options.observer_gain = score_gains(declared.job).front();
+    tracking.fit = refit_from(tracking.job, values_of(declared.fit));
     // What else is missing counts as noise here: judged strictly when it is known.
-    constexpr double kForTheTimeBeing = 0.05;
-    while (current().fit.usable && has_room() && !explained() && round(false, kForTheTimeBeing)) {
+    constexpr double kProvisionalChance = 0.05;
+    while (current().fit.usable && has_room() && !explained() && round(false, kProvisionalChance)) {
     }
-    LoopModel all = accepted_.empty() ? declared : with_accepted(declared.job);
+    SelectionStep all = accepted_.empty() ? declared : with_accepted(declared.job);
     result_.models = {declared};
     if (accepted_.empty() || !all.fit.usable) return restart();
     rebuild(std::move(all));
-    find_named();
-    take_away();
+    search_named();
+    eliminate_backward();
   }
   bool has_room() const {
     return accepted_.size() < static_cast<std::size_t>(options_.max_effects);
   }
 
-  void find_named() {
-    exchanged_ = false;
+  void search_named() {
+    swapped_ = false;
     while (has_room() && !explained())
-      if (!round(false) && !exchange()) break;
+      if (!round(false) && !try_swap()) break;
   }
 
-  Path path() const { return {result_.models, result_.effects, accepted_}; }
-  void take(Path path) {
-    result_.models = std::move(path.models);
-    result_.effects = std::move(path.effects);
-    accepted_ = std::move(path.accepted);
+  SearchState snapshot() const { return {result_.models, result_.effects, accepted_}; }
+  void restore(SearchState snapshot) {
+    result_.models = std::move(snapshot.models);
+    result_.effects = std::move(snapshot.effects);
+    accepted_ = std::move(snapshot.accepted);
   }
   void restart() {
     result_.models.resize(1);
@@ -161,12 +161,12 @@ class Loop {
     accepted_.clear();
   }
 
-  void tell(const std::string& phase, int done = 0, int of = 0) {
+  void report_progress(const std::string& phase, int done = 0, int of = 0) {
     if (progress_) progress_({phase, done, of, current().fit.reduced_chi_square});
   }
 
   /// Every second of ten stretches of each recording is left to be judged only.
-  static void hold_out_blocks(LoopModel& model) {
+  static void hold_out_blocks(SelectionStep& model) {
     constexpr std::size_t kBlocks = 10;
     for (Recording& r : model.job.recordings) {
       r.held_out.assign(r.times.size(), false);
@@ -183,87 +183,91 @@ class Loop {
     return !series.empty() && std::ranges::all_of(series, is_explained);
   }
 
-  void judge(Extension& e, const std::vector<ResidualSeries>& before,
+  void judge(ExtendedModel& e, const std::vector<ResidualSeries>& before,
              double chance = kChance) const {
     e.gain = improvement(before, e.residuals);
-    e.refusal = !e.fit.usable ? "with it no usable fit is found"
-                              : refusal(e.candidate, e.gain,
-                                        determination(e.job, e.fit, e.candidate, e.residuals),
-                                        tried_, chance);
+    e.rejection_reason =
+        !e.fit.usable ? "there is no usable fit with it"
+                      : rejection_reason(e.candidate, e.gain,
+                                         determination(e.job, e.fit, e.candidate, e.residuals),
+                                         tried_, chance);
   }
 
   /// Refits a shortlist and takes the best that passes the gate. Returns whether one did.
   bool round(bool curves, double chance = kChance) {
     ++round_;
-    tell("looking for suspects");
+    report_progress("scoring effects");
     const Shortlist list =
         shortlist(current().job, values_of(current().fit), curves, options_.shortlist);
-    const std::vector<Promise>& promises = list.promises;
+    const std::vector<ShortlistEntry>& entries = list.entries;
     tried_ = list.tried;
     const auto before = residual_series(current().job, current().fit);
-    std::vector<Extension> extensions(promises.size());
+    std::vector<ExtendedModel> extended_models(entries.size());
     // What takes longest first, so that nobody waits for it at the end.
-    std::vector<std::size_t> order(promises.size());
+    std::vector<std::size_t> order(entries.size());
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, std::greater{},
-                             [&](std::size_t i) { return promises[i].candidate.parameters(); });
+                             [&](std::size_t i) { return entries[i].candidate.parameters(); });
     int done = 0;
     std::mutex mutex;
     parallel_for(order.size(), [&](std::size_t k) {
       const std::size_t i = order[k];
-      const Promise& p = promises[i];
+      const ShortlistEntry& p = entries[i];
       {
         const std::lock_guard lock(mutex);
-        tell("trying " + p.candidate.name, done, static_cast<int>(promises.size()));
+        report_progress("trying " + p.candidate.name, done, static_cast<int>(entries.size()));
       }
-      Extension& e = extensions[i];
-      e = extend(current().job, p.candidate, p.score.values, p.score.strengths, p.score.shapes);
+      ExtendedModel& e = extended_models[i];
+      e = fit_extended_model(current().job, p.candidate, p.score.values, p.score.strengths,
+                             p.score.shapes);
       e.score = p.score.gain;
       judge(e, before, chance);
       const std::lock_guard lock(mutex);
-      tell("trying " + p.candidate.name, ++done, static_cast<int>(promises.size()));
+      report_progress("trying " + p.candidate.name, ++done, static_cast<int>(entries.size()));
     });
     // Of several settings of one candidate the best counts.
-    std::vector<Extension*> contenders;
-    for (Extension& e : extensions) {
-      const auto other = std::ranges::find_if(
-          contenders, [&](const Extension* c) { return same_effect(c->candidate, e.candidate); });
+    std::vector<ExtendedModel*> contenders;
+    for (ExtendedModel& e : extended_models) {
+      const auto other = std::ranges::find_if(contenders, [&](const ExtendedModel* c) {
+        return same_effect(c->candidate, e.candidate);
+      });
       if (other == contenders.end())
         contenders.push_back(&e);
-      else if (better(e, **other))
+      else if (is_preferred(e, **other))
         *other = &e;
     }
-    Extension* best = nullptr;
-    for (Extension* e : contenders)
-      if (e->refusal.empty() && (best == nullptr || advantage(*e, *best) > 0.0)) best = e;
-    // No simpler effect does as well.
-    for (Extension* e : contenders)
-      if (best != nullptr && e->refusal.empty() &&
-          e->candidate.parameters() < best->candidate.parameters() &&
-          advantage(*best, *e) < kUndecided)
+    ExtendedModel* best = nullptr;
+    for (ExtendedModel* e : contenders)
+      if (e->rejection_reason.empty() && (best == nullptr || bic_advantage(*e, *best) > 0.0))
         best = e;
-    for (Extension* e : contenders) note(*e, best);
+    // No simpler effect does as well.
+    for (ExtendedModel* e : contenders)
+      if (best != nullptr && e->rejection_reason.empty() &&
+          e->candidate.parameters() < best->candidate.parameters() &&
+          bic_advantage(*best, *e) < kIndistinguishable)
+        best = e;
+    for (ExtendedModel* e : contenders) record_trial(*e, best);
     if (best == nullptr) return false;
 
     Accepted accepted{best->candidate, {}};
-    for (const Extension* e : contenders) {
+    for (const ExtendedModel* e : contenders) {
       if (e == best || !e->fit.usable || !e->gain.comparable) continue;
       // Rivals are seen again when all else is explained.
-      if (advantage(*best, *e) > kUndecided) continue;
-      accepted.rivals.push_back({e->candidate, own_values(e->job, e->fit, e->candidate)});
+      if (bic_advantage(*best, *e) > kIndistinguishable) continue;
+      accepted.rivals.push_back({e->candidate, candidate_values(e->job, e->fit, e->candidate)});
     }
     accepted_.push_back(std::move(accepted));
     result_.models.push_back({best->candidate.name, std::move(best->job), std::move(best->fit)});
-    if (!provisional_) safe_ = path();
+    if (!provisional_) last_valid_ = snapshot();
     return true;
   }
 
-  static bool better(const Extension& a, const Extension& b) {
-    if (a.refusal.empty() != b.refusal.empty()) return a.refusal.empty();
-    return advantage(a, b) > 0.0;
+  static bool is_preferred(const ExtendedModel& a, const ExtendedModel& b) {
+    if (a.rejection_reason.empty() != b.rejection_reason.empty()) return a.rejection_reason.empty();
+    return bic_advantage(a, b) > 0.0;
   }
 
-  void note(const Extension& e, const Extension* best) {
+  void record_trial(const ExtendedModel& e, const ExtendedModel* best) {
     EffectTrial trial;
     trial.candidate = e.candidate;
     trial.round = round_;
@@ -275,12 +279,12 @@ class Loop {
     if (&e == best) {
       trial.decision = Decision::accepted;
       trial.reason = fmt::format(
-          "explains the residual best: {:.3g} % less error on what was not "
-          "fitted ({:.3g} standard deviations of chance)",
+          "explains the residual best: {:.3g} % lower validation error ({:.3g} standard deviations "
+          "above chance)",
           e.gain.validate_percent, e.gain.z);
     } else {
-      trial.reason = !e.refusal.empty()
-                         ? e.refusal
+      trial.reason = !e.rejection_reason.empty()
+                         ? e.rejection_reason
                          : fmt::format("explains less than {}", best->candidate.name);
     }
     const auto known = std::ranges::find_if(result_.effects, [&](const EffectTrial& t) {
@@ -299,11 +303,11 @@ class Loop {
   }
 
   /// The model without one accepted effect, refitted.
-  LoopModel without(std::size_t index) { return with_accepted(declared_job(), index); }
+  SelectionStep without(std::size_t index) { return with_accepted(declared_job(), index); }
 
   /// A job with the accepted effects, but for one, refitted from where they are.
-  LoopModel with_accepted(const Job& declared, std::optional<std::size_t> except = {}) {
-    LoopModel model{"", declared, {}};
+  SelectionStep with_accepted(const Job& declared, std::optional<std::size_t> except = {}) {
+    SelectionStep model{"", declared, {}};
     std::vector<double> values;
     const FitResult& fit = current().fit;
     for (std::size_t i = 0; i < model.job.free.size(); ++i)
@@ -311,7 +315,7 @@ class Loop {
     for (std::size_t a = 0; a < accepted_.size(); ++a) {
       if (a == except) continue;
       const Candidate& candidate = accepted_[a].candidate;
-      const OwnValues own = own_values(current().job, current().fit, candidate);
+      const CandidateValues own = candidate_values(current().job, current().fit, candidate);
       model.job = with_candidate(model.job, candidate, values, own.strengths, own.shapes);
       values.clear();
       for (const FreeParameter& p : model.job.free) values.push_back(p.initial);
@@ -323,43 +327,43 @@ class Loop {
   const Job& declared_job() const { return result_.models.front().job; }
 
   /// Takes away what is not needed any more.
-  void take_away() {
+  void eliminate_backward() {
     if (accepted_.size() < 2) return;
     for (std::size_t a = 0; a < accepted_.size() && accepted_.size() > 1;) {
-      tell("is " + accepted_[a].candidate.name + " needed?");
-      LoopModel rest = without(a);
-      Extension with;
+      report_progress("is " + accepted_[a].candidate.name + " necessary?");
+      SelectionStep reduced = without(a);
+      ExtendedModel with;
       with.candidate = accepted_[a].candidate;
       with.residuals = residual_series(current().job, current().fit);
-      const auto before = residual_series(rest.job, rest.fit);
+      const auto before = residual_series(reduced.job, reduced.fit);
       const Improvement gain = improvement(before, with.residuals);
-      const double price =
+      const double bic_penalty =
           static_cast<double>(with.candidate.parameters()) * std::log(std::max(2.0, gain.samples));
-      const bool needed =
-          !rest.fit.usable || (gain.comparable && gain.fit_gain > price && gain.p_value < kChance);
+      const bool needed = !reduced.fit.usable || (gain.comparable && gain.fit_gain > bic_penalty &&
+                                                  gain.p_value < kChance);
       if (needed) {
         ++a;
         continue;
       }
       if (EffectTrial* trial = trial_of(with.candidate)) {
-        trial->decision = Decision::refused;
-        trial->reason = "not needed any more beside the effects that were accepted after it";
+        trial->decision = Decision::rejected;
+        trial->reason = "no longer needed with the effects accepted after it";
       }
       accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(a));
-      rebuild(std::move(rest));
+      rebuild(std::move(reduced));
       a = 0;
     }
   }
 
   /// The models on the way anew, after one was taken away or exchanged: the last is given.
-  void rebuild(LoopModel last) {
-    std::vector<LoopModel> models;
+  void rebuild(SelectionStep last) {
+    std::vector<SelectionStep> models;
     models.push_back(std::move(result_.models.front()));
     for (std::size_t a = 0; a + 1 < accepted_.size(); ++a) {
       const Candidate& candidate = accepted_[a].candidate;
-      const OwnValues own = own_values(last.job, last.fit, candidate);
-      Extension e = extend(models.back().job, candidate, values_of(models.back().fit),
-                           own.strengths, own.shapes);
+      const CandidateValues own = candidate_values(last.job, last.fit, candidate);
+      ExtendedModel e = fit_extended_model(models.back().job, candidate,
+                                           values_of(models.back().fit), own.strengths, own.shapes);
       models.push_back({candidate.name, std::move(e.job), std::move(e.fit)});
     }
     if (!accepted_.empty()) {
@@ -370,19 +374,19 @@ class Loop {
   }
 
   /// Every accepted effect in turn gives way to a rival: whether that explains more.
-  bool exchange() {
-    if (accepted_.empty() || exchanged_) return false;
-    exchanged_ = true;
+  bool try_swap() {
+    if (accepted_.empty() || swapped_) return false;
+    swapped_ = true;
     return try_rivals(false);
   }
 
   /// Whether a rival explains the data as well as an accepted effect, now that all else is known.
-  void note_rivals() { try_rivals(true); }
+  void record_rivals() { try_rivals(true); }
 
   /// An effect that has an equal is not accepted: neither silently.
-  void leave_out_undecided() {
+  void drop_undecided() {
     std::set<std::size_t, std::greater<>> places;
-    for (const Rivalry& r : rivalries_) {
+    for (const RivalPair& r : rival_pairs_) {
       const Candidate& chosen = accepted_[r.place].candidate;
       const auto undecide = [&](const Candidate& candidate, const Candidate& other) {
         if (EffectTrial* trial = trial_of(candidate)) {
@@ -397,49 +401,49 @@ class Loop {
       places.insert(r.place);
     }
     for (const std::size_t place : places) {
-      LoopModel rest = accepted_.size() == 1 ? result_.models.front() : without(place);
+      SelectionStep reduced = accepted_.size() == 1 ? result_.models.front() : without(place);
       accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(place));
-      rebuild(std::move(rest));
+      rebuild(std::move(reduced));
     }
   }
 
-  bool try_rivals(bool only_note) {
+  bool try_rivals(bool only_record) {
     for (std::size_t a = 0; a < accepted_.size(); ++a) {
       Accepted& accepted = accepted_[a];
       if (accepted.rivals.empty()) continue;
-      const LoopModel rest = accepted_.size() == 1 ? result_.models.front() : without(a);
+      const SelectionStep reduced = accepted_.size() == 1 ? result_.models.front() : without(a);
       const auto best = residual_series(current().job, current().fit);
-      std::vector<Extension> list(std::min<std::size_t>(accepted.rivals.size(), 4));
-      tell("are there rivals of " + accepted.candidate.name + "?");
+      std::vector<ExtendedModel> list(std::min<std::size_t>(accepted.rivals.size(), 4));
+      report_progress("any rivals of " + accepted.candidate.name + "?");
       parallel_for(list.size(), [&](std::size_t i) {
         const Rival& rival = accepted.rivals[i];
-        list[i] = extend(rest.job, rival.candidate, values_of(rest.fit), rival.values.strengths,
-                         rival.values.shapes);
+        list[i] = fit_extended_model(reduced.job, rival.candidate, values_of(reduced.fit),
+                                     rival.values.strengths, rival.values.shapes);
       });
       for (std::size_t i = 0; i < list.size(); ++i) {
-        Extension& e = list[i];
+        ExtendedModel& e = list[i];
         if (!e.fit.usable) continue;
         const double loss =
-            disadvantage(best, current().job.free.size(), e.residuals, e.job.free.size());
+            bic_difference(best, current().job.free.size(), e.residuals, e.job.free.size());
         const bool present = std::ranges::any_of(accepted_, [&](const Accepted& other) {
           return same_effect(other.candidate, e.candidate);
         });
         if (present) continue;
-        if (only_note) {
+        if (only_record) {
           const bool simpler = e.candidate.parameters() <= accepted.candidate.parameters();
-          if (loss < kUndecided && simpler)
-            rivalries_.push_back({a, e.candidate, fitted_model(e.job, e.fit)});
+          if (loss < kIndistinguishable && simpler)
+            rival_pairs_.push_back({a, e.candidate, fitted_model(e.job, e.fit)});
           continue;
         }
-        if (loss > -kUndecided) continue;
-        const auto before = residual_series(rest.job, rest.fit);
+        if (loss > -kIndistinguishable) continue;
+        const auto before = residual_series(reduced.job, reduced.fit);
         judge(e, before);
-        if (!e.refusal.empty()) continue;
+        if (!e.rejection_reason.empty()) continue;
         if (EffectTrial* old = trial_of(accepted.candidate)) {
-          old->decision = Decision::refused;
-          old->reason = "explains less than " + e.candidate.name + ", which came in its place";
+          old->decision = Decision::rejected;
+          old->reason = "explains less than " + e.candidate.name + ", which replaced it";
         }
-        note(e, &e);
+        record_trial(e, &e);
         accepted.candidate = e.candidate;
         accepted.rivals.clear();
         // Order: the exchanged effect goes last, where its parameters are.
@@ -455,36 +459,36 @@ class Loop {
   void finish();
   std::string verdict() const;
 
-  const CloseLoopOptions options_;
+  const SelectionOptions options_;
   const FitResult& first_;
   const ProgressReport& progress_;
-  ClosedLoop result_;
-  Path safe_;                 ///< the latest state that can be a result
+  EffectSelection result_;
+  SearchState last_valid_;    ///< the latest state that can be a result
   bool provisional_ = false;  ///< what is accepted has yet to prove better than that
   std::vector<Accepted> accepted_;
-  std::vector<Rivalry> rivalries_;
+  std::vector<RivalPair> rival_pairs_;
   std::size_t tried_ = 1;
   int round_ = 0;
-  bool exchanged_ = false;
+  bool swapped_ = false;
 };
 
-void Loop::finish() {
+void EffectSelector::finish() {
   result_.explained = current().fit.usable && explained();
   result_.result = current();
   // The refits on the way were content with less, and blocks that were held out count too.
-  LoopModel& last = result_.result;
+  SelectionStep& last = result_.result;
   for (Recording& r : last.job.recordings) r.held_out.clear();
   if (accepted_.empty()) {
     last.fit = first_;
   } else if (!result_.interrupted) {
-    tell("fitting the result");
+    report_progress("final fit");
     Job near = last.job;
     const auto values = values_of(last.fit);
     for (std::size_t i = 0; i < values.size(); ++i) near.free[i].initial = values[i];
     near.options.starts = 1;
     near.options.attempts = 1;
-    if (near.options.coupling == CouplingMode::continuation)
-      near.options.coupling_rate = score_rates(near).back();
+    if (near.options.observer == ObserverMode::continuation)
+      near.options.observer_gain = score_gains(near).back();
     try {
       FitResult exact = estimate(near);
       if (exact.usable) last.fit = std::move(exact);
@@ -495,9 +499,9 @@ void Loop::finish() {
   result_.verdict = verdict();
 }
 
-std::string Loop::verdict() const {
+std::string EffectSelector::verdict() const {
   if (!result_.models.front().fit.usable)
-    return "The loop was not closed: without a usable fit the residual says nothing of effects.";
+    return "No effect selection: without a usable fit the residual says nothing about effects.";
   std::vector<std::string> accepted, undecided;
   for (const EffectTrial& t : result_.effects) {
     if (t.decision == Decision::undecided) undecided.push_back(t.candidate.name);
@@ -505,21 +509,20 @@ std::string Loop::verdict() const {
   for (const Accepted& a : accepted_) accepted.push_back(a.candidate.name);
   std::string text;
   if (accepted.empty() && undecided.empty() && result_.explained)
-    return "Nothing is missing: the declared model explains every signal down to its noise.";
+    return "Nothing is missing: the baseline model explains every signal down to its noise.";
   if (!accepted.empty()) {
     const Improvement total =
         improvement(residual_series(declared_job(), result_.models.front().fit),
                     residual_series(result_.models.back().job, result_.models.back().fit));
-    text = fmt::format(
-        "The model lacked {}. With {} the error on what was not fitted falls by "
-        "{:.3g} %",
-        fmt::join(accepted, ", "), accepted.size() > 1 ? "them" : "it", total.validate_percent);
+    text = fmt::format("The model lacked {}. With {}, the validation error falls by {:.3g} %",
+                       fmt::join(accepted, ", "), accepted.size() > 1 ? "them" : "it",
+                       total.validate_percent);
     text += result_.explained ? ", and every signal is explained down to its noise."
                               : ", but not down to the noise.";
   } else if (result_.interrupted) {
-    return "The search for what is missing was stopped: no effect is accepted so far.";
+    return "The search for missing effects was stopped: no effect has been accepted so far.";
   } else if (undecided.empty()) {
-    text = "Something is missing, but no effect passes: see the reasons.";
+    text = "Something is missing, but no effect passes the tests: see the reasons.";
   }
   if (!undecided.empty())
     text += fmt::format("{}Undecided: {}; none of them was added.", text.empty() ? "" : " ",
@@ -529,10 +532,10 @@ std::string Loop::verdict() const {
 
 }  // namespace
 
-ClosedLoop close_loop(const Job& job, const FitResult& first, const CloseLoopOptions& options,
-                      const ProgressReport& progress) {
+EffectSelection select_effects(const Job& job, const FitResult& first,
+                               const SelectionOptions& options, const ProgressReport& progress) {
   const Crew crew(job.options.threads);
-  return Loop(job, first, options, progress).run();
+  return EffectSelector(job, first, options, progress).run();
 }
 
 }  // namespace axisfit

@@ -15,7 +15,7 @@
 
 namespace axisfit {
 
-struct CloseLoopOptions {
+struct SelectionOptions {
   int shortlist = 6;  ///< effects that are refitted in each round
   int max_effects = 6;
 };
@@ -23,14 +23,14 @@ struct CloseLoopOptions {
 enum class Decision {
   accepted,
   undecided,  ///< explains the data as well as another effect
-  refused,
+  rejected,
 };
 
 /// One effect that was refitted, and what became of it.
 struct EffectTrial {
   Candidate candidate;
   int round = 0;
-  Decision decision = Decision::refused;
+  Decision decision = Decision::rejected;
   std::string reason;
   double score = 0.0;                       ///< gain that the score test promised
   std::vector<ParameterResult> parameters;  ///< its own
@@ -38,32 +38,33 @@ struct EffectTrial {
 };
 
 /// One model on the way: the declared one, and one after each accepted effect.
-struct LoopModel {
+struct SelectionStep {
   std::string added;  ///< the effect; empty for the declared model
   Job job;
   FitResult fit;
 };
 
 /// Two effects that explain the recordings equally well.
-struct Rivals {
+struct UndecidedPair {
   std::string chosen, rival;
   Model<double> with_chosen, with_rival;  ///< fitted
 };
 
-struct ClosedLoop {
-  std::vector<LoopModel> models;     ///< the declared one first, then one for each accepted effect
-  LoopModel result;                  ///< the last of them, fitted to all samples
-  std::vector<EffectTrial> effects;  ///< every effect that was refitted, its last trial
-  bool held_out_blocks = false;      ///< no recording to validate: blocks of the fitted were kept
-  bool explained = false;            ///< nothing but noise is left
-  bool interrupted = false;          ///< the search was not finished
-  std::string verdict;               ///< a few sentences for the user
-  std::vector<Rivals> rivals;        ///< the effects that stay undecided
+struct EffectSelection {
+  std::vector<SelectionStep> models;  ///< the declared one first, then one for each accepted effect
+  SelectionStep result;               ///< the last of them, fitted to all samples
+  std::vector<EffectTrial> effects;   ///< every effect that was refitted, its last trial
+  bool held_out_blocks = false;       ///< no recording to validate: blocks of the fitted were kept
+  bool explained = false;             ///< nothing but noise is left
+  bool interrupted = false;           ///< the search was not finished
+  std::string verdict;                ///< a few sentences for the user
+  std::vector<UndecidedPair> rivals;  ///< the effects that stay undecided
 };
 
 /// `first` is the fit of the job as declared. When the job's stop flag is set, the effects accepted
 /// so far are the result.
-ClosedLoop close_loop(const Job& job, const FitResult& first, const CloseLoopOptions& options = {},
-                      const ProgressReport& progress = {});
+EffectSelection select_effects(const Job& job, const FitResult& first,
+                               const SelectionOptions& options = {},
+                               const ProgressReport& progress = {});
 
 }  // namespace axisfit

@@ -10,7 +10,7 @@ namespace axisfit {
 namespace {
 
 /// Whether the fits of both would end in the same place.
-bool nearly_same(const Promise& a, const Promise& b) {
+bool nearly_same(const ShortlistEntry& a, const ShortlistEntry& b) {
   constexpr double kNearly = 0.05;
   return same_effect(a.candidate, b.candidate) &&
          std::ranges::equal(a.score.shapes, b.score.shapes, [](double x, double y) {
@@ -18,26 +18,28 @@ bool nearly_same(const Promise& a, const Promise& b) {
          });
 }
 
-std::vector<Promise> best_of(const ScoreTest& test, std::size_t length) {
-  constexpr double kLeastGain = 6.0;  // of a sum of squares: below is chance
-  constexpr double kNearly = 0.9;     // of the best gain: heard even beyond the length
-  constexpr int kSettings = 2;        // of one candidate: no crowding out of the others
-  std::vector<Promise> taken;
+std::vector<ShortlistEntry> best_of(const ScoreTest& test, std::size_t length) {
+  constexpr double kMinGain = 6.0;  // of a sum of squares: below is chance
+  constexpr double kNearly = 0.9;   // of the best gain: heard even beyond the length
+  constexpr int kSettings = 2;      // of one candidate: no crowding out of the others
+  std::vector<ShortlistEntry> taken;
   for (const Score& score : test.scores) {
     const Candidate& candidate = test.candidates[score.candidate];
-    if (score.gain < kLeastGain || taken.size() >= 2 * length) break;
+    if (score.gain < kMinGain || taken.size() >= 2 * length) break;
     if (taken.size() >= length && score.gain < kNearly * taken.front().score.gain) break;
     const auto same = std::ranges::count_if(
-        taken, [&](const Promise& p) { return same_effect(p.candidate, candidate); });
+        taken, [&](const ShortlistEntry& p) { return same_effect(p.candidate, candidate); });
     if (same < kSettings) taken.push_back({candidate, score});
   }
   return taken;
 }
 
 /// Fits each while it is held at `rate`, and keeps those that may yet turn out the best.
-std::vector<Promise> preliminary(const Job& job, std::vector<Promise> list, double rate) {
+std::vector<ShortlistEntry> screened(const Job& job, std::vector<ShortlistEntry> list,
+                                     double rate) {
   constexpr std::size_t kKept = 3;
-  constexpr double kBehind = 1.05;  // of the best cost: the free run will not make up for more
+  constexpr double kMaxCostRatio =
+      1.05;  // of the best cost: the free run will not make up for more
   if (list.size() <= kKept) return list;
   struct Run {
     double cost = INFINITY;
@@ -45,7 +47,7 @@ std::vector<Promise> preliminary(const Job& job, std::vector<Promise> list, doub
   };
   std::vector<Run> runs(list.size());
   parallel_for(list.size(), [&](std::size_t i) {
-    const Promise& p = list[i];
+    const ShortlistEntry& p = list[i];
     const Job extended =
         with_candidate(job, p.candidate, p.score.values, p.score.strengths, p.score.shapes);
     const ParameterSpace space(extended);
@@ -54,18 +56,18 @@ std::vector<Promise> preliminary(const Job& job, std::vector<Promise> list, doub
     SolveOptions options;
     options.max_iterations = 8;
     options.function_tolerance = 1e-4;
-    options.keep_to_start = true;
+    options.penalize_distance_from_start = true;
     const SolveResult solved = solve(extended, space, space.internal(start), rate, options);
     if (solved.usable) runs[i] = {solved.cost, space.values(solved.u)};
   });
   std::vector<std::size_t> order(list.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return runs[i].cost; });
-  std::vector<Promise> kept;
+  std::vector<ShortlistEntry> kept;
   for (const std::size_t i : order) {
     if (!std::isfinite(runs[i].cost)) break;
-    if (kept.size() >= kKept && runs[i].cost > kBehind * runs[order.front()].cost) break;
-    Promise& p = kept.emplace_back(std::move(list[i]));
+    if (kept.size() >= kKept && runs[i].cost > kMaxCostRatio * runs[order.front()].cost) break;
+    ShortlistEntry& p = kept.emplace_back(std::move(list[i]));
     const auto base = runs[i].values.begin() + static_cast<std::ptrdiff_t>(job.free.size());
     const auto shapes = base + static_cast<std::ptrdiff_t>(p.candidate.strengths.size());
     p.score.values.assign(runs[i].values.begin(), base);
@@ -79,21 +81,20 @@ std::vector<Promise> preliminary(const Job& job, std::vector<Promise> list, doub
 
 Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curves, int length) {
   // What a slow hold shows may be hidden under a firm one: each has its own best.
-  const std::vector<double> rates = score_rates(job);
+  const std::vector<double> rates = score_gains(job);
   std::vector<Shortlist> of_rate(rates.size());
   parallel_for(rates.size(), [&](std::size_t i) {
     const ScoreTest test = score_test(job, values, rates[i], curves);
     of_rate[i].tried = test.scores.size();
-    of_rate[i].promises =
-        preliminary(job, best_of(test, static_cast<std::size_t>(length)), rates[i]);
+    of_rate[i].entries = screened(job, best_of(test, static_cast<std::size_t>(length)), rates[i]);
   });
   Shortlist result;
   for (Shortlist& list : of_rate) {
     result.tried = std::max(result.tried, list.tried);
-    for (Promise& promise : list.promises) {
+    for (ShortlistEntry& entry : list.entries) {
       const bool known = std::ranges::any_of(
-          result.promises, [&](const Promise& p) { return nearly_same(p, promise); });
-      if (!known) result.promises.push_back(std::move(promise));
+          result.entries, [&](const ShortlistEntry& p) { return nearly_same(p, entry); });
+      if (!known) result.entries.push_back(std::move(entry));
     }
   }
   return result;

@@ -9,17 +9,17 @@
 namespace axisfit {
 
 /// A candidate, and where its fit should start.
-struct Promise {
+struct ShortlistEntry {
   Candidate candidate;
   Score score;
 };
 
 struct Shortlist {
-  std::vector<Promise> promises;
+  std::vector<ShortlistEntry> entries;
   std::size_t tried = 1;  ///< candidates and settings among which they were chosen
 };
 
-/// The best by score_test() at every rate of score_rates(), about `length` of each, from a fit with
+/// The best by score_test() at every rate of score_gains(), about `length` of each, from a fit with
 /// the given values of the free parameters; those of the catalogue or, with `curves`, those without
 /// a name. Those of a rate are then fitted with the simulation still held at it, which is quick:
 /// what is far behind there is dropped, and the others start from there. A crew shares the work.

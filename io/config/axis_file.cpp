@@ -25,11 +25,11 @@ Section effect_keys() {
   visit_effects(effects, [&](std::size_t, const auto& effect) {
     Section parameters = quantity_keys(effect.name);
     // An effect that is not used is refused as a whole.
-    const std::string used = parameters.front().used;
-    for (Key& parameter : parameters) parameter.used.clear();
+    const std::string used = parameters.front().used_by;
+    for (Key& parameter : parameters) parameter.used_by.clear();
     keys.push_back(Key::optional(std::string(effect.name), Map{std::move(parameters)},
-                                 Otherwise{"no such effect"}, std::string(effect.meaning)));
-    keys.back().used = used;
+                                 DefaultText{"effect absent"}, std::string(effect.meaning)));
+    keys.back().used_by = used;
   });
   return keys;
 }
@@ -39,10 +39,11 @@ Section instrument_keys() {
   for (const SignalInfo& signal : kSignalTable) {
     Section settings = quantity_keys(signal.name);
     settings.push_back(Key::optional(
-        "noise", Amount{std::string(signal.unit), 0.0, 1e6}, Rig().noise[index_of(signal.signal)],
-        "standard deviation of noise, white and normal; simulate-axis only"));
+        "noise", NumberWithUnit{std::string(signal.unit), 0.0, 1e6},
+        Rig().noise[index_of(signal.signal)],
+        "standard deviation of the white Gaussian noise; used by simulate-axis only"));
     keys.push_back(Key::optional(std::string(signal.name), Map{std::move(settings)},
-                                 Otherwise{"ideal"}, std::string(signal.meaning)));
+                                 DefaultText{"ideal"}, std::string(signal.meaning)));
   }
   return keys;
 }
@@ -70,13 +71,13 @@ void read_parameters(const ConfigNode& node, Model<double>& model) {
     double& value = *member[entry.index];
     if (!is_used(entry, model.structure)) {
       if (const auto given = map.optional(quantity.symbol))
-        given->error(fmt::format("{} has no part in an axis with {}: remove it", quantity.symbol,
+        given->error(fmt::format("{} is not used by an axis with {}: remove it", quantity.symbol,
                                  describe(model.structure)));
       // Values with which the equations leave the part out.
       value = entry.quantity.symbol == "r_g" ? 1.0 : 0.0;
       continue;
     }
-    value = std::isnan(quantity.standard) ? quantity.upper : quantity.standard;
+    value = std::isnan(quantity.default_value) ? quantity.upper : quantity.default_value;
     map.read(quantity.symbol, value);
   }
   map.finish();
@@ -118,26 +119,27 @@ void read_controller(const ConfigNode& node, ControllerSettings& settings) {
 
 const Section& axis_keys() {
   static const Section keys{
-      Key::optional("name", Text{}, Otherwise{"none"}, "for reports"),
+      Key::optional("name", Text{}, DefaultText{"none"}, "shown in reports"),
       Key::required("drive",
                     Choice{{{"velocity_loop", "the paper's controller and current loop"},
                             {"current_source", "an ideal power stage"},
                             {"force_source", "the command is a force"}}},
-                    "what makes force of the command"),
+                    "what turns the command into a force"),
       Key::required("transmission",
-                    Choice{{{"backlash", "rack and pinion with play, a spring and a damper"},
-                            {"rigid", "motor and arm are one mass"}}},
-                    "what leads the force to the arm"),
-      Key::required("parameters", Map{quantity_keys("")}, "what the paper's model has"),
-      Key::optional("effects", Map{effect_keys()}, Otherwise{"none"},
-                    "what the paper's model lacks, by name: an effect is on because it is written"),
-      Key::optional("initial", Map{quantity_keys("initial")}, Otherwise{"all 0"},
-                    "state at the start"),
-      Key::optional("instruments", Map{instrument_keys()}, Otherwise{"ideal"},
-                    "gain, bias, lag, delay and noise per signal"),
-      Key::optional("controller", Map{controller_keys()}, Otherwise{"that of each key"},
-                    "the slave control unit: limits of motions, moves and the encoder; a fit does "
-                    "not use it, except to make a command of a `position_reference`")};
+                    Choice{{{"backlash", "rack and pinion with backlash, stiffness and damping"},
+                            {"rigid", "motor and arm move as one mass"}}},
+                    "what transmits the force to the arm"),
+      Key::required("parameters", Map{quantity_keys("")}, "parameters of the paper's model"),
+      Key::optional(
+          "effects", Map{effect_keys()}, DefaultText{"none"},
+          "effects beyond the paper's model, by name; an effect is active if it is listed"),
+      Key::optional("initial", Map{quantity_keys("initial")}, DefaultText{"all 0"},
+                    "initial state"),
+      Key::optional("instruments", Map{instrument_keys()}, DefaultText{"ideal"},
+                    "gain, bias, lag, delay and noise of each signal"),
+      Key::optional("controller", Map{controller_keys()}, DefaultText{"default of each key"},
+                    "the slave control unit: limits, moves and the encoder; a fit uses it only to "
+                    "compute the command from a `position_reference`")};
   return keys;
 }
 
@@ -163,9 +165,9 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
     const bool parameter = entry->group.empty() || entry->group == "initial";
     key.error(
         parameter
-            ? fmt::format("{} has no part in this axis: its drive or transmission leaves it out",
-                          name)
-            : fmt::format("{} needs the effect: add it to the axis or job, as in 'effects: {{{}: "
+            ? fmt::format("{} is not used by this axis, because of its drive or transmission", name)
+            : fmt::format("{} belongs to an effect that is not active: add it to the axis or job, "
+                          "as in 'effects: {{{}: "
                           "{{{}: ...}}}}'",
                           name, entry->group, entry->quantity.symbol));
     return nullptr;
@@ -173,12 +175,12 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
   std::vector<std::string> names;
   for (const QuantityEntry& e : quantity_list())
     if (is_used(e, structure)) names.push_back(e.name);
-  const std::string near = nearest(name, names);
-  key.error(fmt::format("there is no quantity '{}'; {}", name,
-                        near.empty()
-                            ? "the axis has its parameters, effect.parameter, signal.gain, "
-                              "bias, lag and delay, and initial.y0 ... initial.y6"
-                            : fmt::format("did you mean '{}'?", near)));
+  const std::string suggestion = closest_match(name, names);
+  key.error(fmt::format("unknown quantity '{}'; {}", name,
+                        suggestion.empty()
+                            ? "valid names are parameters of the axis, EFFECT.PARAMETER, "
+                              "SIGNAL.gain, .bias, .lag and .delay, and initial.y0 ... initial.y6"
+                            : fmt::format("did you mean '{}'?", suggestion)));
   return nullptr;
 }
 
@@ -193,12 +195,12 @@ void read_effects(const ConfigNode& node, Model<double>& model) {
     bool used = false;
     effect.visit(effect, [&](const Quantity& quantity, double& value) {
       used = used || is_used(*find_quantity(full_name(effect.name, quantity)), model.structure);
-      value = std::isnan(quantity.standard) ? 0.0 : quantity.standard;
+      value = std::isnan(quantity.default_value) ? 0.0 : quantity.default_value;
       parameters.read(quantity.symbol, value);
     });
     parameters.finish();
     if (!used)
-      given->error(fmt::format("{} has no part in an axis with {}: remove it", effect.name,
+      given->error(fmt::format("{} is not used by an axis with {}: remove it", effect.name,
                                describe(model.structure)));
   });
   map.finish();
@@ -237,7 +239,7 @@ std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
     read_controller(*controller, rig.controller);
   map.finish();
   if (diagnostics.count() > before) return std::nullopt;
-  if (const std::string reason = refusal(rig.model); !reason.empty()) {
+  if (const std::string reason = model_error(rig.model); !reason.empty()) {
     parameters->error(reason);
     return std::nullopt;
   }
@@ -262,7 +264,7 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
   for (const QuantityEntry& entry : quantity_list()) {
     const double value = *member[entry.index];
     const bool custom = entry.group == "initial" || signal_by_name(entry.group).has_value();
-    if (!is_used(entry, structure) || (custom && value == entry.quantity.standard)) continue;
+    if (!is_used(entry, structure) || (custom && value == entry.quantity.default_value)) continue;
     groups[entry.group].emplace_back(entry.quantity.symbol, with_unit(value, entry.quantity.unit));
   }
   for (const SignalInfo& signal : kSignalTable)

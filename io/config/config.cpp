@@ -49,7 +49,7 @@ std::string joined(std::span<const std::string> texts) {
 
 // "; did you mean 'x'?" or nothing
 std::string suggestion(std::string_view text, std::span<const std::string> candidates) {
-  const std::string best = nearest(text, candidates);
+  const std::string best = closest_match(text, candidates);
   return best.empty() ? std::string() : "; did you mean '" + best + "'?";
 }
 
@@ -206,7 +206,7 @@ class ConfigCheck {
 
   void check_key(const YAML::Node& key, std::unordered_map<std::string, int>& first_line) const {
     if (!key.IsScalar()) {
-      source_.error(key.Mark(), "a key must be a text");
+      source_.error(key.Mark(), "a key must be text");
       return;
     }
     const std::string& text = key.Scalar();
@@ -216,7 +216,7 @@ class ConfigCheck {
     }
     const auto [first, is_new] = first_line.try_emplace(text, key.Mark().line + 1);
     if (!is_new) {
-      source_.error(key.Mark(), "duplicate key " + in_quotes(text) + ", first given in line " +
+      source_.error(key.Mark(), "duplicate key " + in_quotes(text) + ", first given on line " +
                                     std::to_string(first->second));
     }
   }
@@ -296,19 +296,20 @@ std::optional<ConfigNode> ConfigNode::parse(std::string contents, const std::str
     return std::nullopt;
   } catch (const YAML::Exception& error) {
     const bool tab = error.msg.find("tab") != std::string::npos;
-    source->error(error.mark, "not valid YAML: " + error.msg + (tab ? "; indent with blanks" : ""));
+    source->error(error.mark, "not valid YAML: " + error.msg + (tab ? "; indent with spaces" : ""));
     return std::nullopt;
   }
   if (documents.starts().size() > 1) {
     const auto& [document, content] = documents.starts()[1];
-    const std::string_view rest =
+    const std::string_view remaining =
         std::string_view(source->contents).substr(static_cast<std::size_t>(document.pos));
-    if (rest.starts_with("---"))
+    if (remaining.starts_with("---"))
       source->error(content,
                     "only one document is allowed; remove the '---' above and what follows it");
     else
-      source->error(document, "not valid YAML: " + in_quotes(rest.substr(0, rest.find('\n'))) +
-                                  " belongs to nothing above");
+      source->error(document,
+                    "not valid YAML: " + in_quotes(remaining.substr(0, remaining.find('\n'))) +
+                        " is not part of the document above");
     return std::nullopt;
   }
   if (!ConfigCheck(*source).run(root)) return std::nullopt;
@@ -334,7 +335,7 @@ std::string ConfigNode::text() const { return is_scalar() ? node_.Scalar() : std
 
 void ConfigNode::error(std::string message) const { source_->error(mark_, std::move(message)); }
 
-void ConfigNode::refuse(const std::string& wanted) const {
+void ConfigNode::reject_type(const std::string& wanted) const {
   const std::string found = is_map()                      ? "a map"
                             : is_sequence()               ? "a list"
                             : is_null() || text().empty() ? "empty"
@@ -345,10 +346,10 @@ void ConfigNode::refuse(const std::string& wanted) const {
 std::optional<std::string> ConfigNode::as_string() const {
   const std::string value = text();
   if (value.empty()) {
-    refuse("a text");
+    reject_type("text");
     return std::nullopt;
   }
-  if (!is_harmless(value)) {  // it would break the lines of messages and reports
+  if (!is_sanitized(value)) {  // it would break the lines of messages and reports
     error(name_ + " must be one line without control characters, not " + in_quotes(value));
     return std::nullopt;
   }
@@ -359,16 +360,17 @@ std::optional<bool> ConfigNode::as_bool() const {
   const std::string value = text();
   if (value == "true") return true;
   if (value == "false") return false;
-  refuse("true or false");
+  reject_type("true or false");
   return std::nullopt;
 }
 
 std::optional<std::int64_t> ConfigNode::as_integer(std::int64_t lower, std::int64_t upper) const {
   const std::string value = text();
   std::int64_t number = 0;
-  const auto rest = read_number(value, number);
-  if (!rest || !rest->empty() || number < lower || number > upper) {
-    refuse("a whole number between " + std::to_string(lower) + " and " + std::to_string(upper));
+  const auto remaining = read_number(value, number);
+  if (!remaining || !remaining->empty() || number < lower || number > upper) {
+    reject_type("a whole number between " + std::to_string(lower) + " and " +
+                std::to_string(upper));
     return std::nullopt;
   }
   return number;
@@ -385,12 +387,13 @@ std::optional<double> ConfigNode::as_quantity(std::string_view si_unit, double l
 
   const std::string value = text();
   double number = 0.0;
-  const auto rest = read_number(trimmed(value), number);
-  if (!rest) {
-    refuse(dimensionless ? "a number" : "a number with a unit, for example '1" + si_text + "'");
+  const auto remaining = read_number(trimmed(value), number);
+  if (!remaining) {
+    reject_type(dimensionless ? "a number"
+                              : "a number with a unit, for example '1" + si_text + "'");
     return std::nullopt;
   }
-  if (const std::string_view unit = trimmed(*rest); !unit.empty()) {
+  if (const std::string_view unit = trimmed(*remaining); !unit.empty()) {
     const auto factor = unit_factor(unit, si_unit);
     if (const auto* problem = std::get_if<UnitError>(&factor)) {
       error(name_ + ": " + problem->message);
@@ -438,7 +441,7 @@ std::optional<std::size_t> ConfigNode::as_choice(std::span<const std::string> al
     return static_cast<std::size_t>(found - allowed.begin());
   }
   if (value.empty()) {
-    refuse("one of " + joined(allowed));
+    reject_type("one of " + joined(allowed));
   } else {
     error(name_ + " must be one of " + joined(allowed) + ", not " + in_quotes(value) +
           suggestion(value, allowed));
@@ -448,7 +451,7 @@ std::optional<std::size_t> ConfigNode::as_choice(std::span<const std::string> al
 
 std::optional<std::vector<ConfigNode>> ConfigNode::as_sequence() const {
   if (!is_sequence()) {
-    refuse("a list");
+    reject_type("a list");
     return std::nullopt;
   }
   std::vector<ConfigNode> result;
@@ -461,7 +464,7 @@ std::optional<std::vector<ConfigNode>> ConfigNode::as_sequence() const {
 
 ConfigMap::ConfigMap(const ConfigNode& node) : node_(node) {
   if (!node.is_map()) {
-    node.refuse("a map of keys and values");
+    node.reject_type("a map of keys and values");
     return;
   }
   for (const auto& pair : node.node_) {
@@ -496,7 +499,7 @@ std::vector<ConfigMap::Entry>::iterator ConfigMap::misspelling_of(std::string_vi
   for (const Key& known : *keys_) names.push_back(known.name);
   return std::ranges::find_if(entries_, [&](const Entry& entry) {
     const std::string text = entry.key.text();
-    return std::ranges::find(names, text) == names.end() && nearest(text, names) == key;
+    return std::ranges::find(names, text) == names.end() && closest_match(text, names) == key;
   });
 }
 
@@ -541,7 +544,7 @@ std::string with_comment(const std::string& comment, const std::string& yaml) {
   std::string text;
   for (std::size_t at = 0; at < comment.size();) {
     const std::size_t end = std::min(comment.find('\n', at), comment.size());
-    text += "# " + harmless(comment.substr(at, end - at)) + "\n";
+    text += "# " + sanitized(comment.substr(at, end - at)) + "\n";
     at = end + 1;
   }
   return text + yaml + "\n";

@@ -63,7 +63,7 @@ class ConfigNode {
   /// Records a mistake at this place. An alias ("*a") stands where its anchor ("&a") does.
   void error(std::string message) const;
 
-  /// A text that is not empty: one line that is_harmless().
+  /// A text that is not empty: one line that is_sanitized().
   std::optional<std::string> as_string() const;
 
   /// true or false and nothing else.
@@ -80,7 +80,7 @@ class ConfigNode {
   /// "V/V"). Units are those of unit_factor() in base/units.h, which also tells what it throws.
   std::optional<double> as_quantity(std::string_view si_unit, double lower, double upper) const;
 
-  std::optional<double> as_amount(const Amount& amount) const {
+  std::optional<double> as_number_with_unit(const NumberWithUnit& amount) const {
     return as_quantity(amount.unit, amount.lower, amount.upper);
   }
 
@@ -103,7 +103,7 @@ class ConfigNode {
   ConfigNode child(const YAML::Node& node, std::string name) const;
 
   // "KEY must be WANTED, not WHAT IT IS"
-  void refuse(const std::string& wanted) const;
+  void reject_type(const std::string& wanted) const;
 
   YAML::Node node_;
   YAML::Mark mark_;
@@ -184,26 +184,26 @@ std::optional<ConfigNode> ConfigMap::read(std::string_view key, T& value) {
   const Form& form = described(key).form;
   const auto node = given(key);
   if (!node) return node;
-  const auto take = [&](const auto& read) {
+  const auto assign = [&](const auto& read) {
     if (read) value = static_cast<Value>(*read);
   };
   if constexpr (std::is_integral_v<Value> || std::is_enum_v<Value>) {
     if (const auto* choice = std::get_if<Choice>(&form))
-      take(node->as_choice(choice->names()));
-    else if (std::holds_alternative<Flag>(form))
-      take(node->as_bool());
+      assign(node->as_choice(choice->names()));
+    else if (std::holds_alternative<Boolean>(form))
+      assign(node->as_bool());
     else
-      take(node->as_integer(std::get<Whole>(form).lower, std::get<Whole>(form).upper));
+      assign(node->as_integer(std::get<Integer>(form).lower, std::get<Integer>(form).upper));
   } else if constexpr (std::is_same_v<Value, std::string>) {
     static_cast<void>(std::get<Text>(form));
-    take(node->as_string());
+    assign(node->as_string());
   } else {
-    take(node->as_amount(std::get<Amount>(form)));
+    assign(node->as_number_with_unit(std::get<NumberWithUnit>(form)));
   }
   return node;
 }
 
-/// The text of a configuration file, with the lines of a comment first, made harmless().
+/// The text of a configuration file, with the lines of a comment first, made sanitized().
 std::string with_comment(const std::string& comment, const std::string& yaml);
 
 }  // namespace axisfit

@@ -32,8 +32,8 @@ ConfigError::ConfigError(std::vector<Diagnostic> diagnostics)
 void Diagnostics::add(Diagnostic diagnostic) {
   ++count_;
   if (full()) return;
-  diagnostic.file = harmless(diagnostic.file);
-  diagnostic.message = harmless(diagnostic.message);
+  diagnostic.file = sanitized(diagnostic.file);
+  diagnostic.message = sanitized(diagnostic.message);
   diagnostics_.push_back(std::move(diagnostic));
 }
 

@@ -39,7 +39,7 @@ class Diagnostics {
   Diagnostics(const Diagnostics&) = delete;
   Diagnostics& operator=(const Diagnostics&) = delete;
 
-  /// What is not harmless() in it is replaced, so that it stays one line. Kept unless full().
+  /// What is not sanitized() in it is replaced, so that it stays one line. Kept unless full().
   void add(Diagnostic diagnostic);
 
   bool empty() const { return diagnostics_.empty(); }

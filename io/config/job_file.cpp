@@ -20,49 +20,52 @@ namespace fs = std::filesystem;
 constexpr std::string_view kContinuation = "continuation", kNone = "none";
 
 Section fit_keys() {
-  const FitOptions standard;
-  const Amount rate{"1/s", 1e-3, 1e6};
+  const FitOptions defaults;
+  const NumberWithUnit rate{"1/s", 1e-3, 1e6};
   return {
+      Key::optional("observer",
+                    AnyOf{{Choice{{{std::string(kContinuation),
+                                    "high gain at first, then lower and lower, finally zero"},
+                                   {std::string(kNone), "free-running from the initial values"}}},
+                           Map{{Key::required("fixed", rate, "constant observer gain")}}}},
+                    ObserverMode::continuation,
+                    "observer that makes the simulation track the recorded velocity and position "
+                    "during the fit"),
       Key::optional(
-          "coupling",
-          Either{{Choice{{{std::string(kContinuation),
-                           "firmly at first, then ever more loosely, at last free"},
-                          {std::string(kNone), "free running from the initial values"}}},
-                  Map{{Key::required("fixed", rate, "held at this rate to the end")}}}},
-          CouplingMode::continuation,
-          "how the simulation is held to the recorded velocity and position while it is fitted"),
-      Key::optional("first_coupling", rate,
-                    Otherwise{"one per sampling interval; 0.3 for the position alone"},
-                    "where a continuation starts"),
-      Key::optional("loss",
-                    Choice{{{"squares", "of the residuals"},
-                            {"huber", "residuals beyond `huber_width` count linearly"}}},
-                    standard.loss, "what is minimised"),
-      Key::optional("huber_width", Amount{"1", 0.1, 1e3}, standard.huber_width,
-                    "residual from which on it counts linearly, in sigma; needs `loss: huber`"),
-      Key::optional("max_iterations", Whole{1, 100000}, standard.max_iterations,
-                    "of each stage of a continuation; stages before the last end at 12"),
-      Key::optional("starts", Whole{1, 1000000}, standard.starts,
+          "initial_observer_gain", rate,
+          DefaultText{
+              "1 / sampling interval; 0.3 / sampling interval if only the position is recorded"},
+          "observer gain at which a continuation starts"),
+      Key::optional(
+          "loss",
+          Choice{{{"squares", "the sum of squared residuals"},
+                  {"huber", "the same, but residuals beyond `huber_width` count linearly"}}},
+          defaults.loss, "what is minimised"),
+      Key::optional("huber_width", NumberWithUnit{"1", 0.1, 1e3}, defaults.huber_width,
+                    "residual beyond which it counts linearly, in sigma; needs `loss: huber`"),
+      Key::optional(
+          "max_iterations", Integer{1, 100000}, defaults.max_iterations,
+          "iteration limit of each stage of a continuation; at most 12 before the last stage"),
+      Key::optional("starts", Integer{1, 1000000}, defaults.starts,
                     "number of starts, the first from the initial values, the others random"),
-      Key::optional("spread", Amount{"1", 1.0, 1e6}, standard.spread,
-                    "of the random starts, on a log scale the factor either way"),
-      Key::optional("seed", Whole{}, standard.seed, "of the random starts"),
-      Key::optional("step", Amount{"s", 1e-7, 0.1}, standard.step,
-                    "longest Runge-Kutta step; of a simulation held to the data, longest time "
-                    "between two looks for events")};
+      Key::optional("spread", NumberWithUnit{"1", 1.0, 1e6}, defaults.spread,
+                    "spread of the random starts: on a log scale, the factor either way"),
+      Key::optional("seed", Integer{}, defaults.seed, "seed of the random starts"),
+      Key::optional("step", NumberWithUnit{"s", 1e-7, 0.1}, defaults.step,
+                    "longest Runge-Kutta step; with an observer, also the longest interval between "
+                    "event checks")};
 }
 
 Section limit_keys() {
-  const Otherwise covered{"what the recordings covered"};
-  return {
-      Key::optional("travel", Bounds{{"m"}}, covered,
-                    "range of the arm's position, such as `[0 m, 1.2 m]`"),
-      Key::optional("speed", Amount{"m/s", 1e-6, 1e3}, covered, "largest of the arm, either way"),
-      Key::optional(
-          "voltage", Amount{"V", 1e-6, 1e6},
-          Otherwise{"of an electric drive the controller's `limit`; else what the "
-                    "recordings covered"},
-          "largest of the command, either way; never more than the controller's `limit`")};
+  const DefaultText covered{"range covered by the recordings"};
+  return {Key::optional("travel", Bounds{{"m"}}, covered,
+                        "allowed positions of the arm, such as `[0 m, 1.2 m]`"),
+          Key::optional("speed", NumberWithUnit{"m/s", 1e-6, 1e3}, covered,
+                        "largest speed of the arm in either direction"),
+          Key::optional("voltage", NumberWithUnit{"V", 1e-6, 1e6},
+                        DefaultText{"the controller's `limit` for an electric drive; otherwise "
+                                    "what the recordings covered"},
+                        "largest magnitude of the command; never above the controller's `limit`")};
 }
 
 class JobReader {
@@ -88,7 +91,7 @@ class JobReader {
       // What refers to the axis can only be checked with one.
       if (model && recordings) read_recordings(*recordings);
       if (model && free) read_free(*free, result_.job);
-      if (free && diagnostics_.empty()) check_freedom(*free);
+      if (free && diagnostics_.empty()) check_degrees_of_freedom(*free);
       map.finish();
     }
     diagnostics_.throw_if_any();
@@ -114,7 +117,7 @@ class JobReader {
     result_.axis_file = resolved(node, *file, {});
     std::error_code unreadable;
     if (!draft(result_.axis_file) && !fs::exists(result_.axis_file, unreadable)) {
-      node.error(fmt::format("there is no axis file {}", result_.axis_file));
+      node.error(fmt::format("axis file {} does not exist", result_.axis_file));
       return false;
     }
     const auto root = load(result_.axis_file);
@@ -132,14 +135,13 @@ class JobReader {
   void read_options(const ConfigNode& node) {
     FitOptions& options = result_.job.options;
     ConfigMap map(node, keys_below(job_keys(), "fit"));
-    if (const auto coupling = map.optional("coupling")) read_coupling(*coupling, options);
+    if (const auto observer = map.optional("observer")) read_observer(*observer, options);
     std::optional<double> first_rate;
-    if (const auto rate = map.read("first_coupling", first_rate)) {
-      if (options.coupling == CouplingMode::continuation)
-        options.coupling_rate = first_rate.value_or(0.0);
+    if (const auto rate = map.read("initial_observer_gain", first_rate)) {
+      if (options.observer == ObserverMode::continuation)
+        options.observer_gain = first_rate.value_or(0.0);
       else
-        rate->error(
-            "first_coupling is where a continuation starts: it needs coupling: continuation");
+        rate->error("initial_observer_gain needs observer: continuation");
     }
     map.read("loss", options.loss);
     if (const auto width = map.read("huber_width", options.huber_width);
@@ -153,19 +155,18 @@ class JobReader {
     map.finish();
   }
 
-  static void read_coupling(const ConfigNode& node, FitOptions& options) {
+  static void read_observer(const ConfigNode& node, FitOptions& options) {
     if (node.text() == kContinuation) {
-      options.coupling = CouplingMode::continuation;
+      options.observer = ObserverMode::continuation;
     } else if (node.text() == kNone) {
-      options.coupling = CouplingMode::none;
+      options.observer = ObserverMode::none;
     } else if (!node.is_map()) {
-      node.error("coupling must be continuation, none, or for example {fixed: 300 1/s}");
+      node.error("observer must be continuation, none, or a fixed gain such as {fixed: 300 1/s}");
     } else {
-      const auto& forms =
-          std::get<Either>(find_key(keys_below(job_keys(), "fit"), "coupling").form);
+      const auto& forms = std::get<AnyOf>(find_key(keys_below(job_keys(), "fit"), "observer").form);
       ConfigMap fixed(node, std::get<Map>(forms.forms.back()).keys);
-      options.coupling = CouplingMode::fixed;
-      fixed.read("fixed", options.coupling_rate);
+      options.observer = ObserverMode::fixed;
+      fixed.read("fixed", options.observer_gain);
       fixed.finish();
     }
   }
@@ -188,7 +189,7 @@ class JobReader {
     std::set<std::string> names;
     for (const ConfigNode& entry : *entries) {
       result_.job.recordings.push_back(
-          read_recording(entry, result_.rig, result_.job.options.coupling, data_directory_));
+          read_recording(entry, result_.rig, result_.job.options.observer, data_directory_));
       any_fit = any_fit || result_.job.recordings.back().role == Role::fit;
       check_length(entry, result_.job.recordings.back());
     }
@@ -201,7 +202,7 @@ class JobReader {
   }
 
   /// Whether there is more to fit to than parameters.
-  void check_freedom(const ConfigNode& node) const {
+  void check_degrees_of_freedom(const ConfigNode& node) const {
     std::size_t values = 0, parameters = result_.job.free.size();
     for (const Recording& r : result_.job.recordings)
       for (const Measurement& m : r.measurements)
@@ -209,8 +210,8 @@ class JobReader {
     for (const FreeParameter& p : result_.job.free) values += p.prior.has_value();
     if (values <= parameters)
       node.error(
-          fmt::format("{} values, priors included, do not determine {} parameters: fit "
-                      "fewer, or to more samples",
+          fmt::format("{} values, priors included, cannot determine {} parameters: free fewer "
+                      "parameters or fit more samples",
                       values, parameters));
   }
 
@@ -225,15 +226,15 @@ class JobReader {
       if (times[i] - times[i - 1] > times[longest] - times[longest - 1]) longest = i;
     const double gap = times[longest] - times[longest - 1], all = times.back() - times.front();
     if (gap > kStepsBetweenSamples * step)
-      node.error(fmt::format(
-          "'{}' has no sample for {:.6g} s, from {:.9g} s on: trim it to one side of that; or is "
-          "the unit of the time wrong?",
-          recording.name, gap, times[longest - 1]));
+      node.error(
+          fmt::format("'{}' has a gap of {:.6g} s at {:.9g} s: trim the recording before or after "
+                      "it, or check the unit of time",
+                      recording.name, gap, times[longest - 1]));
     else if (all > kSteps * step)
-      node.error(fmt::format(
-          "'{}' lasts {:.6g} s: too long to be simulated in steps of {:g} s; trim it, or give fit "
-          "a longer step; or is the unit of the time wrong?",
-          recording.name, all, step));
+      node.error(
+          fmt::format("'{}' lasts {:.6g} s: too long to simulate in steps of {:g} s; trim it, set "
+                      "a longer step under fit, or check the unit of time",
+                      recording.name, all, step));
   }
 
   std::string path_;
@@ -248,14 +249,16 @@ class JobReader {
 const Section& job_keys() {
   static const Section keys{
       Key::required("axis", Text{}, "the axis file"),
-      Key::optional("effects", Map{keys_below(axis_keys(), "effects")}, Otherwise{"none"},
-                    "effects to add to those of the axis file, or to replace; written as there"),
+      Key::optional(
+          "effects", Map{keys_below(axis_keys(), "effects")}, DefaultText{"none"},
+          "effects that are added to those of the axis file or replace them; same syntax"),
       Key::required("recordings", List{{Map{recording_keys()}}},
-                    "what was recorded; at least one must have the role `fit`"),
+                    "the recordings; at least one must have the role `fit`"),
       Key::required("free", Map{free_quantities(), 1}, "the quantities to fit; at least one"),
-      Key::optional("fit", Map{fit_keys()}, Otherwise{"that of each key"}, "how to fit"),
-      Key::optional("limits", Map{limit_keys()}, Otherwise{"that of each key"},
-                    "what the machine allows in the next experiment")};
+      Key::optional("fit", Map{fit_keys()}, DefaultText{"default of each key"},
+                    "options of the fit"),
+      Key::optional("limits", Map{limit_keys()}, DefaultText{"default of each key"},
+                    "limits of the machine for the next experiment")};
   return keys;
 }
 

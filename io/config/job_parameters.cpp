@@ -17,24 +17,24 @@ std::string rounded(double value, std::string_view unit) {
 }
 
 /// The keys for a free quantity, whose values are such amounts.
-Section free_keys(const Amount& amount) {
+Section free_keys(const NumberWithUnit& amount) {
   return {
-      Key::optional("initial", amount, Otherwise{"value of the axis file or job"},
-                    "where the fit starts"),
+      Key::optional("initial", amount, DefaultText{"value in the axis file or job"},
+                    "initial value of the fit"),
       Key::optional("bounds", Bounds{amount},
-                    Otherwise{"on a log scale initial / 100 and initial * 100; on a linear scale "
-                              "the range of the quantity"},
-                    "between which it is estimated; within the range of the quantity"),
+                    DefaultText{"on a log scale initial / 100 and initial * 100; on a linear scale "
+                                "the range of the quantity"},
+                    "bounds of the estimate, within the range of the quantity"),
       Key::optional("scale", Choice{{{"log"}, {"linear"}}},
-                    Otherwise{"from the bounds or the kind of quantity"},
+                    DefaultText{"inferred from the bounds or the kind of quantity"},
                     "the scale on which it is estimated"),
       Key::optional(
           "prior",
           Map{{Key::required("mean", amount, "its expected value"),
-               Key::required("sigma", sigma_amount(amount.unit), "its standard deviation")}},
-          Otherwise{"none"}, "known from elsewhere, normally distributed"),
-      Key::optional("per_recording", Flag{}, false,
-                    "`true`: a value for each recording with the role `fit`")};
+               Key::required("sigma", sigma_form(amount.unit), "its standard deviation")}},
+          DefaultText{"none"}, "Gaussian prior"),
+      Key::optional("per_recording", Boolean{}, false,
+                    "`true`: a separate value for each recording with the role `fit`")};
 }
 
 void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job& job) {
@@ -63,8 +63,9 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
       parameter.prior->sigma = read_sigma(*sigma, quantity.unit);
     prior.finish();
     if (mean && bounds && (*mean < bounds->first || *mean > bounds->second))
-      node.error(fmt::format("the prior of {} expects {}, outside its bounds, {} to {}", entry.name,
-                             rounded(*mean, quantity.unit), rounded(bounds->first, quantity.unit),
+      node.error(fmt::format("the prior mean of {}, {}, lies outside its bounds, {} to {}",
+                             entry.name, rounded(*mean, quantity.unit),
+                             rounded(bounds->first, quantity.unit),
                              rounded(bounds->second, quantity.unit)));
     parameter.prior->mean = mean.value_or(parameter.initial);
   }
@@ -72,11 +73,12 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
 
   // What has no zero in its range, or is part of every axis, is estimated by its order of
   // magnitude; frictions, biases, delays and initial states may be zero and are not.
-  const bool positive = entry.group.empty() && quantity.standard != 0.0 && quantity.lower >= 0.0;
+  const bool positive =
+      entry.group.empty() && quantity.default_value != 0.0 && quantity.lower >= 0.0;
   parameter.logarithmic =
       scale ? *scale == 0 : (bounds ? bounds->first > 0.0 : positive && parameter.initial > 0.0);
   for (const Recording& r : job.recordings)
-    if (const auto reason = ignored_by_coupling(entry, job.options.coupling, r); !reason.empty())
+    if (const auto reason = ignored_by_observer(entry, job.options.observer, r); !reason.empty())
       return node.error(reason);
   const auto add = [&](double initial, std::optional<std::size_t> recording) {
     FreeParameter p = parameter;
@@ -100,13 +102,14 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
     for (const Recording& r : job.recordings)
       for (const auto& [index, value] : r.overrides)
         if (!p.recording && index == p.quantity && entry.group != "initial")
-          node.error(entry.name == "K_f"
-                         ? fmt::format("K_f cannot be fitted to '{}', whose drive_force is in "
-                                       "newtons already",
-                                       r.name)
-                         : fmt::format("{} is fitted for all recordings but set for '{}': remove "
-                                       "one, or say per_recording: true",
-                                       entry.name, r.name));
+          node.error(
+              entry.name == "K_f"
+                  ? fmt::format(
+                        "K_f cannot be fitted to '{}', whose drive_force is already in newtons",
+                        r.name)
+                  : fmt::format("{} is fitted for all recordings but set for '{}': remove one, or "
+                                "use per_recording: true",
+                                entry.name, r.name));
     job.free.push_back(p);
   };
   if (!per_recording) {
@@ -136,9 +139,9 @@ Section free_quantities() {
   for (const QuantityEntry& entry : quantity_list()) {
     const Key quantity = Key::of(entry.quantity, entry.name);
     Key key = Key::optional(entry.name, is_dimensionless(entry.quantity.unit) ? number : amount,
-                            Otherwise{"not fitted"},
+                            DefaultText{"not fitted"},
                             fmt::format("{}; {}", quantity.meaning, value_text(quantity.form)));
-    key.used = quantity.used;
+    key.used_by = quantity.used_by;
     keys.push_back(std::move(key));
   }
   return keys;
@@ -151,7 +154,7 @@ void read_free(const ConfigNode& node, Job& job) {
       read_free_parameter(value, *entry, job);
   map.finish();
   if (node.is_map() && map.entries().empty())
-    node.error("nothing is free: name at least one quantity to fit");
+    node.error("no free quantity: name at least one to fit");
 }
 
 }  // namespace axisfit

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of a noise, in any unit. Below this squares of residuals over it overflow.
-constexpr double kLeastSigma = 1e-40;
+constexpr double kMinSigma = 1e-40;
 
 /// Every quantity of the list, as a value that differs from the axis file's.
 Section override_keys() {
@@ -30,8 +30,8 @@ Section override_keys() {
   for (const QuantityEntry& entry : quantity_list()) {
     Key key = Key::of(entry.quantity, entry.name);
     key.is_required = false;
-    key.standard.clear();
-    key.otherwise = "of the axis file or job";
+    key.default_value.clear();
+    key.default_text = "value in the axis file or job";
     keys.push_back(std::move(key));
   }
   return keys;
@@ -40,33 +40,32 @@ Section override_keys() {
 /// The input and all that can be measured.
 Section signal_keys() {
   const Map column{column_keys(), 0, false, "column"};
-  Section keys{
-      Key::optional("command", column, Otherwise{"one of the other inputs"},
-                    "the set-velocity voltage U in V; each value is held from its sample on"),
-      Key::optional("position_reference", column, Otherwise{"not needed beside a command"},
-                    "in m, instead of the command: the slave control unit of the axis file makes "
-                    "the command from it and the position")};
+  Section keys{Key::optional("command", column, DefaultText{"none if another input is given"},
+                             "set-velocity voltage U in V; each value holds until the next sample"),
+               Key::optional("position_reference", column, DefaultText{"not used with a command"},
+                             "in m, in place of the command: the slave control unit of the axis "
+                             "file computes the command from it and the position")};
   for (const SignalInfo& signal : kSignalTable) {
     Section measured = column_keys();
-    measured.push_back(
-        Key::optional("sigma",
-                      Either{{sigma_amount(signal.unit),
-                              Choice{{{"rest", "what the signal shows while the arm rests"},
-                                      {"fit", "estimated together with the parameters"}}}}},
-                      Otherwise{"estimated from the samples"}, "standard deviation of the noise"));
-    measured.push_back(Key::optional("fit", Flag{}, Measurement().fitted,
+    measured.push_back(Key::optional(
+        "sigma",
+        AnyOf{
+            {sigma_form(signal.unit), Choice{{{"standstill", "scatter of the signal at standstill"},
+                                              {"fit", "estimated jointly with the parameters"}}}}},
+        DefaultText{"estimated from the samples"}, "standard deviation of the noise"));
+    measured.push_back(Key::optional("fit", Boolean{}, Measurement().fitted,
                                      "`false`: compare and report, do not fit"));
     keys.push_back(Key::optional(
         std::string(signal.name), Map{std::move(measured), 0, false, "measured_column"},
-        Otherwise{"not measured"}, fmt::format("{}, in {}", signal.meaning, signal.unit)));
+        DefaultText{"not measured"}, fmt::format("{}, in {}", signal.meaning, signal.unit)));
   }
   return keys;
 }
 
 class RecordingReader {
  public:
-  RecordingReader(const Rig& rig, CouplingMode coupling, const std::string& data_directory)
-      : rig_(rig), coupling_(coupling), data_directory_(data_directory) {}
+  RecordingReader(const Rig& rig, ObserverMode observer, const std::string& data_directory)
+      : rig_(rig), observer_(observer), data_directory_(data_directory) {}
 
   Recording read(const ConfigNode& node) {
     Recording recording;
@@ -81,7 +80,7 @@ class RecordingReader {
     map.read("role", recording.role);
     map.read("initial_state", recording.initial_state);
     const auto initial_samples = map.read("initial_samples", recording.initial_samples);
-    map.read("acceleration_at_rest", recording.acceleration_at_rest);
+    map.read("acceleration_at_standstill", recording.acceleration_at_standstill);
     map.read("score_initial_samples", recording.score_initial_samples);
     if (const auto set = map.optional("set")) read_overrides(*set, recording);
     const auto time = map.required("time");
@@ -98,9 +97,9 @@ class RecordingReader {
     if (data && time && signals) read_samples(*data, *time, *signals, trim, recording);
     if (!recording.score_initial_samples && recording.times.size() >= 10 &&
         recording.initial_samples >= recording.times.size())
-      initial_samples.value_or(node).error(
-          fmt::format("{} initial samples that are not scored leave nothing of {} to score",
-                      recording.initial_samples, recording.times.size()));
+      initial_samples.value_or(node).error(fmt::format(
+          "with {} unscored initial samples, nothing of the {} samples is left to score",
+          recording.initial_samples, recording.times.size()));
     map.finish();
     return recording;
   }
@@ -115,7 +114,7 @@ class RecordingReader {
     map.finish();
     Model<double> model = rig_.model;
     for (const auto& [index, value] : recording.overrides) *members(model)[index] = value;
-    if (const std::string reason = refusal(model); !reason.empty()) node.error(reason);
+    if (const std::string reason = model_error(model); !reason.empty()) node.error(reason);
   }
 
   using Values = std::vector<double>;
@@ -170,16 +169,17 @@ class RecordingReader {
       const std::size_t left = recording.times.size();
       const std::string samples = fmt::format("{} sample{}", left, left == 1 ? "" : "s");
       trim_node.value_or(time_node).error(
-          trim_node ? fmt::format("{} of {}, from {:g} s to {:g} s, are left: at least 10 must be",
-                                  samples, times->size(), times->front(), times->back())
-                    : fmt::format("the recording has {}: at least 10 are needed", samples));
+          trim_node
+              ? fmt::format("only {} of {}, from {:g} s to {:g} s, remain: at least 10 are needed",
+                            samples, times->size(), times->front(), times->back())
+              : fmt::format("the recording has only {}: at least 10 are needed", samples));
       recording.times = {0.0, 1.0};
       return;
     }
     if (all_known) check_samples(signals_node, named, recording);
-    take_noise_from_rest(signals_node, recording);
+    take_noise_from_standstill(signals_node, recording);
     if (recording.initial_state == InitialState::data) initial_state_from_data(recording);
-    if (!recording.acceleration_at_rest) leave_out_acceleration_at_rest(recording);
+    if (!recording.acceleration_at_standstill) exclude_acceleration_at_standstill(recording);
   }
 
   /// What drives the axis: a command in volts, for a force source also a recorded force, or a
@@ -194,13 +194,13 @@ class RecordingReader {
     if (command && force)
       force->error("give either the command or the drive force, not both: each drives the axis");
     if (command && reference)
-      reference->error("the command is recorded and drives the axis: remove the reference");
+      reference->error("the recorded command drives the axis: remove position_reference");
     if (!command && !force && !reference)
       signals_node.error(force_source
                              ? "the axis is driven by a command or a drive_force: name one "
                                "of them"
                              : "the axis is driven by the command: name its column, or that of the "
-                               "position_reference, from which the slave control unit makes it");
+                               "position_reference, from which the slave control unit computes it");
     if (command && force) return std::nullopt;
     if (reference && !command) return read_reference(data, *reference, signals, times);
     std::optional<Values> input;
@@ -209,7 +209,7 @@ class RecordingReader {
       // The source turns U into K_f U newtons; a force in newtons needs no gain.
       const std::size_t gain = find_quantity("K_f")->index;
       if (std::ranges::any_of(recording.overrides, [&](const auto& o) { return o.first == gain; }))
-        force->error("a drive_force is in newtons already: remove K_f from 'set'");
+        force->error("a drive_force is already in newtons: remove K_f from 'set'");
       recording.overrides.emplace_back(gain, 1.0);
     } else if (command) {
       input = read_column(data, *command, "V");
@@ -230,8 +230,8 @@ class RecordingReader {
     const auto position_node = signals.optional("position");
     if (!position_node) {
       node.error(
-          "a position_reference drives the slave control unit, which reads the encoder: name "
-          "the column of the position too");
+          "a position_reference also needs the encoder position, which the slave control unit "
+          "reads: name its column under position");
       return std::nullopt;
     }
     ConfigMap map(*position_node, measurement_keys("position"));
@@ -277,8 +277,8 @@ class RecordingReader {
     if (const auto sigma = map.optional("sigma")) {
       if (sigma->text() == "fit") {
         measurement.noise = NoiseSource::fit;
-      } else if (sigma->text() == "rest") {
-        measurement.noise = NoiseSource::rest;
+      } else if (sigma->text() == "standstill") {
+        measurement.noise = NoiseSource::standstill;
       } else {
         measurement.sigma = read_sigma(*sigma, signal.unit);
         measurement.noise = NoiseSource::given;
@@ -289,7 +289,7 @@ class RecordingReader {
     measurement.values = trimmed(*values, *times, trim);
     if (measurement.noise != NoiseSource::given) {
       measurement.sigma = noise_from_differences(measurement.values);
-      if (!(measurement.sigma >= kLeastSigma))
+      if (!(measurement.sigma >= kMinSigma))
         node.error(
             fmt::format("the noise of {} cannot be estimated from these samples: give its "
                         "sigma, for example 'sigma: {}'",
@@ -301,41 +301,41 @@ class RecordingReader {
   /// Whether the recording has what its role and the options of the fit need.
   void check_samples(const ConfigNode& signals_node, std::size_t named,
                      const Recording& recording) const {
-    const bool held = recording.find(Signal::position) || recording.find(Signal::velocity);
+    const bool can_track = recording.find(Signal::position) || recording.find(Signal::velocity);
     if (named == 0) {
       std::vector<std::string_view> names;
       for (const SignalInfo& signal : kSignalTable) names.push_back(signal.name);
       signals_node.error(
-          fmt::format("nothing to compare with: name at least one of {}", fmt::join(names, ", ")));
+          fmt::format("no measured signal: name at least one of {}", fmt::join(names, ", ")));
     } else if (recording.role == Role::fit && recording.measurements.size() == named &&
                std::ranges::none_of(recording.measurements, &Measurement::fitted)) {
       signals_node.error(
-          "nothing to fit: every signal says fit: false; drop that from one, or give "
-          "the recording the role validate");
+          "nothing to fit: every signal has fit: false; remove it from one, or give the recording "
+          "the role validate");
     }
-    if (coupling_ == CouplingMode::fixed && !held)
-      signals_node.error("a fixed coupling needs a recorded position or velocity");
+    if (observer_ == ObserverMode::fixed && !can_track)
+      signals_node.error("a fixed observer gain needs a recorded position or velocity");
     Model<double> model = rig_.model;
     const auto member = members(model);
     for (const auto& [quantity, value] : recording.overrides) *member[quantity] = value;
     for (const QuantityEntry& entry : quantity_list())
-      if (const auto reason = ignored_by_coupling(entry, coupling_, recording);
+      if (const auto reason = ignored_by_observer(entry, observer_, recording);
           !reason.empty() && *member[entry.index] != 0.0)
         signals_node.error(reason);
-    if (recording.initial_state == InitialState::data && !held)
+    if (recording.initial_state == InitialState::data && !can_track)
       signals_node.error("initial_state: data needs a recorded position or velocity");
   }
 
-  static void take_noise_from_rest(const ConfigNode& signals_node, Recording& recording) {
+  static void take_noise_from_standstill(const ConfigNode& signals_node, Recording& recording) {
     for (Measurement& m : recording.measurements) {
-      if (m.noise != NoiseSource::rest) continue;
-      if (const double noise = noise_at_rest(recording, m); noise >= kLeastSigma)
+      if (m.noise != NoiseSource::standstill) continue;
+      if (const double noise = noise_at_standstill(recording, m); noise >= kMinSigma)
         m.sigma = noise;
       else
-        signals_node.error(fmt::format(
-            "the arm does not rest for 50 samples in this recording, or no velocity or position "
-            "shows it: give the sigma of {}, or leave it out",
-            info(m.signal).name));
+        signals_node.error(
+            fmt::format("this recording has no standstill of 50 samples, or no velocity or "
+                        "position to detect one: give the sigma of {}, or omit it",
+                        info(m.signal).name));
     }
   }
 
@@ -348,59 +348,58 @@ class RecordingReader {
   }
 
   const Rig& rig_;
-  const CouplingMode coupling_;
+  const ObserverMode observer_;
   const std::string& data_directory_;
 };
 
 }  // namespace
 
 const Section& recording_keys() {
-  const Recording standard;
+  const Recording defaults;
   static const Section keys{
-      Key::required("file", Text{}, "CSV, or MATLAB if the name ends in `.mat`"),
-      Key::optional("name", Text{}, Otherwise{"file name without folder and ending"},
-                    "what reports call it; unique in the job"),
-      Key::optional("role",
-                    Choice{{{"fit", "its residuals are minimised"}, {"validate", "only judged"}}},
-                    standard.role, "what it is for"),
-      Key::required("time", Map{column_keys(), 0, false, "column"},
-                    "column of the times, in a unit of time; they must increase"),
-      Key::required("signals", Map{signal_keys()},
-                    "the columns of the input and of the measured signals"),
-      Key::optional("trim",
-                    Map{{Key::optional("from", Amount{"s"}, Otherwise{"the first sample"},
-                                       "start of what is kept, inclusive"),
-                         Key::optional("to", Amount{"s"}, Otherwise{"the last sample"},
-                                       "end of what is kept, inclusive")}},
-                    Otherwise{"all samples"}, "the part that is kept, in recorded time"),
+      Key::required("file", Text{}, "CSV file, or MATLAB file if the name ends in `.mat`"),
+      Key::optional("name", Text{}, DefaultText{"file name without folder and extension"},
+                    "name in reports; unique within the job"),
       Key::optional(
-          "initial_state",
-          Choice{{{"given", "that of the axis file"}, {"data", "from the first samples"}}},
-          standard.initial_state, "the state at the start"),
-      Key::optional("initial_samples", Whole{4, 1000000}, standard.initial_samples,
-                    "how many samples `initial_state: data` takes"),
-      Key::optional("score_initial_samples", Flag{}, standard.score_initial_samples,
-                    "`false`: leave the initial samples out of the reported errors"),
-      Key::optional("acceleration_at_rest",
-                    Choice{{{"leave_out", "it does not count"}, {"keep", "it does"}}},
-                    standard.acceleration_at_rest, "a recorded acceleration while the arm rests"),
-      Key::optional("set", Map{override_keys()}, Otherwise{"none"},
+          "role",
+          Choice{{{"fit", "its residuals are minimised"}, {"validate", "for validation only"}}},
+          defaults.role, "how it is used"),
+      Key::required("time", Map{column_keys(), 0, false, "column"},
+                    "column of the sample times, which must increase"),
+      Key::required("signals", Map{signal_keys()}, "columns of the input and the measured signals"),
+      Key::optional("trim",
+                    Map{{Key::optional("from", NumberWithUnit{"s"}, DefaultText{"the first sample"},
+                                       "start of the part to keep, inclusive"),
+                         Key::optional("to", NumberWithUnit{"s"}, DefaultText{"the last sample"},
+                                       "end of the part to keep, inclusive")}},
+                    DefaultText{"all samples"}, "part to keep, in recorded time"),
+      Key::optional("initial_state",
+                    Choice{{{"given", "as in the axis file"}, {"data", "from the first samples"}}},
+                    defaults.initial_state, "initial state"),
+      Key::optional("initial_samples", Integer{4, 1000000}, defaults.initial_samples,
+                    "number of samples that `initial_state: data` uses"),
+      Key::optional("score_initial_samples", Boolean{}, defaults.score_initial_samples,
+                    "`false`: exclude the initial samples from the reported errors"),
+      Key::optional("acceleration_at_standstill",
+                    Choice{{{"exclude", "not used"}, {"keep", "used"}}},
+                    defaults.acceleration_at_standstill, "recorded acceleration at standstill"),
+      Key::optional("set", Map{override_keys()}, DefaultText{"none"},
                     "quantities that differ in this recording, such as "
                     "`{M: 161 kg, initial.y0: 20 mm}`")};
   return keys;
 }
 
-Recording read_recording(const ConfigNode& node, const Rig& rig, CouplingMode coupling,
+Recording read_recording(const ConfigNode& node, const Rig& rig, ObserverMode observer,
                          const std::string& data_directory) {
-  return RecordingReader(rig, coupling, data_directory).read(node);
+  return RecordingReader(rig, observer, data_directory).read(node);
 }
 
-std::string ignored_by_coupling(const QuantityEntry& entry, CouplingMode coupling,
+std::string ignored_by_observer(const QuantityEntry& entry, ObserverMode observer,
                                 const Recording& recording) {
-  if (!is_ignored(entry, coupling) || !recording.find(*signal_by_name(entry.group))) return {};
+  if (!is_ignored(entry, observer) || !recording.find(*signal_by_name(entry.group))) return {};
   return fmt::format(
-      "a fixed coupling holds the simulation to the recorded {} as if that had no {}: leave {} out "
-      "and {}use coupling: continuation",
+      "a fixed observer gain assumes that the recorded {} has no {}: remove {} and {}use observer: "
+      "continuation",
       entry.group, entry.quantity.symbol, entry.name,
       entry.quantity.symbol == "delay" ? "fit T_d, which delays the whole motion, or " : "");
 }
@@ -413,14 +412,14 @@ std::string resolved(const ConfigNode& node, const std::string& file, const std:
       .string();
 }
 
-Amount sigma_amount(std::string_view unit) {
+NumberWithUnit sigma_form(std::string_view unit) {
   return {std::string(unit), 0.0, kUnlimited,
           is_dimensionless(unit) ? "number above 0" : "above 0, with its unit"};
 }
 
 double read_sigma(const ConfigNode& node, std::string_view unit) {
-  const auto sigma = node.as_amount(sigma_amount(unit));
-  if (sigma && *sigma < kLeastSigma)
+  const auto sigma = node.as_number_with_unit(sigma_form(unit));
+  if (sigma && *sigma < kMinSigma)
     node.error("sigma must be above zero: residuals are divided by it");
   return sigma.value_or(1.0);
 }

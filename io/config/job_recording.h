@@ -12,15 +12,15 @@ namespace axisfit {
 /// The keys of a recording.
 const Section& recording_keys();
 
-/// Reads a recording and its file, for an axis and the coupling of the fit. With diagnostics where
+/// Reads a recording and its file, for an axis and the observer of the fit. With diagnostics where
 /// anything is wrong; what is returned then is not to be used. Files with relative paths are looked
 /// for below `data_directory`, or next to the job file where that is empty.
-Recording read_recording(const ConfigNode& node, const Rig& rig, CouplingMode coupling,
+Recording read_recording(const ConfigNode& node, const Rig& rig, ObserverMode observer,
                          const std::string& data_directory);
 
-/// Why a fixed coupling leaves a quantity no part in a recording: the lag or delay of the signal
-/// that the simulation is held to. Empty where it has one.
-std::string ignored_by_coupling(const QuantityEntry& entry, CouplingMode coupling,
+/// Why a fixed observer gain leaves a quantity no part in a recording: the lag or delay of the
+/// signal that the simulation is held to. Empty where it has one.
+std::string ignored_by_observer(const QuantityEntry& entry, ObserverMode observer,
                                 const Recording& recording);
 
 /// The path of a file named in a configuration file: relative to `base`, or else to the folder of
@@ -28,7 +28,7 @@ std::string ignored_by_coupling(const QuantityEntry& entry, CouplingMode couplin
 std::string resolved(const ConfigNode& node, const std::string& file, const std::string& base);
 
 /// A standard deviation, above zero: how it is described, and how it is read.
-Amount sigma_amount(std::string_view unit);
+NumberWithUnit sigma_form(std::string_view unit);
 double read_sigma(const ConfigNode& node, std::string_view unit);
 
 }  // namespace axisfit

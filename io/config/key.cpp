@@ -65,20 +65,20 @@ std::string used_by_text(UsedBy used_by) {
 /// value_text() of each form.
 struct ValueText {
   std::string operator()(const Text&) const { return "text"; }
-  std::string operator()(const Flag&) const { return "`true` or `false`"; }
-  std::string operator()(const Whole& whole) const {
-    return whole.upper == Whole().upper
-               ? fmt::format("whole number from {}", whole.lower)
-               : fmt::format("whole number, {} .. {}", whole.lower, whole.upper);
+  std::string operator()(const Boolean&) const { return "`true` or `false`"; }
+  std::string operator()(const Integer& integer) const {
+    return integer.upper == Integer().upper
+               ? fmt::format("whole number from {}", integer.lower)
+               : fmt::format("whole number, {} .. {}", integer.lower, integer.upper);
   }
-  std::string operator()(const Amount& amount) const {
-    if (!amount.words.empty()) return amount.words;
+  std::string operator()(const NumberWithUnit& amount) const {
+    if (!amount.description.empty()) return amount.description;
     const std::string range = range_text(amount.lower, amount.upper);
     const std::string unit = is_dimensionless(amount.unit) ? "number" : amount.unit;
     return range.empty() ? unit : unit + ", " + range;
   }
   std::string operator()(const Bounds& bounds) const {
-    return fmt::format("[lower, upper], {}{}", bounds.of.words.empty() ? "" : "each ",
+    return fmt::format("[lower, upper], {}{}", bounds.of.description.empty() ? "" : "each ",
                        (*this)(bounds.of));
   }
   std::string operator()(const Choice& choice) const {
@@ -100,9 +100,9 @@ struct ValueText {
     const std::string of = value_text(list.of.front());
     return of == "map" ? "list of maps" : "list, each " + of;
   }
-  std::string operator()(const Either& either) const {
+  std::string operator()(const AnyOf& alternatives) const {
     std::vector<std::string> texts;
-    for (const Form& form : either.forms) texts.push_back(value_text(form));
+    for (const Form& form : alternatives.forms) texts.push_back(value_text(form));
     return fmt::format("{}", fmt::join(texts, "; or "));
   }
 };
@@ -119,33 +119,33 @@ Key Key::required(std::string name, Form form, std::string meaning) {
   return {std::move(name), std::move(form), std::move(meaning), true};
 }
 
-Key Key::optional(std::string name, Form form, Otherwise otherwise, std::string meaning) {
+Key Key::optional(std::string name, Form form, DefaultText default_text, std::string meaning) {
   Key key{std::move(name), std::move(form), std::move(meaning)};
-  key.otherwise = std::move(otherwise.words);
+  key.default_text = std::move(default_text.description);
   return key;
 }
 
 Key Key::of(const Quantity& quantity) { return of(quantity, std::string(quantity.symbol)); }
 
 Key Key::of(const Quantity& quantity, std::string name) {
-  const Amount amount{std::string(quantity.unit), quantity.lower, quantity.upper};
+  const NumberWithUnit amount{std::string(quantity.unit), quantity.lower, quantity.upper};
   std::string meaning(quantity.meaning);
-  Key key = std::isnan(quantity.standard)
+  Key key = std::isnan(quantity.default_value)
                 ? required(std::move(name), amount, std::move(meaning))
-                : optional(std::move(name), amount, quantity.standard, std::move(meaning));
-  key.used = used_by_text(quantity.used_by);
+                : optional(std::move(name), amount, quantity.default_value, std::move(meaning));
+  key.used_by = used_by_text(quantity.used_by);
   return key;
 }
 
 std::string Key::written(double value) const {
-  if (const auto* amount = std::get_if<Amount>(&form)) return readable(value, amount->unit);
+  if (const auto* amount = std::get_if<NumberWithUnit>(&form)) return readable(value, amount->unit);
   if (const auto* choice = std::get_if<Choice>(&form))
     return choice->options.at(static_cast<std::size_t>(value)).name;
-  if (const auto* either = std::get_if<Either>(&form)) {
-    Key first{name, either->forms.front(), meaning};
+  if (const auto* alternatives = std::get_if<AnyOf>(&form)) {
+    Key first{name, alternatives->forms.front(), meaning};
     return first.written(value);
   }
-  if (std::holds_alternative<Flag>(form)) return value != 0.0 ? "true" : "false";
+  if (std::holds_alternative<Boolean>(form)) return value != 0.0 ? "true" : "false";
   return fmt::format("{}", value);
 }
 
@@ -166,22 +166,22 @@ std::string value_text(const Form& form) {
 
 std::string meaning_text(const Key& key) {
   std::vector<std::string> options;
-  const auto tell = [&](const Form& form) {
+  const auto add_options = [&](const Form& form) {
     if (const auto* choice = std::get_if<Choice>(&form))
       for (const Option& option : choice->options)
         if (!option.meaning.empty())
           options.push_back(fmt::format("`{}`: {}", option.name, option.meaning));
   };
-  tell(key.form);
-  if (const auto* either = std::get_if<Either>(&key.form))
-    std::ranges::for_each(either->forms, tell);
+  add_options(key.form);
+  if (const auto* alternatives = std::get_if<AnyOf>(&key.form))
+    std::ranges::for_each(alternatives->forms, add_options);
   if (options.empty()) return key.meaning;
   return fmt::format("{} ({})", key.meaning, fmt::join(options, "; "));
 }
 
-std::string standard_text(const Key& key) {
+std::string default_description(const Key& key) {
   if (key.is_required) return "required";
-  return key.standard.empty() ? key.otherwise : key.standard;
+  return key.default_value.empty() ? key.default_text : key.default_value;
 }
 
 }  // namespace axisfit

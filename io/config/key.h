@@ -4,8 +4,9 @@
 //
 //   const Section& trim_keys() {
 //     static const Section keys{
-//         Key::optional("from", Amount{"s"}, Otherwise{"the first sample"}, "start, inclusive"),
-//         Key::optional("to", Amount{"s"}, Otherwise{"the last sample"}, "end, inclusive")};
+//         Key::optional("from", NumberWithUnit{"s"}, DefaultText{"the first sample"}, "start,
+//         inclusive"), Key::optional("to", NumberWithUnit{"s"}, DefaultText{"the last sample"},
+//         "end, inclusive")};
 //     return keys;
 //   }
 #pragma once
@@ -35,25 +36,25 @@ inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 struct Text {};
 
 /// true or false.
-struct Flag {};
+struct Boolean {};
 
 /// A whole number.
-struct Whole {
+struct Integer {
   std::int64_t lower = 0;
   std::int64_t upper = std::numeric_limits<std::int64_t>::max();
 };
 
 /// A number with its unit; a plain number or a percentage where the unit is dimensionless.
-struct Amount {
+struct NumberWithUnit {
   std::string unit;
   double lower = -kUnlimited;  ///< in `unit`
   double upper = kUnlimited;
-  std::string words{};  ///< for people, where the above do not tell all: "V, +-limit"
+  std::string description{};  ///< for people, where the above do not tell all: "V, +-limit"
 };
 
 /// [lower, upper], two amounts.
 struct Bounds {
-  Amount of;
+  NumberWithUnit of;
 };
 
 struct Option {
@@ -71,9 +72,9 @@ struct Choice {
 /// A map with keys of its own.
 struct Map {
   Section keys;
-  std::size_t least = 0;     ///< how many of them there must be
-  bool may_be_null = false;  ///< nothing after the colon is as good as {}
-  std::string shared{};      ///< name for schemas, where the same map occurs under many keys
+  std::size_t min_entries = 0;  ///< how many of them there must be
+  bool nullable = false;        ///< nothing after the colon is as good as {}
+  std::string schema_name{};    ///< name for schemas, where the same map occurs under many keys
 };
 
 /// A list of at least one value of the same form.
@@ -82,17 +83,18 @@ struct List {
 };
 
 /// A value of one of several forms.
-struct Either {
+struct AnyOf {
   std::vector<Form> forms;
 };
 
-struct Form : std::variant<Text, Flag, Whole, Amount, Bounds, Choice, Map, List, Either> {
+struct Form
+    : std::variant<Text, Boolean, Integer, NumberWithUnit, Bounds, Choice, Map, List, AnyOf> {
   using variant::variant;
 };
 
 /// In words, what holds when a key is missing and no single value stands for that.
-struct Otherwise {
-  std::string words;
+struct DefaultText {
+  std::string description;
 };
 
 struct Key {
@@ -100,18 +102,19 @@ struct Key {
   Form form;
   std::string meaning;  ///< a phrase, in Markdown
   bool is_required = false;
-  std::string standard{};   ///< the value, as it would be written, that holds when it is missing
-  std::string otherwise{};  ///< or in words
-  std::string used{};       ///< by which axes, in words; empty: by all
+  std::string
+      default_value{};         ///< the value, as it would be written, that holds when it is missing
+  std::string default_text{};  ///< or in words
+  std::string used_by{};       ///< by which axes, in words; empty: by all
 
   static Key required(std::string name, Form form, std::string meaning);
-  static Key optional(std::string name, Form form, Otherwise otherwise, std::string meaning);
+  static Key optional(std::string name, Form form, DefaultText default_text, std::string meaning);
   /// With the value that the program has by itself.
   template <class T>
   requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) static Key
-      optional(std::string name, Form form, T standard, std::string meaning) {
+      optional(std::string name, Form form, T default_value, std::string meaning) {
     Key key{std::move(name), std::move(form), std::move(meaning)};
-    key.standard = key.written(static_cast<double>(standard));
+    key.default_value = key.written(static_cast<double>(default_value));
     return key;
   }
   /// A quantity of the model, under its symbol or another name.
@@ -137,6 +140,6 @@ std::string value_text(const Form& form);
 std::string meaning_text(const Key& key);
 
 /// What holds without the key: "required", "5 ms", "all samples".
-std::string standard_text(const Key& key);
+std::string default_description(const Key& key);
 
 }  // namespace axisfit

@@ -16,13 +16,13 @@ namespace axisfit {
 namespace {
 
 /// A voltage up to the controller's limit, which the keys do not know.
-Amount voltage_up_to(const std::string& limit) {
+NumberWithUnit voltage_up_to(const std::string& limit) {
   return {"V", -kUnlimited, kUnlimited, "V, +-" + limit};
 }
 
-Key offset_key(double standard) {
-  return Key::optional("offset", voltage_up_to("(limit - amplitude)"), standard,
-                       "voltage in the middle");
+Key offset_key(double default_value) {
+  return Key::optional("offset", voltage_up_to("(limit - amplitude)"), default_value,
+                       "mean voltage");
 }
 
 struct MotionType {
@@ -32,48 +32,52 @@ struct MotionType {
 };
 
 const std::vector<MotionType>& motion_types() {
-  const Amount limited = voltage_up_to("limit");
-  const Amount frequency{"Hz", 0.0, 1e4};
+  const NumberWithUnit limited = voltage_up_to("limit");
+  const NumberWithUnit frequency{"Hz", 0.0, 1e4};
   static const std::vector<MotionType> types{
       {"step",
-       "one level from an instant on",
+       "one level from a given time on",
        {Key::required("level", limited, "voltage"),
-        Key::optional("start", Amount{"s", 0.0, 1e6}, StepMotion().start,
-                      "instant from which on it holds")}},
+        Key::optional("start", NumberWithUnit{"s", 0.0, 1e6}, StepMotion().start,
+                      "time of the step")}},
       {"levels",
-       "one level after the other",
+       "a sequence of levels",
        {Key::required("levels", List{{limited}}, "voltages, the first from time zero"),
-        Key::required("hold", Amount{"s", 1e-4, 1e6}, "how long each is held")}},
+        Key::required("hold", NumberWithUnit{"s", 1e-4, 1e6}, "duration of each level")}},
       {"sine",
-       "a sine of one frequency",
-       {Key::required("amplitude", limited, "largest voltage beside the offset"),
-        Key::required("frequency", Amount{"Hz", 1e-6, 1e4}, "frequency of the sine"),
+       "a sine of constant frequency",
+       {Key::required("amplitude", limited, "amplitude of the voltage about the offset"),
+        Key::required("frequency", NumberWithUnit{"Hz", 1e-6, 1e4}, "frequency of the sine"),
         offset_key(SineMotion().offset)}},
       {"chirp",
-       "a sine whose frequency runs linearly",
-       {Key::required("amplitude", limited, "largest voltage beside the offset"),
+       "a sine whose frequency changes linearly",
+       {Key::required("amplitude", limited, "amplitude of the voltage about the offset"),
         Key::required("from", frequency, "frequency at time zero"),
         Key::required("to", frequency, "frequency at the end of `duration`"),
         offset_key(SineMotion().offset)}},
       {"prbs",
        "a pseudo-random binary sequence",
-       {Key::required("amplitude", limited, "voltage either way from the offset"),
-        Key::required("bit", Amount{"s", 1e-4, 1e6}, "how long each choice is held"),
+       {Key::required("amplitude", limited, "amplitude of the voltage about the offset"),
+        Key::required("bit", NumberWithUnit{"s", 1e-4, 1e6},
+                      "bit period: how long each value is held"),
         offset_key(PrbsMotion().offset),
-        Key::optional("seed", Whole{}, PrbsMotion().seed,
-                      "the same one gives the same sequence on every machine")}},
+        Key::optional("seed", Integer{}, PrbsMotion().seed,
+                      "seed of the sequence, which is the same on every machine")}},
       {"move",
-       "a move of the position in a closed loop",
-       {Key::required("distance", Amount{"m", -1e3, 1e3}, "of the arm, from position zero"),
-        Key::required("speed", Amount{"m/s", 1e-6, 1e3}, "largest speed"),
-        Key::required("acceleration", Amount{"m/s^2", 1e-6, 1e5}, "also of the deceleration")}},
+       "a position move under closed-loop control",
+       {Key::required("distance", NumberWithUnit{"m", -1e3, 1e3},
+                      "distance of the arm from position zero"),
+        Key::required("speed", NumberWithUnit{"m/s", 1e-6, 1e3}, "maximum speed"),
+        Key::required("acceleration", NumberWithUnit{"m/s^2", 1e-6, 1e5},
+                      "acceleration and deceleration")}},
       {"recorded",
-       "the command of a recording",
+       "the command from a recording",
        {Key::required("file", Text{},
-                      "CSV or `.mat`; a relative path starts at the folder of the motion file"),
-        Key::required("time", Map{column_keys()}, "column of the times, which must increase"),
+                      "CSV or `.mat` file; a relative path is relative to the motion file"),
+        Key::required("time", Map{column_keys()},
+                      "column of the sample times, which must increase"),
         Key::required("command", Map{column_keys()},
-                      "column of the command; no value beyond the limit")}}};
+                      "column of the command; all values within the limit")}}};
   return types;
 }
 
@@ -101,7 +105,7 @@ class MotionReader {
       map_.read("hold", motion.hold);
       if (const auto levels = map_.required("levels"))
         if (const auto entries = levels->as_sequence()) {
-          if (entries->empty()) levels->error("levels must name at least one voltage");
+          if (entries->empty()) levels->error("levels must have at least one voltage");
           for (const ConfigNode& level : *entries)
             motion.levels.push_back(level.as_quantity("V", -limit(), limit()).value_or(0.0));
         }
@@ -133,8 +137,7 @@ class MotionReader {
       file.motion = motion;
       if (rig_.model.structure.drive == Drive::force_source)
         type->error(
-            "a move needs the slave control unit, which writes a set velocity; this axis is "
-            "driven by a force source, which has no set-velocity input");
+            "a move needs a set-velocity input, which the force source of this axis does not have");
       else if (rig_.model.axis.T_d >= rig_.controller.period)
         type->error("a move needs a command delay T_d below the controller's period");
     } else {
@@ -170,7 +173,7 @@ class MotionReader {
         command->error("the time and the command must have the same number of values");
       else if (beyond != values->end())
         command->error(fmt::format(
-            "{}: a command of {:.12g} V is beyond the controller's limit of {:.12g} V",
+            "{}: a command of {:.12g} V exceeds the controller's limit of {:.12g} V",
             data.where(static_cast<std::size_t>(beyond - values->begin())), *beyond, limit));
       else
         motion.schedule = schedule_from_samples(*times, *values);
@@ -192,8 +195,9 @@ const Section& motion_keys() {
     Choice types;
     for (const MotionType& type : motion_types())
       types.options.push_back({type.name, type.meaning});
-    return Section{Key::required("type", types, "kind of motion, on which the other keys depend"),
-                   Key::required("duration", Amount{"s", 1e-3, 1e6}, "length of the recording")};
+    return Section{
+        Key::required("type", types, "type of motion; the other keys depend on it"),
+        Key::required("duration", NumberWithUnit{"s", 1e-3, 1e6}, "duration of the recording")};
   }();
   return keys;
 }
@@ -262,7 +266,7 @@ class MotionWriter {
     keys_ = &motion_keys(type);
   }
   void set(const char* key, double value) {
-    const std::string& unit = std::get<Amount>(find_key(*keys_, key).form).unit;
+    const std::string& unit = std::get<NumberWithUnit>(find_key(*keys_, key).form).unit;
     out_ << YAML::Key << key << YAML::Value << with_unit(value, unit);
   }
 

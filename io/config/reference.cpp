@@ -32,14 +32,15 @@ std::string code(const std::string& name) { return '`' + name + '`'; }
 
 /// The cells of a key behind its name.
 std::vector<std::string> cells_of(const Key& key) {
-  return {value_text(key.form), key.standard.empty() ? standard_text(key) : code(key.standard),
-          key.used.empty() ? "all" : key.used, meaning_text(key)};
+  return {value_text(key.form),
+          key.default_value.empty() ? default_description(key) : code(key.default_value),
+          key.used_by.empty() ? "all" : key.used_by, meaning_text(key)};
 }
 
 /// A table of the keys in Markdown. Keys in a row that differ in nothing but their name share one
 /// line. A column says which axes have a key, unless all have all.
 std::string table(const Section& keys) {
-  const bool all_used = std::ranges::all_of(keys, &std::string::empty, &Key::used);
+  const bool all_used = std::ranges::all_of(keys, &std::string::empty, &Key::used_by);
   const auto line = [&](const std::string& name, std::vector<std::string> cells) {
     if (all_used) cells.erase(cells.begin() + 2);
     cells.insert(cells.begin(), name);
@@ -63,10 +64,10 @@ std::string table(const Section& keys) {
 Section of_the_signal(Section keys) {
   const std::string unit = "unit of the signal";
   for (Key& key : keys) {
-    auto* amount = std::get_if<Amount>(&key.form);
+    auto* amount = std::get_if<NumberWithUnit>(&key.form);
     if (amount == nullptr || (key.name != "bias" && key.name != "noise")) continue;
-    amount->words = unit + value_text(*amount).substr(amount->unit.size());
-    key.standard = "0";
+    amount->description = unit + value_text(*amount).substr(amount->unit.size());
+    key.default_value = "0";
   }
   return keys;
 }
@@ -77,7 +78,7 @@ Section effect_parameters() {
   for (const Key& effect : keys_below(axis_keys(), "effects"))
     for (Key parameter : std::get<Map>(effect.form).keys) {
       parameter.name = effect.name + "." + parameter.name;
-      parameter.used = effect.used;
+      parameter.used_by = effect.used_by;
       all.push_back(std::move(parameter));
     }
   return all;

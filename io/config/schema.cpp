@@ -58,7 +58,7 @@ class SchemaMaker {
     for (const Key& key : keys) {
       properties[key.name] = property(key);
       // What not every axis has cannot be required of every axis.
-      if (key.is_required && key.used.empty()) required.push_back(key.name);
+      if (key.is_required && key.used_by.empty()) required.push_back(key.name);
     }
     Json map{{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
     if (!required.empty()) map["required"] = required;
@@ -66,13 +66,13 @@ class SchemaMaker {
   }
 
   Json operator()(const Text&) { return {{"type", Json::array({"string", "number"})}}; }
-  Json operator()(const Flag&) { return {{"type", "boolean"}}; }
-  Json operator()(const Whole& whole) {
-    Json number{{"type", "integer"}, {"minimum", whole.lower}};
-    if (whole.upper != Whole().upper) number["maximum"] = whole.upper;
+  Json operator()(const Boolean&) { return {{"type", "boolean"}}; }
+  Json operator()(const Integer& integer) {
+    Json number{{"type", "integer"}, {"minimum", integer.lower}};
+    if (integer.upper != Integer().upper) number["maximum"] = integer.upper;
     return number;
   }
-  Json operator()(const Amount& amount) {
+  Json operator()(const NumberWithUnit& amount) {
     if (!is_dimensionless(amount.unit)) return quantity();
     Json number{{"type", "number"}};
     if (amount.lower != -kUnlimited) number["minimum"] = amount.lower;
@@ -96,20 +96,21 @@ class SchemaMaker {
     return made;
   }
   Json operator()(const Map& of) {
-    if (!of.shared.empty() && definitions_.contains(of.shared)) return reference(of.shared);
+    if (!of.schema_name.empty() && definitions_.contains(of.schema_name))
+      return reference(of.schema_name);
     Json made = map(of.keys);
-    if (of.least > 0) made["minProperties"] = of.least;
-    if (of.may_be_null) made["type"] = Json::array({"object", "null"});
-    if (of.shared.empty()) return made;
-    definitions_[of.shared] = made;
-    return reference(of.shared);
+    if (of.min_entries > 0) made["minProperties"] = of.min_entries;
+    if (of.nullable) made["type"] = Json::array({"object", "null"});
+    if (of.schema_name.empty()) return made;
+    definitions_[of.schema_name] = made;
+    return reference(of.schema_name);
   }
   Json operator()(const List& list) {
     return {{"type", "array"}, {"items", form(list.of.front())}, {"minItems", 1}};
   }
-  Json operator()(const Either& either) {
+  Json operator()(const AnyOf& alternatives) {
     Json forms = Json::array();
-    for (const Form& one : either.forms) forms.push_back(form(one));
+    for (const Form& one : alternatives.forms) forms.push_back(form(one));
     return {{"anyOf", forms}};
   }
 
@@ -135,7 +136,7 @@ class SchemaMaker {
       of = beside;
     }
     Json property{{"description", description(key)}};
-    if (!key.standard.empty()) property["default"] = scalar(key.standard);
+    if (!key.default_value.empty()) property["default"] = scalar(key.default_value);
     property.update(of);
     return property;
   }
@@ -150,8 +151,8 @@ class SchemaMaker {
     std::string text = meaning_text(key) + ".";
     if (const std::string value = value_text(key.form); value != "map")
       text += fmt::format(" Value: {}.", value);
-    text += key.is_required ? " Required." : fmt::format(" Default: {}.", standard_text(key));
-    if (!key.used.empty()) text += fmt::format(" Used by {}.", key.used);
+    text += key.is_required ? " Required." : fmt::format(" Default: {}.", default_description(key));
+    if (!key.used_by.empty()) text += fmt::format(" Used by {}.", key.used_by);
     std::erase(text, '`');
     return text;
   }
@@ -199,12 +200,12 @@ Json parts_of(Structure structure) {
 
 nlohmann::ordered_json job_schema() {
   SchemaMaker maker;
-  return maker.with_definitions(maker.schema("Job file of axisfit", job_keys()));
+  return maker.with_definitions(maker.schema("axisfit job file", job_keys()));
 }
 
 nlohmann::ordered_json axis_schema() {
   SchemaMaker maker;
-  Json top = maker.schema("Axis file of axisfit", axis_keys());
+  Json top = maker.schema("axisfit axis file", axis_keys());
   for (const char* part : kPartsOfStructure) maker.share(part, top["properties"][part]);
   for (std::size_t drive = 0; drive < drive_names().size(); ++drive)
     for (std::size_t transmission = 0; transmission < transmission_names().size(); ++transmission)
@@ -216,7 +217,7 @@ nlohmann::ordered_json axis_schema() {
 
 nlohmann::ordered_json motion_schema() {
   SchemaMaker maker;
-  Json top = maker.schema("Motion file of axisfit", motion_keys());
+  Json top = maker.schema("axisfit motion file", motion_keys());
   top.erase("additionalProperties");  // they depend on the type
   for (const std::string& type : std::get<Choice>(find_key(motion_keys(), "type").form).names()) {
     Json then = maker.map(motion_keys(type));

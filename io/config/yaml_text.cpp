@@ -9,7 +9,7 @@
 namespace axisfit {
 
 std::string comment(const std::string& text, std::size_t indent) {
-  std::string lines = paragraph(harmless(text), indent + 2);
+  std::string lines = paragraph(sanitized(text), indent + 2);
   for (std::size_t at = 0; at < lines.size(); at = lines.find('\n', at) + 1)
     lines[at + indent] = '#';
   return lines;

@@ -40,7 +40,7 @@ std::string read_whole_file(const std::string& path) {
   const std::uintmax_t size = std::filesystem::file_size(path, gone);
   std::string text(gone ? 0 : size, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (in.bad()) throw RecordingError(path, 0, "cannot be read to its end; check the medium");
+  if (in.bad()) throw RecordingError(path, 0, "could not be read completely; check the disk");
   if (gone || watch.has_changed()) throw RecordingError(path, 0, FileWatch::kMessage);
   return text;
 }
@@ -58,53 +58,53 @@ std::string_view trim(std::string_view text) {
 // Takes the lines off the front of a text, without their LF or CRLF, and counts them.
 class LineReader {
  public:
-  explicit LineReader(std::string_view text) : rest_(text) {}
+  explicit LineReader(std::string_view text) : remaining_(text) {}
 
-  bool done() const { return rest_.empty(); }
+  bool done() const { return remaining_.empty(); }
   std::size_t number() const { return number_; }  // of the line next() returned last, from 1
 
   std::string_view next() {
-    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-    std::string_view line = rest_.substr(0, end);
-    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    const std::size_t end = std::min(remaining_.find('\n'), remaining_.size());
+    std::string_view line = remaining_.substr(0, end);
+    remaining_.remove_prefix(std::min(end + 1, remaining_.size()));
     ++number_;
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     return line;
   }
 
-  std::string_view rest() const { return rest_; }
+  std::string_view remaining() const { return remaining_; }
   // Takes a line of which this is the rest behind it.
   void take_to(const char* behind) {
-    rest_.remove_prefix(static_cast<std::size_t>(behind - rest_.data()));
+    remaining_.remove_prefix(static_cast<std::size_t>(behind - remaining_.data()));
     ++number_;
   }
 
  private:
-  std::string_view rest_;
+  std::string_view remaining_;
   std::size_t number_ = 0;
 };
 
 // Takes the fields off the front of a line, without the blanks and the quotes around them.
 class FieldReader {
  public:
-  FieldReader(std::string_view line, char delimiter) : rest_(line), delimiter_(delimiter) {}
+  FieldReader(std::string_view line, char delimiter) : remaining_(line), delimiter_(delimiter) {}
 
   bool done() const { return done_; }
 
   // Doubled quotes inside a quoted field stay doubled: numbers never have any. Returns nothing if
   // a quote is not closed or text follows the closing one; then the line cannot be split further.
   std::optional<std::string_view> next() {
-    const std::size_t start = rest_.find_first_not_of(delimiter_ == '\t' ? " " : " \t");
-    if (start == std::string_view::npos || rest_[start] != '"') return trim(cut());
+    const std::size_t start = remaining_.find_first_not_of(delimiter_ == '\t' ? " " : " \t");
+    if (start == std::string_view::npos || remaining_[start] != '"') return trim(cut());
 
-    rest_.remove_prefix(start + 1);
-    std::size_t close = rest_.find('"');
-    while (close != std::string_view::npos && rest_.substr(close + 1).starts_with('"')) {
-      close = rest_.find('"', close + 2);
+    remaining_.remove_prefix(start + 1);
+    std::size_t close = remaining_.find('"');
+    while (close != std::string_view::npos && remaining_.substr(close + 1).starts_with('"')) {
+      close = remaining_.find('"', close + 2);
     }
     if (close == std::string_view::npos) return std::nullopt;
-    const std::string_view inside = rest_.substr(0, close);
-    rest_.remove_prefix(close + 1);
+    const std::string_view inside = remaining_.substr(0, close);
+    remaining_.remove_prefix(close + 1);
     if (!is_blank(cut())) return std::nullopt;
     return trim(inside);
   }
@@ -112,14 +112,14 @@ class FieldReader {
  private:
   // Removes the text up to the next delimiter, and the delimiter.
   std::string_view cut() {
-    const std::size_t end = rest_.find(delimiter_);
-    const std::string_view text = rest_.substr(0, end);
+    const std::size_t end = remaining_.find(delimiter_);
+    const std::string_view text = remaining_.substr(0, end);
     done_ = end == std::string_view::npos;
-    rest_.remove_prefix(done_ ? rest_.size() : end + 1);
+    remaining_.remove_prefix(done_ ? remaining_.size() : end + 1);
     return text;
   }
 
-  std::string_view rest_;
+  std::string_view remaining_;
   char delimiter_;
   bool done_ = false;
 };
@@ -177,7 +177,7 @@ std::string describe(NumberError error, std::string_view text) {
   if (point || is_number(with_point(text))) {
     return quote(text) + " has a decimal " + (point ? "point" : "comma") +
            ", but numbers above it have a decimal " + (point ? "comma" : "point") +
-           "; write all of them alike";
+           "; use one of them throughout";
   }
   return quote(text) + " is not a number; every row below the header must hold numbers";
 }
@@ -326,7 +326,7 @@ void append_row(Table& table, std::size_t line_number, std::string_view line, Fo
           table.file, line_number,
           "column " + quote(column.name) + ": " +
               (blanks ? quote(*field) + " is not a number; separate the columns by commas, "
-                                        "semicolons or tabs, not by blanks"
+                                        "semicolons or tabs, not by spaces"
                       : describe(error, *field)));
     }
     column.values.push_back(value);
@@ -339,8 +339,8 @@ void append_row(Table& table, std::size_t line_number, std::string_view line, Fo
 // other it takes nothing.
 bool append_plain_row(Table& table, LineReader& lines, const Format& format) {
   if (format.delimiter != ',' && format.decimal != '.') return false;
-  const char* at = lines.rest().data();
-  const char* const end = at + lines.rest().size();
+  const char* at = lines.remaining().data();
+  const char* const end = at + lines.remaining().size();
   const std::size_t columns = table.columns.size();
   for (std::size_t c = 0; c < columns; ++c) {
     double value = 0;
@@ -390,7 +390,7 @@ void append_number(std::string& text, double value, int significant_digits) {
 
 RecordingError::RecordingError(const std::string& file, std::size_t line,
                                const std::string& message)
-    : std::runtime_error(harmless(place(file, line) + ": " + message)) {}
+    : std::runtime_error(sanitized(place(file, line) + ": " + message)) {}
 
 std::ifstream open_recording(const std::string& path) {
   std::error_code ignored;  // what stands in the way of looking stands in the way of opening, too

@@ -46,7 +46,7 @@ void keep_first_complaint(int /*level*/, char* message) {
 
 [[noreturn]] void throw_damaged(const std::string& file, const std::string& where) {
   throw RecordingError(file, 0,
-                       where + "the file is damaged or cut off (libmatio: " + complaint +
+                       where + "the file is damaged or truncated (libmatio: " + complaint +
                            "); save or copy it again");
 }
 
@@ -135,7 +135,7 @@ void append_array(MatFile& mat, const std::string& name, const matvar_t& variabl
   std::vector<double> values = elements(variable);
   if (values.size() % rows != 0 || values.size() / rows != cols) {
     throw RecordingError(mat.file, 0,
-                         in_variable(name) + "its data do not have its size; save the file again");
+                         in_variable(name) + "its data do not match its size; save the file again");
   }
   if (rows == 1 || cols == 1) {
     mat.columns.push_back({name, std::move(values)});
@@ -199,7 +199,7 @@ std::string list(const Items& items, Describe describe) {
   std::vector<std::string> names;
   for (const Column& column : mat.columns) names.push_back(column.name);
   std::string message = "there is no variable " + in_quotes(name);
-  if (const std::string guess = nearest(name, names); !guess.empty()) {
+  if (const std::string guess = closest_match(name, names); !guess.empty()) {
     message += " (did you mean " + in_quotes(guess) + "?)";
   }
   if (names.empty()) {
@@ -217,7 +217,7 @@ std::string list(const Items& items, Describe describe) {
   throw RecordingError(mat.file, 0, message);
 }
 
-MatFile read_here(const std::string& path) {
+MatFile read_in_process(const std::string& path) {
   Mat_LogInitFunc("axisfit", keep_first_complaint);
   complaint.clear();
   const FileWatch watch(path);
@@ -236,7 +236,7 @@ MatFile read_here(const std::string& path) {
   if (watch.has_changed()) throw RecordingError(path, 0, FileWatch::kMessage);
   if (!complaint.empty()) throw_damaged(path, "");
   if (empty) {
-    throw RecordingError(path, 0, "holds no variables; it may be cut off or not a MAT-file");
+    throw RecordingError(path, 0, "contains no variables; it may be truncated or not a MAT-file");
   }
   return mat;
 }
@@ -281,21 +281,21 @@ MatFile unpacked(const std::string& path, const Json& json) {
 }
 
 /// Reads in a process of its own: HDF5 1.10 follows what a damaged file says until it crashes.
-MatFile read_apart(const std::string& path) {
-  const std::optional<std::string> answer = run_apart([&] {
+MatFile read_in_subprocess(const std::string& path) {
+  const std::optional<std::string> reply = run_in_subprocess([&] {
     try {
-      return packed(read_here(path));
+      return packed(read_in_process(path));
     } catch (const RecordingError& error) {
       std::string text;
-      Json::to_msgpack({{"refused", std::string(error.what()).substr(harmless(path).size() + 2)}},
+      Json::to_msgpack({{"refused", std::string(error.what()).substr(sanitized(path).size() + 2)}},
                        text);
       return text;
     }
   });
-  if (!answer)
+  if (!reply)
     throw RecordingError(path, 0,
                          "the file is damaged: HDF5 cannot read it; save or copy it again");
-  const Json json = Json::from_msgpack(*answer);
+  const Json json = Json::from_msgpack(*reply);
   if (json.contains("refused")) throw RecordingError(path, 0, json.at("refused"));
   return unpacked(path, json);
 }
@@ -307,7 +307,7 @@ MatFile read_mat(const std::string& path) {
   if (open_recording(path).peek() == std::ifstream::traits_type::eof()) {
     throw RecordingError(path, 0, "the file is empty; save or copy it again");
   }
-  return is_hdf5(path) ? read_apart(path) : read_here(path);
+  return is_hdf5(path) ? read_in_subprocess(path) : read_in_process(path);
 }
 
 Table select(const MatFile& mat, std::span<const std::string> names) {

@@ -166,8 +166,8 @@ class Walk5 {
   }
 
   void nested(Bytes& bytes, const Tag& tag, int depth) const {
-    constexpr int kDeepest = 100;
-    if (tag.type != kMatrix || tag.small || depth == kDeepest) throw Oversized();
+    constexpr int kMaxDepth = 100;
+    if (tag.type != kMatrix || tag.small || depth == kMaxDepth) throw Oversized();
     Walk5(swapped_).matrix(bytes, tag.size, depth + 1);
   }
 
@@ -238,8 +238,8 @@ class Walk5 {
       name.empty() ? "variable " + std::to_string(index) : "variable " + in_quotes(name);
   throw RecordingError(path, 0,
                        variable +
-                           ": the file is damaged or cut off: it has fewer bytes than this "
-                           "variable takes; save or copy it again");
+                           ": the file is damaged or truncated: it is too short for this variable; "
+                           "save or copy it again");
 }
 
 constexpr std::size_t kHeader5 = 128;
@@ -248,14 +248,14 @@ void check5(const std::string& path, std::string_view file, bool swapped) {
   Stored all(file.substr(kHeader5));
   Walk5 walk(swapped);
   for (int index = 1; all.left() >= 8; ++index) {
-    const std::string_view rest = file.substr(file.size() - all.left());
+    const std::string_view remaining = file.substr(file.size() - all.left());
     try {
       const std::uint32_t type = walk.number(all), size = walk.number(all);
       if (type == Walk5::kCompressed) {
-        Inflated inflated(rest.substr(8, size));
+        Inflated inflated(remaining.substr(8, size));
         walk.variable(inflated);
       } else {
-        Stored stored(rest.substr(0, std::uint64_t{8} + size));
+        Stored stored(remaining.substr(0, std::uint64_t{8} + size));
         walk.variable(stored);
       }
       all.skip(size);

@@ -41,9 +41,9 @@ const std::vector<double>* RecordingFile::column(const ConfigNode& node) const {
     if (bad == values.end()) return &values;
     const std::string place = where(static_cast<std::size_t>(bad - values.begin()));
     node.error(std::isfinite(*bad)
-                   ? fmt::format("{}: '{}' is {:g} there, which nothing can be: remove the row",
-                                 place, *name, *bad)
-                   : fmt::format("{}: '{}' is not finite there: cut the recording or fill the gap",
+                   ? fmt::format("{}: '{}' has the impossible value {:g}: remove the row", place,
+                                 *name, *bad)
+                   : fmt::format("{}: '{}' is not finite: trim the recording or fill the gap",
                                  place, *name));
     return nullptr;
   }
@@ -54,12 +54,12 @@ const std::vector<double>* RecordingFile::column(const ConfigNode& node) const {
   }
   std::vector<std::string> names;
   for (const auto& [existing, values] : columns_) names.push_back(shortened(existing));
-  const std::string near = nearest(*name, names);
+  const std::string suggestion = closest_match(*name, names);
   constexpr std::size_t kNamed = 30;
   const std::size_t more = names.size() - std::min(names.size(), kNamed);
   names.resize(names.size() - more);
   node.error(fmt::format("no column '{}' in {}; {}t has {}{}", *name, path_,
-                         near.empty() ? "i" : fmt::format("did you mean '{}'? I", near),
+                         suggestion.empty() ? "i" : fmt::format("did you mean '{}'? I", suggestion),
                          fmt::join(names, ", "),
                          more > 0 ? fmt::format(" and {} more", more) : ""));
   return nullptr;
@@ -79,9 +79,9 @@ const Section& column_keys() {
   static const Section keys{
       Key::required("column", Text{}, "name of the column, or of the MATLAB variable"),
       Key::required("unit", Text{}, "unit of the stored values"),
-      Key::optional("factor", Amount{"1", -1e12, 1e12}, 1.0,
-                    "by which the stored values are multiplied"),
-      Key::optional("sign", Choice{{{"1"}, {"-1"}}}, 0, "by which they are multiplied too")};
+      Key::optional("factor", NumberWithUnit{"1", -1e12, 1e12}, 1.0,
+                    "factor applied to the stored values"),
+      Key::optional("sign", Choice{{{"1"}, {"-1"}}}, 0, "sign applied to the stored values")};
   return keys;
 }
 
@@ -100,7 +100,7 @@ std::optional<std::vector<double>> read_column(const RecordingFile& file, Config
   double further_factor = 1.0;
   std::size_t sign = 0;
   if (const auto given = map.read("factor", further_factor); given && further_factor == 0.0)
-    given->error("factor must not be zero: nothing of the column would be left");
+    given->error("factor must not be zero: it would erase the column");
   map.read("sign", sign);
   factor *= sign == 1 ? -further_factor : further_factor;
   const auto name = map.required("column");
@@ -125,8 +125,8 @@ std::optional<std::vector<double>> read_times(const RecordingFile& file, const C
     const double before = (*times)[i - 1], time = (*times)[i];
     if (time > before) continue;
     node.error(
-        fmt::format("{}: time {:.15g} s does not come after {:.15g} s: samples must be in "
-                    "the order of time, each once",
+        fmt::format("{}: time {:.15g} s does not increase from {:.15g} s: samples must be in order "
+                    "of time, without repeats",
                     file.where(i), time, before));
     return std::nullopt;
   }

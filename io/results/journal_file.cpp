@@ -41,14 +41,14 @@ std::string framed(const Json& json) {
 
 /// Of a record, in bytes. A solution takes hundreds; what is nested thousands deep, as a forged one
 /// may be, would exhaust the stack of the reader.
-constexpr std::uint32_t kLongest = 1 << 14;
+constexpr std::uint32_t kMaxBytes = 1 << 14;
 
 /// Takes the first record off; none where it is not whole.
 std::optional<Json> unframed(std::string_view& bytes) {
   std::array<std::uint32_t, 2> frame;
   if (bytes.size() < sizeof frame) return std::nullopt;
   std::memcpy(frame.data(), bytes.data(), sizeof frame);
-  if (frame[0] > kLongest) return std::nullopt;
+  if (frame[0] > kMaxBytes) return std::nullopt;
   const std::string_view payload = bytes.substr(sizeof frame, frame[0]);
   if (payload.size() < frame[0] || checksum(payload) != frame[1]) return std::nullopt;
   Json json = Json::from_cbor(payload, true, false);
@@ -116,7 +116,7 @@ void JournalFile::open_and_lock(const std::string& path) {
     if (flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       ::close(file_);
       throw std::runtime_error(
-          "another run is at work in it; wait until that has ended, or name another folder");
+          "another run is using this folder; wait until it has finished, or choose another folder");
     }  // where there are no locks it must do without
     // The run that had it may have removed it meanwhile.
     struct stat opened = {}, there = {};
@@ -125,7 +125,7 @@ void JournalFile::open_and_lock(const std::string& path) {
     if (same && S_ISREG(opened.st_mode)) return;
     ::close(file_);
     // To read a pipe could take for ever.
-    if (same) throw std::runtime_error(path + " is there and not a file; move it away");
+    if (same) throw std::runtime_error(path + " exists and is not a file; move it");
   }
 }
 
@@ -138,11 +138,11 @@ void JournalFile::read() {
   }
   if (!bytes.starts_with(origin())) return;
   end_ = origin().size();
-  std::string_view rest = std::string_view(bytes).substr(end_);
+  std::string_view remaining = std::string_view(bytes).substr(end_);
   try {
-    while (const std::optional<Json> record = unframed(rest)) {
-      earlier_.emplace(record->at("key").get<ProblemKey>(), from_json(*record));
-      end_ = bytes.size() - rest.size();
+    while (const std::optional<Json> record = unframed(remaining)) {
+      recovered_.emplace(record->at("key").get<ProblemKey>(), from_json(*record));
+      end_ = bytes.size() - remaining.size();
     }
   } catch (const Json::exception&) {  // whole, but not of our making
   }
@@ -161,16 +161,16 @@ std::string JournalFile::failure() const {
 }
 
 std::optional<SolveResult> JournalFile::find(const ProblemKey& key) {
-  if (!goes_on_) return std::nullopt;
-  const auto known = earlier_.find(key);
-  return known == earlier_.end() ? std::nullopt : std::optional(known->second);
+  if (!resuming_) return std::nullopt;
+  const auto known = recovered_.find(key);
+  return known == recovered_.end() ? std::nullopt : std::optional(known->second);
 }
 
-void JournalFile::keep(const ProblemKey& key, const SolveResult& solution) {
+void JournalFile::store(const ProblemKey& key, const SolveResult& solution) {
   const std::string record = framed(to_json(key, solution));
   const std::lock_guard lock(mutex_);
   append(record);
-  ++kept_;
+  ++stored_;
 }
 
 }  // namespace axisfit

@@ -24,16 +24,16 @@ class JournalFile : public Journal {
   JournalFile& operator=(const JournalFile&) = delete;
 
   /// Solutions of earlier runs that the file holds.
-  std::size_t earlier() const { return earlier_.size(); }
+  std::size_t recovered() const { return recovered_.size(); }
   /// From now on they are found.
-  void go_on() { goes_on_ = true; }
+  void resume() { resuming_ = true; }
   /// Whether there is anything in it.
-  bool is_empty() const { return earlier_.empty() && kept_ == 0; }
+  bool is_empty() const { return recovered_.empty() && stored_ == 0; }
   /// Why the latest solution was not kept, as when the disk is full; empty where it was.
   std::string failure() const;
 
   std::optional<SolveResult> find(const ProblemKey& key) override;
-  void keep(const ProblemKey& key, const SolveResult& solution) override;
+  void store(const ProblemKey& key, const SolveResult& solution) override;
 
  private:
   struct KeyHash {
@@ -46,9 +46,9 @@ class JournalFile : public Journal {
 
   int file_ = -1;
   std::size_t end_ = 0;  ///< of the last whole record
-  std::unordered_map<ProblemKey, SolveResult, KeyHash> earlier_;
-  bool goes_on_ = false;
-  std::atomic<std::size_t> kept_ = 0;
+  std::unordered_map<ProblemKey, SolveResult, KeyHash> recovered_;
+  bool resuming_ = false;
+  std::atomic<std::size_t> stored_ = 0;
   mutable std::mutex mutex_;
   std::string failure_;
 };

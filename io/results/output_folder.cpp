@@ -88,10 +88,10 @@ OutputFolder::OutputFolder(std::string folder, std::vector<std::string> names)
   std::error_code ignored;
   const fs::path found = fs::canonical(given, ignored);
   target_ = !found.empty() ? found : given.has_filename() ? given : given.parent_path();
-  if (found.empty()) made_ = target_;
-  while (!made_.empty() &&
-         fs::symlink_status(made_.parent_path(), ignored).type() == fs::file_type::not_found)
-    made_ = made_.parent_path();
+  if (found.empty()) created_ = target_;
+  while (!created_.empty() &&
+         fs::symlink_status(created_.parent_path(), ignored).type() == fs::file_type::not_found)
+    created_ = created_.parent_path();
   try {
     fs::create_directories(target_);
     for (const std::string& name : names_)
@@ -100,32 +100,32 @@ OutputFolder::OutputFolder(std::string folder, std::vector<std::string> names)
                                    std::make_error_code(std::errc::is_a_directory));
     journal_ = std::make_unique<JournalFile>(target_ / kJournal);
   } catch (const std::exception& error) {
-    remove_what_was_made();
+    remove_created_folders();
     fail(error);
   }
 }
 
 OutputFolder::~OutputFolder() {
-  if (!has_result_ && journal_->is_empty()) forget();
+  if (!has_result_ && journal_->is_empty()) discard_journal();
 }
 
-void OutputFolder::forget() const {
+void OutputFolder::discard_journal() const {
   std::error_code ignored;
   fs::remove(target_ / kJournal, ignored);
-  remove_what_was_made();
+  remove_created_folders();
 }
 
-void OutputFolder::remove_what_was_made() const {
-  if (made_.empty()) return;
+void OutputFolder::remove_created_folders() const {
+  if (created_.empty()) return;
   std::error_code ignored;  // those into which somebody has put something stay
-  for (fs::path folder = target_; folder != made_.parent_path(); folder = folder.parent_path())
+  for (fs::path folder = target_; folder != created_.parent_path(); folder = folder.parent_path())
     fs::remove(folder, ignored);
 }
 
 void OutputFolder::fail(const std::exception& error, const char* advice) const {
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) throw;
   throw std::runtime_error(
-      fmt::format("results not written to {}: {}{}", folder_, reason(error), advice));
+      fmt::format("results could not be written to {}: {}{}", folder_, reason(error), advice));
 }
 
 bool OutputFolder::holds_results_only() const {
@@ -137,7 +137,7 @@ bool OutputFolder::holds_results_only() const {
   });
 }
 
-bool OutputFolder::exchange(const Files& files, bool whole) const {
+bool OutputFolder::exchange(const Files& files, bool complete) const {
   const fs::path path =
       target_.parent_path() / fmt::format(".{}.partial", target_.filename().string());
   if (::access(target_.parent_path().c_str(), W_OK) != 0) return false;
@@ -145,33 +145,33 @@ bool OutputFolder::exchange(const Files& files, bool whole) const {
   if (!same_owner_and_mode(staging.path(), target_)) return false;
   staging.write(files);
   std::error_code failed;
-  if (!whole) fs::create_hard_link(target_ / kJournal, staging.path() / kJournal, failed);
+  if (!complete) fs::create_hard_link(target_ / kJournal, staging.path() / kJournal, failed);
   if (failed) return false;
   // What it holds after that are the earlier results, which go.
   return ::renameat2(AT_FDCWD, staging.path().c_str(), AT_FDCWD, target_.c_str(),
                      RENAME_EXCHANGE) == 0;
 }
 
-void OutputFolder::replace_one_by_one(const Files& files, bool whole) const {
+void OutputFolder::replace_one_by_one(const Files& files, bool complete) const {
   const Staging staging(target_ / ".partial");
   staging.write(files);
   for (const auto& [name, contents] : files) fs::rename(staging.path() / name, target_ / name);
   for (const std::string& name : names_)
     if (std::ranges::find(files, name, &Files::value_type::first) == files.end())
       fs::remove(target_ / name);
-  if (whole) fs::remove(target_ / kJournal);
+  if (complete) fs::remove(target_ / kJournal);
 }
 
-void OutputFolder::write(const Files& files, bool whole) {
+void OutputFolder::write(const Files& files, bool complete) {
   try {
     fs::create_directories(target_);  // somebody may have removed it meanwhile
-    if (!holds_results_only() || !exchange(files, whole)) replace_one_by_one(files, whole);
+    if (!holds_results_only() || !exchange(files, complete)) replace_one_by_one(files, complete);
     has_result_ = true;
   } catch (const std::exception& error) {
     std::error_code ignored;
     const bool kept = !journal_->is_empty() && fs::exists(target_ / kJournal, ignored);
-    fail(error, kept ? "\nWhat was found is kept there: once that is mended, the same command with "
-                       "--resume ends soon."
+    fail(error, kept ? "\nThe solutions found so far are kept there: once this is fixed, the same "
+                       "command with --resume finishes quickly."
                      : "");
   }
 }
@@ -180,7 +180,7 @@ void write_file(const std::string& path, const std::string& contents) {
   std::error_code ignored;
   // Devices and pipes must not be replaced by a file.
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
-    throw std::runtime_error(fmt::format("{} not written: it is there and not a file", path));
+    throw std::runtime_error(fmt::format("{} not written: it exists and is not a file", path));
   const fs::path partial = fmt::format("{}.partial-{}", path, ::getpid());
   try {
     fs::remove(partial);  // of a run that was killed

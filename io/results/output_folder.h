@@ -36,23 +36,23 @@ class OutputFolder {
   /// some files of either. In a folder that is shared with other files, which stay, and where the
   /// file system cannot exchange folders, one file after the other is replaced. Unless the result
   /// is `whole`, the journal stays.
-  void write(const Files& files, bool whole);
+  void write(const Files& files, bool complete);
 
   /// Removes the journal, for nobody needs to go on with this run.
-  void forget() const;
+  void discard_journal() const;
 
  private:
   bool holds_results_only() const;
-  bool exchange(const Files& files, bool whole) const;
-  void replace_one_by_one(const Files& files, bool whole) const;
-  void remove_what_was_made() const;
+  bool exchange(const Files& files, bool complete) const;
+  void replace_one_by_one(const Files& files, bool complete) const;
+  void remove_created_folders() const;
   /// In the handler of `error`: throws what the user is told, or that memory ran out.
   [[noreturn]] void fail(const std::exception& error, const char* advice = "") const;
 
   std::string folder_;
   std::vector<std::string> names_;
   std::filesystem::path target_;
-  std::filesystem::path made_;  ///< the topmost folder that was not there
+  std::filesystem::path created_;  ///< the topmost folder that was not there
   std::unique_ptr<JournalFile> journal_;
   bool has_result_ = false;
 };

@@ -232,7 +232,7 @@ class Drawing {
       }
       for (const std::size_t k : {std::min(low, high), std::max(low, high)}) {
         const double y = y_(y_of(s, columns_, k));
-        if (s.drawn == Drawn::steps && pen.is_down()) pen.line_to(x_(x[k]), before);
+        if (s.style == LineStyle::steps && pen.is_down()) pen.line_to(x_(x[k]), before);
         pen.line_to(x_(x[k]), y);
         before = y;
         if (low == high) break;
@@ -253,7 +253,7 @@ class Drawing {
   }
 
   Html path(const ChartSeries& s) const {
-    const bool as_dots = s.drawn == Drawn::dots;
+    const bool as_dots = s.style == LineStyle::dots;
     const char* kind = !as_dots ? "" : length_of(s, columns_) <= kFewDots ? " dots few" : " dots";
     return html(R"(<path class="series {}{}" d="{}"/>)", s.role, kind, as_dots ? dots(s) : line(s));
   }
@@ -306,7 +306,7 @@ Html swatch(const std::string& looks, const std::string& words, const char* kind
 /// Names of the series, kinds of events and phases, in their colours.
 Html legend(const Chart& chart, const ChartColumns& columns) {
   Html all = each(chart.series, [](const ChartSeries& s) {
-    return swatch(fmt::format("{}{}", s.role, s.drawn == Drawn::dots ? " dots" : ""), s.label,
+    return swatch(fmt::format("{}{}", s.role, s.style == LineStyle::dots ? " dots" : ""), s.label,
                   "key");
   });
   for (const ChartEvents& e : chart.events)
@@ -382,10 +382,10 @@ nlohmann::ordered_json chart_json(const Chart& chart) {
              {"role", s.role},
              {"x", s.x},
              {"y", s.y},
-             {"style", kStyles[static_cast<std::size_t>(s.drawn)]}};
+             {"style", kStyles[static_cast<std::size_t>(s.style)]}};
     if (s.minus) one["minus"] = *s.minus;
     series.push_back(std::move(one));
-    dots = dots && s.drawn == Drawn::dots;
+    dots = dots && s.style == LineStyle::dots;
   }
   for (const ChartRange& p : chart.phases)
     phases.push_back({{"from", p.from}, {"to", p.to}, {"kind", p.kind}, {"text", p.text}});
@@ -412,10 +412,10 @@ ChartColumns::Index ChartColumns::add(std::vector<double> values, double resolut
     if (std::isfinite(v)) largest = std::max(largest, std::abs(v - origin));
   double step = power_of_ten_below(resolution);
   while (largest > 1e9 * step) step *= 10.0;
-  return kept({std::move(values), step, origin});
+  return index_of({std::move(values), step, origin});
 }
 
-ChartColumns::Index ChartColumns::kept(ChartColumn column) {
+ChartColumns::Index ChartColumns::index_of(ChartColumn column) {
   const auto same = std::ranges::find(columns_, column);
   if (same != columns_.end()) return static_cast<Index>(same - columns_.begin());
   columns_.push_back(std::move(column));
@@ -433,7 +433,7 @@ ChartColumns::Index ChartColumns::add_times(std::vector<double> times) {
            std::abs(times[i] - times.front() - static_cast<double>(i) * interval) < 1e-6 * interval;
   }
   if (even) {
-    return kept({std::move(times)});
+    return index_of({std::move(times)});
   }
   const double origin = std::floor(times.front());
   return add(std::move(times), 1e-3 * shortest, origin);

@@ -43,12 +43,12 @@ class ChartColumns {
 
  private:
   /// Where a column is: many charts draw the same one.
-  Index kept(ChartColumn column);
+  Index index_of(ChartColumn column);
 
   std::vector<ChartColumn> columns_;
 };
 
-enum class Drawn { line, dots, steps };
+enum class LineStyle { line, dots, steps };
 
 struct ChartSeries {
   std::string label;
@@ -56,7 +56,7 @@ struct ChartSeries {
   /// reference.
   std::string_view role;
   ChartColumns::Index x = 0, y = 0;
-  Drawn drawn = Drawn::line;
+  LineStyle style = LineStyle::line;
   std::optional<ChartColumns::Index> minus = {};  ///< y is column y less this one
 };
 
@@ -69,7 +69,7 @@ struct ChartAxis {
 /// A stretch of x (phase) or of y (band).
 struct ChartRange {
   double from = 0.0, to = 0.0;
-  std::string_view kind = {};  ///< of a phase: "rest", "limit"
+  std::string_view kind = {};  ///< of a phase: "standstill", "limit"
   std::string text;
 };
 

@@ -42,7 +42,7 @@ class Stretches {
   Stretches(std::string_view kind, std::string text, double smallest)
       : kind_(kind), text_(std::move(text)), smallest_(smallest) {}
 
-  void tell(double time, bool holds) {
+  void add(double time, bool holds) {
     if (holds == holds_) return;
     holds_ = holds;
     if (!holds)
@@ -51,7 +51,7 @@ class Stretches {
       list_.push_back({time, time, kind_, text_});
   }
   void end(double time, std::vector<ChartRange>& all) {
-    tell(time, false);
+    add(time, false);
     all.insert(all.end(), list_.begin(), list_.end());
   }
 
@@ -67,17 +67,18 @@ std::vector<ChartRange> phases_of(const Recording& recording,
                                   const std::vector<ModeChange>& modes) {
   const double start = recording.times.front(), end = recording.times.back();
   const double smallest = 5e-4 * (end - start);
-  Stretches rest("rest", "the arm rests", smallest);
+  Stretches standstill("standstill", "standstill", smallest);
   Stretches preamplifier("limit", "preamplifier at its limit", smallest);
   Stretches motor("limit", "motor voltage at its limit", smallest);
-  const std::vector<bool> resting = axisfit::resting(recording);
-  for (std::size_t i = 0; i < resting.size(); ++i) rest.tell(recording.times[i], resting[i]);
+  const std::vector<bool> at_standstill = axisfit::at_standstill(recording);
+  for (std::size_t i = 0; i < at_standstill.size(); ++i)
+    standstill.add(recording.times[i], at_standstill[i]);
   for (const ModeChange& change : modes) {
-    preamplifier.tell(change.time, change.mode.v_c != 0);
-    motor.tell(change.time, change.mode.v_m != 0);
+    preamplifier.add(change.time, change.mode.v_c != 0);
+    motor.add(change.time, change.mode.v_m != 0);
   }
   std::vector<ChartRange> phases;
-  for (Stretches* stretches : {&rest, &preamplifier, &motor}) stretches->end(end, phases);
+  for (Stretches* stretches : {&standstill, &preamplifier, &motor}) stretches->end(end, phases);
   return phases;
 }
 
@@ -90,7 +91,7 @@ struct EventTimes {
 /// What happened between one mode and the next.
 std::vector<EventTimes> events_of(const std::vector<ModeChange>& modes) {
   std::vector<EventTimes> list{{"contact", "teeth touch", {}},
-                               {"separation", "teeth part", {}},
+                               {"separation", "teeth separate", {}},
                                {"limit", "a limit is reached or left", {}},
                                {"stick", "the arm sticks", {}},
                                {"slip", "the arm breaks away", {}}};
@@ -123,7 +124,7 @@ bool varies(const Values& values) {
   return high - low > 1e-9 * std::max(std::abs(low), std::abs(high));
 }
 
-double turned(double angle) {
+double wrapped_angle(double angle) {
   const double turn = 2.0 * std::numbers::pi;
   return angle - turn * std::floor(angle / turn);
 }
@@ -139,7 +140,9 @@ const std::vector<Variable>& variables() {
   static const std::vector<Variable> list{
       {"velocity", {"velocity", "m/s"}, [](const Sample& s) { return s.velocity; }},
       {"position", {"position", "m"}, [](const Sample& s) { return s.position; }},
-      {"angle", {"motor angle", "rad"}, [](const Sample& s) { return turned(s.motor_angle); }},
+      {"angle",
+       {"motor angle", "rad"},
+       [](const Sample& s) { return wrapped_angle(s.motor_angle); }},
       {"force", {"gear force", "N"}, [](const Sample& s) { return s.gear_force; }},
       {"current", {"current", "A"}, [](const Sample& s) { return s.current; }}};
   return list;
@@ -147,23 +150,23 @@ const std::vector<Variable>& variables() {
 
 }  // namespace
 
-ReportCharts::ReportCharts(const Outcome& outcome) : outcome_(outcome) {
-  const Job& job = outcome.job();
+ReportCharts::ReportCharts(const RunResult& run_result) : run_result_(run_result) {
+  const Job& job = run_result.job();
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     const Recording& recording = job.recordings[r];
-    const Prediction& prediction = outcome.fit().recordings[r].prediction;
+    const SimulatedRecording& simulation = run_result.fit().recordings[r].free_running;
     RecordingCharts charts;
     charts.times = columns_.add_times(recording.times);
-    charts.phases = phases_of(recording, prediction.modes);
+    charts.phases = phases_of(recording, simulation.modes);
     const double duration = recording.times.back() - recording.times.front();
-    for (EventTimes& e : events_of(prediction.modes))
+    for (EventTimes& e : events_of(simulation.modes))
       charts.events.push_back(
           {e.kind, e.text,
            columns_.add(std::move(e.times), 1e-7 * duration, std::floor(recording.times.front()))});
     for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
       const Measurement& measurement = recording.measurements[m];
       charts.measured.push_back(columns_.add(measurement.values, resolution(measurement)));
-      charts.simulated.push_back(columns_.add(prediction.simulated[m], resolution(measurement)));
+      charts.simulated.push_back(columns_.add(simulation.simulated[m], resolution(measurement)));
     }
     recordings_.push_back(std::move(charts));
   }
@@ -182,46 +185,46 @@ Chart ReportCharts::over_time(std::size_t recording, std::string id, std::string
           .x = {"time", "s"},
           .y = std::move(y),
           .series = {},
-          .recording = outcome_.job().recordings[recording].name,
+          .recording = run_result_.job().recordings[recording].name,
           .phases = r.phases,
           .events = r.events};
 }
 
 Html ReportCharts::overview() {
-  if (!outcome_.diagnosis || outcome_.diagnosis->tests.empty()) return {};
+  if (!run_result_.diagnosis || run_result_.diagnosis->tests.empty()) return {};
   // Of what the first model and the last one were judged by, where the first is worst.
-  SeriesKey worst = outcome_.diagnosis->tests.front().series;
+  SeriesKey worst = run_result_.diagnosis->tests.front().series;
   double most = 0.0;
-  for (const SeriesTest& test : outcome_.diagnosis->tests) {
+  for (const SeriesTest& test : run_result_.diagnosis->tests) {
     double excess = test.reduced_chi_square;
-    if (outcome_.loop)
-      if (const SignalScore* s = find_series(outcome_.scores.front().signals, test.series);
-          s != nullptr && s->judged())
-        excess = s->judged()->reduced_chi_square;
+    if (run_result_.selection)
+      if (const SignalScore* s = find_series(run_result_.scores.front().signals, test.series);
+          s != nullptr && s->as_fitted())
+        excess = s->as_fitted()->reduced_chi_square;
     if (excess > most) {
       most = excess;
       worst = test.series;
     }
   }
-  const Recording& recording = outcome_.job().recordings[worst.recording];
+  const Recording& recording = run_result_.job().recordings[worst.recording];
   const Measurement& m = recording.measurements[worst.measurement];
   const RecordingCharts& r = recordings_[worst.recording];
   const ChartAxis y{signal_name(m), unit_of(m)};
   const auto measured = r.measured[worst.measurement];
-  if (outcome_.loop && outcome_.loop->models.size() > 1) {
+  if (run_result_.selection && run_result_.selection->models.size() > 1) {
     const auto judged = [&](const FitResult& fit) {
-      return columns_.add(fit.recordings[worst.recording].judged().simulated[worst.measurement],
+      return columns_.add(fit.recordings[worst.recording].as_fitted().simulated[worst.measurement],
                           resolution(m));
     };
-    const bool held = outcome_.fit().recordings[worst.recording].held.has_value();
-    Chart chart =
-        over_time(worst.recording, "before-after",
-                  fmt::format("What was left of the {} of {}, before and after{}", y.label,
-                              recording.name, held ? ", of the simulation held to it" : ""),
-                  {"residual", y.unit});
-    chart.series = {{"before", "reference", r.times, measured, Drawn::line,
-                     judged(outcome_.loop->models.front().fit)},
-                    {"after", "residual", r.times, measured, Drawn::line, judged(outcome_.fit())}};
+    const bool tracking = run_result_.fit().recordings[worst.recording].tracking.has_value();
+    Chart chart = over_time(worst.recording, "before-after",
+                            fmt::format("Residual of the {} of {}, before and after{}", y.label,
+                                        recording.name, tracking ? ", tracking simulation" : ""),
+                            {"residual", y.unit});
+    chart.series = {
+        {"before", "reference", r.times, measured, LineStyle::line,
+         judged(run_result_.selection->models.front().fit)},
+        {"after", "residual", r.times, measured, LineStyle::line, judged(run_result_.fit())}};
     return add(std::move(chart));
   }
   Chart chart = over_time(worst.recording, "overview", title_of(m, recording), y);
@@ -231,8 +234,8 @@ Html ReportCharts::overview() {
 }
 
 Html ReportCharts::traces(std::size_t recording) {
-  const Recording& data = outcome_.job().recordings[recording];
-  const RecordingResult& result = outcome_.fit().recordings[recording];
+  const Recording& data = run_result_.job().recordings[recording];
+  const RecordingResult& result = run_result_.fit().recordings[recording];
   const RecordingCharts& r = recordings_[recording];
   Html all;
   for (std::size_t m = 0; m < data.measurements.size(); ++m) {
@@ -246,14 +249,14 @@ Html ReportCharts::traces(std::size_t recording) {
     const auto residual = [&](std::string id, std::string title, ChartColumns::Index simulated) {
       Chart chart = over_time(recording, id + name, std::move(title), {"residual", unit});
       chart.series = {
-          {"measured - simulated", "residual", r.times, r.measured[m], Drawn::line, simulated}};
-      chart.bands = {{-2.0 * measurement.sigma, 2.0 * measurement.sigma, {}, "twice the noise"}};
+          {"measured - simulated", "residual", r.times, r.measured[m], LineStyle::line, simulated}};
+      chart.bands = {{-2.0 * measurement.sigma, 2.0 * measurement.sigma, {}, "2 sigma"}};
       all += add(std::move(chart));
     };
     residual("residual-", "Residual of the " + of, r.simulated[m]);
-    if (result.held)
-      residual("held-", fmt::format("Residual of the {}, of the simulation held to it", of),
-               columns_.add(result.held->simulated[m], resolution(measurement)));
+    if (result.tracking)
+      residual("held-", fmt::format("Residual of the {}, tracking simulation", of),
+               columns_.add(result.tracking->simulated[m], resolution(measurement)));
   }
   return all;
 }
@@ -282,9 +285,9 @@ ChartSeries ReportCharts::mean_line(std::string label, std::string_view role, co
 
 Html ReportCharts::views(const SeriesTest& test) {
   const ResidualSeries& series = test.series;
-  const Recording& recording = outcome_.job().recordings[series.recording];
+  const Recording& recording = run_result_.job().recordings[series.recording];
   const Measurement& m = recording.measurements[series.measurement];
-  const Prediction& prediction = outcome_.fit().recordings[series.recording].judged();
+  const SimulatedRecording& simulation = run_result_.fit().recordings[series.recording].as_fitted();
   const std::string id = fmt::format("{}-{}{}", series.recording + 1, info(m.signal).name,
                                      series.fitted ? "" : "-judged");
   const ChartAxis y{"residual", unit_of(m)};
@@ -295,18 +298,18 @@ Html ReportCharts::views(const SeriesTest& test) {
   Html all;
   const auto scatter = [&](const char* variable, const ChartAxis& axis, const Values& x) {
     if (!varies(x)) return;
-    Chart chart{
-        .id = fmt::format("{}-over-{}", id, variable),
-        .title = "Over the " + axis.label,
-        .x = axis,
-        .y = y,
-        .series = {{"residual", "residual", columns_.add_coarse(thinned(x)), dots, Drawn::dots}}};
+    Chart chart{.id = fmt::format("{}-over-{}", id, variable),
+                .title = "Against " + axis.label,
+                .x = axis,
+                .y = y,
+                .series = {{"residual", "residual", columns_.add_coarse(thinned(x)), dots,
+                            LineStyle::dots}}};
     chart.series.push_back(mean_line("mean", "mean", x, residual));
     all += add(std::move(chart));
   };
   for (const Variable& variable : variables()) {
     Values x;
-    for (const std::size_t i : series.samples) x.push_back(variable.value(prediction.samples[i]));
+    for (const std::size_t i : series.samples) x.push_back(variable.value(simulation.samples[i]));
     scatter(variable.id, variable.axis, x);
   }
   Values times;
@@ -327,11 +330,11 @@ Html ReportCharts::views(const SeriesTest& test) {
               .y = {"autocorrelation"},
               .series = {{"autocorrelation", "residual", columns_.add_times(std::move(lags)),
                           columns_.add(std::move(correlation), 1e-3)}},
-              .bands = {{-chance, chance, {}, "95 % of white noise"}}});
+              .bands = {{-chance, chance, {}, "95 % band of white noise"}}});
   Spectrum spectrum = power_spectrum(series.values, interval);
   if (!spectrum.wave.empty())
     all += add({.id = id + "-spectrum",
-                .title = "Spectrum over time, one for the stated noise",
+                .title = "Power spectrum (1 for the stated noise)",
                 .x = {"frequency", "Hz", true},
                 .y = {"power", "", true},
                 .series = {{"power", "residual", columns_.add_times(std::move(spectrum.wave)),
@@ -344,28 +347,29 @@ Html ReportCharts::missing_force(std::size_t recording) {
   const auto force_of = [&](const ModelScore& score) -> const MissingForce& {
     return score.forces[recording];
   };
-  const bool added = outcome_.loop && outcome_.loop->models.size() > 1;
-  const MissingForce& before =
-      outcome_.loop ? force_of(outcome_.scores.front()) : outcome_.diagnosis->forces[recording];
+  const bool added = run_result_.selection && run_result_.selection->models.size() > 1;
+  const MissingForce& before = run_result_.selection ? force_of(run_result_.scores.front())
+                                                     : run_result_.diagnosis->forces[recording];
   if (!before.found) return {};
-  const MissingForce* after = added ? &force_of(outcome_.scores.back()) : nullptr;
+  const MissingForce* after = added ? &force_of(run_result_.scores.back()) : nullptr;
   if (after != nullptr && !after->found) after = nullptr;
   Values supplied;
   for (std::size_t i = 0; after != nullptr && i < before.force.size(); ++i)
     supplied.push_back(before.force[i] - after->force[i]);
 
-  const std::string name = outcome_.job().recordings[recording].name;
+  const std::string name = run_result_.job().recordings[recording].name;
   const ChartAxis y{"missing force", "N"};
   const double resolution = 0.01 * std::max(before.noise, 1e-6 * before.rms) + 1e-12;
   Html all;
   Chart chart = over_time(recording, "force", "Missing force on the arm in " + name, y);
   const auto times = recordings_[recording].times;
-  chart.series = {{after ? "of the declared model" : "missing force", "force", times,
+  chart.series = {{after ? "baseline model" : "missing force", "force", times,
                    columns_.add(before.force, resolution)}};
   if (after != nullptr) {
     chart.series.push_back(
-        {"supplied by what was added", "accepted", times, columns_.add(supplied, resolution)});
-    chart.series.push_back({"left", "residual", times, columns_.add(after->force, resolution)});
+        {"explained by the added effects", "accepted", times, columns_.add(supplied, resolution)});
+    chart.series.push_back(
+        {"remaining", "residual", times, columns_.add(after->force, resolution)});
   }
   all += add(std::move(chart));
 
@@ -376,16 +380,17 @@ Html ReportCharts::missing_force(std::size_t recording) {
     if (!varies(x)) continue;
     Chart over{
         .id = fmt::format("force-{}-over-{}", recording + 1, variable.id),
-        .title = "Missing force over the " + variable.axis.label,
+        .title = "Missing force against " + variable.axis.label,
         .x = variable.axis,
         .y = y,
-        .series = {{"missing", "force", columns_.add_coarse(thinned(x)), dots, Drawn::dots}}};
-    over.series.push_back(after ? mean_line("supplied by what was added", "accepted", x, supplied)
-                                : mean_line("mean", "mean", x, before.force));
+        .series = {{"missing", "force", columns_.add_coarse(thinned(x)), dots, LineStyle::dots}}};
+    over.series.push_back(after
+                              ? mean_line("explained by the added effects", "accepted", x, supplied)
+                              : mean_line("mean", "mean", x, before.force));
     all += add(std::move(over));
   }
   Chart spectrum{.id = fmt::format("force-{}-in-space", recording + 1),
-                 .title = "Spectrum of the missing force along the stroke",
+                 .title = "Spatial spectrum of the missing force",
                  .x = {"cycles per metre", "1/m"},
                  .y = {"amplitude", "N"},
                  .series = {}};
@@ -397,15 +402,15 @@ Html ReportCharts::missing_force(std::size_t recording) {
       spectrum.series.push_back({label, role, columns_.add_times(std::move(found.wave)),
                                  columns_.add_coarse(std::move(found.size))});
   };
-  line(after ? "of the declared model" : "missing force", "force", before);
-  if (after != nullptr) line("left", "residual", *after);
+  line(after ? "baseline model" : "missing force", "force", before);
+  if (after != nullptr) line("remaining", "residual", *after);
   if (!spectrum.series.empty()) all += add(std::move(spectrum));
   return all;
 }
 
 Html ReportCharts::profile(const Profile& profile) {
-  const ParameterResult& p = outcome_.fit().parameters[profile.parameter];
-  const FreeParameter& free = outcome_.job().free[profile.parameter];
+  const ParameterResult& p = run_result_.fit().parameters[profile.parameter];
+  const FreeParameter& free = run_result_.job().free[profile.parameter];
   const std::string unit(quantity_list()[free.quantity].quantity.unit);
   Values x, deviance, parabola;
   for (const ProfilePoint& point : profile.points) {
@@ -424,12 +429,12 @@ Html ReportCharts::profile(const Profile& profile) {
               .bands = {{0.0, profile.threshold, {}, "95 % interval"}}};
   if (p.uncertainty.determined)
     chart.series.push_back(
-        {"by standard error", "reference", at, columns_.add_coarse(std::move(parabola))});
+        {"from the standard error", "reference", at, columns_.add_coarse(std::move(parabola))});
   return add(std::move(chart));
 }
 
 Html ReportCharts::convergence() {
-  const FitResult& fit = outcome_.fit();
+  const FitResult& fit = run_result_.fit();
   Html all;
   Values iterations, cost, rate;
   double so_far = 0.0;
@@ -437,7 +442,7 @@ Html ReportCharts::convergence() {
     so_far += stage.iterations;
     iterations.push_back(so_far);
     cost.push_back(stage.reduced_cost);
-    rate.push_back(stage.coupling_rate);
+    rate.push_back(stage.observer_gain);
   }
   const ChartAxis over{"iterations"};
   if (iterations.size() > 1) {
@@ -447,28 +452,28 @@ Html ReportCharts::convergence() {
                 .x = over,
                 .y = {"reduced cost", "", spans_a_decade(cost)},
                 .series = {{"cost", "measured", at, columns_.add_for_log(std::move(cost)),
-                            Drawn::steps}}});
+                            LineStyle::steps}}});
     if (std::ranges::any_of(rate, [](double r) { return r > 0.0; }))
-      all += add({.id = "coupling",
-                  .title = "How firmly the simulation is held to the data",
+      all += add({.id = "observer-gain",
+                  .title = "Observer gain",
                   .x = over,
-                  .y = {"coupling", "1/s"},
-                  .series = {{"coupling", "simulated", at, columns_.add_coarse(std::move(rate)),
-                              Drawn::steps}}});
+                  .y = {"observer gain", "1/s"},
+                  .series = {{"observer gain", "simulated", at,
+                              columns_.add_coarse(std::move(rate)), LineStyle::steps}}});
   }
   Values ends;
-  for (const StartResult& start : outcome_.first.starts)
+  for (const StartResult& start : run_result_.first.starts)
     if (start.usable) ends.push_back(start.reduced_cost);
   if (ends.size() > 1) {
     std::ranges::sort(ends);
     Values number(ends.size());
     std::iota(number.begin(), number.end(), 1.0);
     all += add({.id = "starts",
-                .title = "Where the starts ended, best first",
+                .title = "Final cost of each start, best first",
                 .x = {"start"},
                 .y = {"reduced cost", "", spans_a_decade(ends)},
                 .series = {{"reduced cost", "measured", columns_.add(std::move(number), 1.0),
-                            columns_.add_for_log(std::move(ends)), Drawn::dots}}});
+                            columns_.add_for_log(std::move(ends)), LineStyle::dots}}});
   }
   return all;
 }

@@ -13,7 +13,7 @@ namespace axisfit {
 /// outlive it.
 class ReportCharts {
  public:
-  explicit ReportCharts(const Outcome& outcome);
+  explicit ReportCharts(const RunResult& run_result);
 
   /// The signal that the declared model explains least, as it was measured and as it is simulated,
   /// or, with a closed loop, what was left of it before and after.
@@ -27,7 +27,7 @@ class ReportCharts {
   Html missing_force(std::size_t recording);
   /// Deviance over the value, with the parabola that the standard error takes it for.
   Html profile(const Profile& profile);
-  /// Cost and coupling over the iterations, and where the starts ended.
+  /// Cost and observer over the iterations, and where the starts ended.
   Html convergence();
 
   /// For the script: see chart_data().
@@ -47,7 +47,7 @@ class ReportCharts {
   ChartSeries mean_line(std::string label, std::string_view role, const std::vector<double>& x,
                         const std::vector<double>& y);
 
-  const Outcome& outcome_;
+  const RunResult& run_result_;
   ChartColumns columns_;
   std::vector<Chart> charts_;
   std::vector<RecordingCharts> recordings_;

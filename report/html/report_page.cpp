@@ -54,11 +54,15 @@ Html row(const Html& cells) { return html("<tr>{}</tr>", cells); }
 
 class Page {
  public:
-  Page(const Outcome& outcome, const RunRecord& run)
-      : outcome_(outcome), run_(run), job_(outcome.job()), fit_(outcome.fit()), charts_(outcome) {
+  Page(const RunResult& run_result, const Provenance& run)
+      : run_result_(run_result),
+        run_(run),
+        job_(run_result.job()),
+        fit_(run_result.fit()),
+        charts_(run_result) {
     // What was typed may be any bytes; a page is UTF-8.
     for (std::string* typed : {&run_.command, &run_.job_file, &run_.axis_file})
-      *typed = harmless(*typed);
+      *typed = sanitized(*typed);
   }
 
   std::string text() {
@@ -66,18 +70,16 @@ class Page {
     main += section("recordings", "Measured and simulated", recordings());
     main += section("parameters", "Parameters", parameters());
     main += section("residual", "Residual", residual());
-    main += section("loop", "Closing the loop", loop());
+    main += section("loop", "Effect selection", selection());
     main += section("convergence", "Convergence", convergence());
-    main += section("repeat", "To repeat it", repeat());
+    main += section("repeat", "Reproduce this run", repeat());
     const ReportAssets& assets = report_assets();
     std::string data = charts_.data().dump();
     for (std::size_t at = 0; (at = data.find('<', at)) != std::string::npos;)
       data.replace(at, 1, "\\u003c");
     const Html script =
-        assets.script.empty()
-            ? Html()
-            : html(R"(<script type="application/json" id="charts">{}</script><script>{}</script>)",
-                   Html::raw(data), Html::raw(assets.script));
+        html(R"(<script type="application/json" id="charts">{}</script><script>{}</script>)",
+             Html::raw(data), Html::raw(assets.script));
     const auto link = [&](const char* id, const char* name) {
       return main.text().find(fmt::format("<section id=\"{}\"", id)) == std::string::npos
                  ? Html()
@@ -88,7 +90,7 @@ class Page {
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:">
 <style>{1}</style></head>
-<body><a class="skip" href="#main">To the content</a>
+<body><a class="skip" href="#main">Skip to content</a>
 <header><h1>{0}</h1><nav aria-label="Sections">{2}</nav></header>
 <main id="main">{3}</main>
 <footer>axisfit {4}</footer>{5}
@@ -97,21 +99,21 @@ class Page {
                 title(), Html::raw(assets.css),
                 link("verdict", "Verdict") + link("recordings", "Recordings") +
                     link("parameters", "Parameters") + link("residual", "Residual") +
-                    link("loop", "Loop") + link("convergence", "Convergence") +
-                    link("repeat", "Repeat"),
+                    link("loop", "Effects") + link("convergence", "Convergence") +
+                    link("repeat", "Reproduce"),
                 main, version(), script)
         .text();
   }
 
  private:
   std::string title() const {
-    const std::string& axis = outcome_.baseline.axis;
+    const std::string& axis = run_result_.baseline.axis;
     return axis.empty() ? "Fit of " + run_.job_file : "Fit of " + axis;
   }
 
-  const char* judgement() const {
+  const char* verdict_class() const {
     if (!fit_.usable) return "bad";
-    return outcome_.diagnosis && outcome_.diagnosis->explained ? "good" : "warn";
+    return run_result_.diagnosis && run_result_.diagnosis->explained ? "good" : "warn";
   }
 
   static Html fact(const std::string& name, const Html& value) {
@@ -119,27 +121,27 @@ class Page {
   }
 
   Html verdict() {
-    Html words = paragraph_of(verdict_of(outcome_));
-    if (!outcome_.loop && outcome_.diagnosis)
-      words += paragraph_of(residual_verdict(job_, *outcome_.diagnosis));
-    Html all = html(R"(<div class="verdict {}">{}</div>)", judgement(), words);
-    for (const Separation& s : outcome_.separations) all += paragraph_of(s.words);
-    if (outcome_.interrupted)
-      all += paragraph_of(fmt::format("Stopped{} before all that was asked for was finished.",
-                                      stop_reason(outcome_)));
+    Html summary = paragraph_of(overall_verdict(run_result_));
+    if (!run_result_.selection && run_result_.diagnosis)
+      summary += paragraph_of(residual_verdict(job_, *run_result_.diagnosis));
+    Html all = html(R"(<div class="verdict {}">{}</div>)", verdict_class(), summary);
+    for (const Discrimination& s : run_result_.discriminations) all += paragraph_of(s.description);
+    if (run_result_.interrupted)
+      all += paragraph_of(fmt::format("Stopped{} before everything requested was finished.",
+                                      stop_reason(run_result_)));
     const auto determined = std::ranges::count_if(
         fit_.parameters, [](const ParameterResult& p) { return p.uncertainty.determined; });
-    const bool closed = outcome_.loop && outcome_.loop->models.size() > 1;
+    const bool closed = run_result_.selection && run_result_.selection->models.size() > 1;
     Html facts =
         fact("Reduced chi-square",
              closed ? html("{} <span class=\"arrow\">to</span> {}",
-                           number(outcome_.loop->models.front().fit.reduced_chi_square),
+                           number(run_result_.selection->models.front().fit.reduced_chi_square),
                            number(fit_.reduced_chi_square))
                     : html("{}", number(fit_.reduced_chi_square))) +
         fact("Parameters determined", html("{} of {}", determined, fit_.parameters.size()));
     if (closed) {
       std::string added;
-      for (const LoopModel& model : outcome_.loop->models)
+      for (const SelectionStep& model : run_result_.selection->models)
         if (!model.added.empty()) added += (added.empty() ? "" : ", ") + model.added;
       facts += fact("Added", html("{}", added));
     }
@@ -149,37 +151,37 @@ class Page {
 
   /// Of every signal, by the declared model and by the last.
   Html errors() {
-    if (outcome_.loop) return loop_errors();
+    if (run_result_.selection) return selection_errors();
     Html rows;
     for (std::size_t r = 0; r < job_.recordings.size(); ++r)
       for (const SignalError& e : fit_.recordings[r].signals) {
-        const bool finished = fit_.recordings[r].prediction.finished;
-        const auto told = [&](double value) { return finished ? number(value) : "-"; };
+        const bool finished = fit_.recordings[r].free_running.finished;
+        const auto or_dash = [&](double value) { return finished ? number(value) : "-"; };
         rows += row(head_cell(job_.recordings[r].name) + cell(role_name(job_.recordings[r], e)) +
-                    cell(std::string(info(e.signal).name)) + number_cell(told(e.rmse)) +
+                    cell(std::string(info(e.signal).name)) + number_cell(or_dash(e.rmse)) +
                     cell(std::string(info(e.signal).unit)) +
                     number_cell(finished ? fmt::format("{:.3g} %", e.nrmse_percent) : "-") +
-                    number_cell(number(e.sigma)) + number_cell(told(e.reduced_chi_square)) +
+                    number_cell(number(e.sigma)) + number_cell(or_dash(e.reduced_chi_square)) +
                     number_cell(e.prediction_rmse ? number(*e.prediction_rmse) : ""));
       }
     return html("<h3>Errors of the free-running simulation</h3>{}",
                 table({"Recording", "Role", "Signal", "#rmse", "Unit", "#of range", "#noise",
-                       "#reduced chi-square", "#held to the data"},
+                       "#reduced chi-square", "#prediction rmse"},
                       rows));
   }
 
-  Html loop_errors() {
+  Html selection_errors() {
     Html rows;
-    for (const SignalScore& head : outcome_.scores.front().signals) {
+    for (const SignalScore& head : run_result_.scores.front().signals) {
       const Recording& recording = job_.recordings[head.recording];
       const Measurement& m = recording.measurements[head.measurement];
-      for (std::size_t i = 0; i < outcome_.loop->models.size(); ++i) {
-        const SignalScore* score = find_series(outcome_.scores[i].signals, head);
-        if (score == nullptr || !score->judged()) continue;
-        const SignalErrors& e = *score->judged();
+      for (std::size_t i = 0; i < run_result_.selection->models.size(); ++i) {
+        const SignalScore* score = find_series(run_result_.scores[i].signals, head);
+        if (score == nullptr || !score->as_fitted()) continue;
+        const SignalErrors& e = *score->as_fitted();
         rows += row(head_cell(recording.name) + cell(role_name(recording, head.fitted)) +
                     cell(std::string(info(m.signal).name)) +
-                    cell(i == 0 ? "declared" : "+ " + outcome_.loop->models[i].added) +
+                    cell(i == 0 ? "baseline" : "+ " + run_result_.selection->models[i].added) +
                     number_cell(number(e.rmse)) + cell(std::string(info(m.signal).unit)) +
                     number_cell(fmt::format("{:.3g} %", e.nrmse_percent)) +
                     number_cell(number(e.reduced_chi_square)));
@@ -198,10 +200,10 @@ class Page {
       all += html("<h3>{} <small>{}, {}, {} samples, {} s to {} s, {} events</small></h3>",
                   recording.name, role_name(recording, true), recording.file,
                   recording.times.size(), number(recording.times.front()),
-                  number(recording.times.back()), fit_.recordings[r].prediction.events);
-      for (const std::string& concern :
-           concerns_of(outcome_.baseline, recording, outcome_.checks[r]))
-        all += html("<p>! {}</p>", concern);
+                  number(recording.times.back()), fit_.recordings[r].free_running.events);
+      for (const std::string& warning :
+           warnings_for(run_result_.baseline, recording, run_result_.checks[r]))
+        all += html("<p>! {}</p>", warning);
       all += charts_.traces(r);
     }
     return all;
@@ -209,7 +211,7 @@ class Page {
 
   /// The interval and the initial value between the bounds, on the parameter's scale.
   Html interval_bar(std::size_t i) const {
-    const FreeParameter& free = as_declared(outcome_, i);
+    const FreeParameter& free = as_specified(run_result_, i);
     const ParameterResult& p = fit_.parameters[i];
     const auto on_scale = [&](double v) { return free.logarithmic ? std::log(v) : v; };
     const double low = on_scale(free.lower), high = on_scale(free.upper);
@@ -225,7 +227,7 @@ class Page {
                     R"(<circle class="estimate" cx="{1:.1f}" cy="9" r="3"/>)",
                     place(free.initial), place(p.value));
     return html(R"(<svg class="interval" viewBox="0 0 160 18" role="img" aria-label="{}">{}</svg>)",
-                fmt::format("between the bounds {} and {}, started at {}", number(free.lower),
+                fmt::format("bounds {} and {}, initial value {}", number(free.lower),
                             number(free.upper), number(free.initial)),
                 drawing);
   }
@@ -254,19 +256,19 @@ class Page {
                                                      with_digits_of(u.upper, error)
                                                : "-") +
                   html(R"(<td class="unit">{}</td>)", std::string(quantity.unit)) +
-                  number_cell(number(as_declared(outcome_, i).initial)) + cell(interval_bar(i)) +
-                  cell(badge(u)));
+                  number_cell(number(as_specified(run_result_, i).initial)) +
+                  cell(interval_bar(i)) + cell(badge(u)));
     }
     Html all = table({"Parameter", "#value", "#standard error", "#95 % interval", "Unit",
-                      "#initial", "Between the bounds", "Verdict"},
+                      "#initial", "Within its bounds", "Verdict"},
                      rows) +
-               paragraph_of(knowledge_text(fit_)) + correlation();
-    if (!outcome_.profiles.empty())
-      all += html(
-          "<h3>Likelihood profiles</h3>{}",
-          figures(each(outcome_.profiles, [&](const Profile& p) { return charts_.profile(p); })));
-    if (outcome_.wishes.experiment)
-      all += html("<h3>Next experiment</h3><pre>{}</pre>", suggestion_text(outcome_));
+               paragraph_of(uncertainty_text(fit_)) + correlation();
+    if (!run_result_.profiles.empty())
+      all += html("<h3>Likelihood profiles</h3>{}",
+                  figures(each(run_result_.profiles,
+                               [&](const Profile& p) { return charts_.profile(p); })));
+    if (run_result_.run_options.experiment)
+      all += html("<h3>Next experiment</h3><pre>{}</pre>", suggestion_text(run_result_));
     return all;
   }
 
@@ -291,9 +293,9 @@ class Page {
   }
 
   Html residual() {
-    if (!outcome_.diagnosis) return {};
-    const Diagnosis& diagnosis = *outcome_.diagnosis;
-    Html all = outcome_.loop ? Html() : paragraph_of(residual_verdict(job_, diagnosis));
+    if (!run_result_.diagnosis) return {};
+    const Diagnosis& diagnosis = *run_result_.diagnosis;
+    Html all = run_result_.selection ? Html() : paragraph_of(residual_verdict(job_, diagnosis));
     all += tests(diagnosis);
     if (const std::string faults = instruments_text(job_, diagnosis); !faults.empty())
       all += html("<h3>Instruments</h3>{}", paragraph_of(faults));
@@ -322,46 +324,47 @@ class Page {
     Html rows = each(diagnosis.tests, [&](const SeriesTest& test) {
       std::string on;
       for (const Dependence& d : test.dependences)
-        on += fmt::format("{}{} {:.2g} %", on.empty() ? "" : ", ", d.on, 100.0 * d.share);
+        on += fmt::format("{}{} {:.2g} %", on.empty() ? "" : ", ", d.on, 100.0 * d.fraction);
       return row(head_cell(name_of(test)) + number_cell(number(test.reduced_chi_square)) +
-                 number_cell(test.explained ? "noise"
+                 number_cell(test.explained ? "noise only"
                                             : fmt::format("{:.3g} %", test.unexplained_percent)) +
                  cell(on.empty() ? "nothing" : on));
     });
     Html all = table({"Series", "#reduced chi-square", "#unexplained", "Depends on"}, rows);
-    if (outcome_.loop || diagnosis.suspects.empty()) return all;
-    rows = each(diagnosis.suspects, [](const Suspect& s) {
-      return row(head_cell(s.candidate.name) + cell(s.candidate.meaning) + cell(s.candidate.slot) +
-                 number_cell(fmt::format("{:.2g} %", 100.0 * s.share)));
+    if (run_result_.selection || diagnosis.suspected_effects.empty()) return all;
+    rows = each(diagnosis.suspected_effects, [](const SuspectedEffect& s) {
+      return row(head_cell(s.candidate.name) + cell(s.candidate.meaning) +
+                 cell(s.candidate.acts_on) +
+                 number_cell(fmt::format("{:.2g} %", 100.0 * s.fraction)));
     });
-    return all + html("<h3>Suspects</h3>{}",
-                      table({"Effect", "What it is", "Acts on", "#explains"}, rows));
+    return all + html("<h3>Suspected effects</h3>{}",
+                      table({"Effect", "Meaning", "Acts on", "#explains"}, rows));
   }
 
-  Html loop() {
-    if (!outcome_.loop) return {};
-    const ClosedLoop& loop = *outcome_.loop;
+  Html selection() {
+    if (!run_result_.selection) return {};
+    const EffectSelection& selection = *run_result_.selection;
     Html rounds;
     int last = 0;
-    for (const EffectTrial& t : loop.effects) last = std::max(last, t.round);
+    for (const EffectTrial& t : selection.effects) last = std::max(last, t.round);
     for (int round = 1; round <= last; ++round) {
       std::vector<const EffectTrial*> trials;
-      for (const EffectTrial& t : loop.effects)
+      for (const EffectTrial& t : selection.effects)
         if (t.round == round) trials.push_back(&t);
       if (trials.empty()) continue;
       std::ranges::stable_sort(trials, std::greater{},
                                [](const EffectTrial* t) { return t->score; });
       rounds +=
           html(R"(<li class="round"><h3>Round {}</h3>{}{}</li>)", round,
-               table({"Effect", "#score", "Decision", "Why", "#error not fitted", "#p of chance"},
+               table({"Effect", "#score", "Decision", "Reason", "#validation error", "#p-value"},
                      each(trials, [&](const EffectTrial* t) { return trial(*t); })),
                after_round(trials));
     }
-    Html all = paragraph_of(loop.verdict);
-    if (loop.held_out_blocks)
+    Html all = paragraph_of(selection.verdict);
+    if (selection.held_out_blocks)
       all += paragraph_of(
           "No recording has the role validate: every second tenth of each recording was held out "
-          "to judge the effects by.");
+          "to validate the effects.");
     return all + html(R"(<ol class="rounds">{}</ol>)", rounds);
   }
 
@@ -379,7 +382,7 @@ class Page {
 
   /// What became of the error when the round's effect was added.
   Html after_round(const std::vector<const EffectTrial*>& trials) const {
-    const auto& models = outcome_.loop->models;
+    const auto& models = run_result_.selection->models;
     for (std::size_t i = 1; i < models.size(); ++i)
       for (const EffectTrial* t : trials)
         if (t->candidate.name == models[i].added)
@@ -391,27 +394,27 @@ class Page {
 
   Html convergence() {
     Html all = figures(charts_.convergence());
-    const std::vector<Minimum> minima = distinct_minima(outcome_.first.starts);
-    if (outcome_.first.starts.size() < 2 || minima.empty()) return all;
+    const std::vector<Minimum> minima = distinct_minima(run_result_.first.starts);
+    if (run_result_.first.starts.size() < 2 || minima.empty()) return all;
     std::vector<std::string> columns{"#reduced cost", "#starts"};
     for (std::size_t i = 0; i < minima.front().values.size(); ++i)
-      columns.push_back("#" + outcome_.first.parameters[i].name);
+      columns.push_back("#" + run_result_.first.parameters[i].name);
     const Html rows = each(minima, [](const Minimum& m) {
       return row(number_cell(number(m.reduced_cost)) + number_cell(fmt::format("{}", m.starts)) +
                  each(m.values, [](double v) { return number_cell(number(v)); }));
     });
-    return all + html("<h3>Minima that {} starts reached</h3>{}", outcome_.first.starts.size(),
+    return all + html("<h3>Minima reached by {} starts</h3>{}", run_result_.first.starts.size(),
                       table(columns, rows));
   }
 
   Html repeat() const {
-    const FitOptions& options = outcome_.baseline.options;
+    const FitOptions& options = run_result_.baseline.options;
     const Html facts =
         fact("Command", html("<code>{}</code>", run_.command)) +
         fact("Job", html("{}", run_.job_file)) + fact("Axis", html("{}", run_.axis_file)) +
         fact("Seed", html("{}", options.seed)) +
         fact("Starts", html("{}", std::max(1, options.starts))) +
-        fact("Time taken", html("{} s", number(outcome_.wall_time))) +
+        fact("Time taken", html("{} s", number(run_result_.wall_time))) +
         fact("axisfit", html("{}", version())) +
         fact("Built with",
              html("Ceres {}, Eigen {}.{}.{}, GCC {}", CERES_VERSION_STRING, EIGEN_WORLD_VERSION,
@@ -424,8 +427,8 @@ class Page {
            source(run_.axis_file, run_.axis_text);
   }
 
-  const Outcome& outcome_;
-  RunRecord run_;
+  const RunResult& run_result_;
+  Provenance run_;
   const Job& job_;
   const FitResult& fit_;
   ReportCharts charts_;
@@ -433,8 +436,8 @@ class Page {
 
 }  // namespace
 
-std::string report_page(const Outcome& outcome, const RunRecord& run) {
-  return Page(outcome, run).text();
+std::string report_page(const RunResult& run_result, const Provenance& run) {
+  return Page(run_result, run).text();
 }
 
 }  // namespace axisfit

@@ -8,7 +8,7 @@
 namespace axisfit {
 
 /// What a reader needs to do it again.
-struct RunRecord {
+struct Provenance {
   std::string command;             ///< as one would type it
   std::string job_file, job_text;  ///< name and contents
   std::string axis_file, axis_text;
@@ -16,6 +16,6 @@ struct RunRecord {
 
 /// The page: the verdict, the recordings, the parameters, the residual, the loop, how it converged,
 /// and how to repeat it. Charts are SVG, and live where the program was built with its script.
-std::string report_page(const Outcome& outcome, const RunRecord& run);
+std::string report_page(const RunResult& run_result, const Provenance& run);
 
 }  // namespace axisfit

@@ -14,23 +14,24 @@ namespace axisfit {
 namespace {
 
 /// What an accelerometer shows at rest, where it has nothing to show and is left out.
-std::string rest_text(const Recording& recording) {
+std::string excluded_text(const Recording& recording) {
   std::string text;
   for (const Measurement& m : recording.measurements) {
-    const auto rest = left_out(m);
-    if (!rest) continue;
+    const auto excluded = excluded_samples(m);
+    if (!excluded) continue;
     const std::string unit(info(m.signal).unit);
     text += paragraph(
-        fmt::format("{}: {} samples of the {} at rest are left out, {:.3g} {} on average{}.",
-                    recording.name, rest->samples, info(m.signal).name, rest->mean, unit,
-                    rest->is_noise ? "" : ": a bias or an artefact of the instrument"),
+        fmt::format(
+            "{}: {} samples of the {} at standstill are excluded, with a mean of {:.3g} {}{}.",
+            recording.name, excluded->samples, info(m.signal).name, excluded->mean, unit,
+            excluded->is_within_noise ? "" : ": a bias or an artefact of the instrument"),
         2);
   }
   return text;
 }
 
-std::string recordings_text(const Outcome& outcome) {
-  const Job& job = outcome.job();
+std::string recordings_text(const RunResult& run_result) {
+  const Job& job = run_result.job();
   std::vector<std::vector<std::string>> rows;
   for (const Recording& r : job.recordings) {
     std::string signals;
@@ -41,12 +42,13 @@ std::string recordings_text(const Outcome& outcome) {
                     fmt::format("{:.4g} s to {:.4g} s", r.times.front(), r.times.back()), signals});
   }
   std::string text =
-      "Recordings\n" + aligned(rows, {Set::left, Set::left, Set::right, Set::left, Set::wrapped});
+      "Recordings\n" + format_table(rows, {Alignment::left, Alignment::left, Alignment::right,
+                                           Alignment::left, Alignment::wrapped});
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
-    text += rest_text(job.recordings[r]);
-    for (const std::string& concern :
-         concerns_of(outcome.baseline, job.recordings[r], outcome.checks[r]))
-      text += paragraph(fmt::format("! {}: {}", job.recordings[r].name, concern), 2);
+    text += excluded_text(job.recordings[r]);
+    for (const std::string& warning :
+         warnings_for(run_result.baseline, job.recordings[r], run_result.checks[r]))
+      text += paragraph(fmt::format("! {}: {}", job.recordings[r].name, warning), 2);
   }
   return text;
 }
@@ -59,31 +61,33 @@ std::string legend_text(const Job& job, const FitResult& result) {
 }
 
 /// With a closed loop, the declared model's estimates stand where the initial values would.
-std::string parameters_text(const Outcome& outcome) {
-  const Job& job = outcome.job();
-  const FitResult& result = outcome.fit();
-  std::vector<std::vector<std::string>> rows{
-      {"", "value", "std. error", "95 % interval", outcome.loop ? "declared" : "initial", "unit"}};
+std::string parameters_text(const RunResult& run_result) {
+  const Job& job = run_result.job();
+  const FitResult& result = run_result.fit();
+  std::vector<std::vector<std::string>> rows{{"", "value", "std. error", "95 % interval",
+                                              run_result.selection ? "baseline" : "initial",
+                                              "unit"}};
   for (std::size_t i = 0; i < job.free.size(); ++i) {
     const ParameterResult& p = result.parameters[i];
     const ParameterUncertainty& u = p.uncertainty;
     const Quantity& quantity = quantity_list()[job.free[i].quantity].quantity;
     const double error = u.determined ? u.standard_error : 0.0;
-    const bool open = !u.determined && !u.at_bound;
+    const bool undetermined = !u.determined && !u.at_bound;
     std::string other = fmt::format("{:.4g}", job.free[i].initial);
-    if (outcome.loop) {
-      const auto& declared = outcome.loop->models.front().fit.parameters;
+    if (run_result.selection) {
+      const auto& declared = run_result.selection->models.front().fit.parameters;
       other = i < declared.size() ? fmt::format("{:.4g}", declared[i].value) : "-";
     }
-    rows.push_back({p.name, open ? fmt::format("~{:.1g}", p.value) : with_digits_of(p.value, error),
+    rows.push_back({p.name,
+                    undetermined ? fmt::format("~{:.1g}", p.value) : with_digits_of(p.value, error),
                     u.determined ? fmt::format("{:.2g}", error) : "-",
                     u.has_interval() ? fmt::format("{} .. {}", with_digits_of(u.lower, error),
                                                    with_digits_of(u.upper, error))
                                      : "-",
                     other, std::string(quantity.unit)});
   }
-  return "Parameters\n" +
-         aligned(rows, {Set::left, Set::right, Set::right, Set::right, Set::right, Set::left});
+  return "Parameters\n" + format_table(rows, {Alignment::left, Alignment::right, Alignment::right,
+                                              Alignment::right, Alignment::right, Alignment::left});
 }
 
 /// How many of several starts ended in the same place, and where the others did.
@@ -94,13 +98,13 @@ std::string starts_text(const FitResult& first) {
   if (minima.empty()) return "";
   std::string text = fmt::format("{} of {} starts reach this minimum", minima[0].starts, starts);
   constexpr std::size_t kNamed = 4;
-  std::size_t told = static_cast<std::size_t>(minima[0].starts);
+  std::size_t counted = static_cast<std::size_t>(minima[0].starts);
   for (std::size_t i = 1; i < std::min(minima.size(), kNamed); ++i) {
-    text += fmt::format(", {} one of reduced chi-square {:.4g}", minima[i].starts,
+    text += fmt::format(", {} one with reduced chi-square {:.4g}", minima[i].starts,
                         minima[i].reduced_cost);
-    told += static_cast<std::size_t>(minima[i].starts);
+    counted += static_cast<std::size_t>(minima[i].starts);
   }
-  if (told < starts) text += fmt::format(", {} end elsewhere or fail", starts - told);
+  if (counted < starts) text += fmt::format(", {} end elsewhere or fail", starts - counted);
   return paragraph(text + ".", 2);
 }
 
@@ -112,21 +116,21 @@ const char* mark_of(NoiseSource noise) {
       return "*";
     case NoiseSource::fit:
       return "**";
-    case NoiseSource::rest:
+    case NoiseSource::standstill:
       return "***";
   }
   return "";
 }
 
 std::string errors_text(const Job& job, const FitResult& result) {
-  const bool prediction = job.options.coupling == CouplingMode::fixed;
+  const bool prediction = job.options.observer == ObserverMode::fixed;
   std::vector<std::vector<std::string>> rows{
       {"", "rmse", "of range", "noise", "red. chi2", "unit", ""}};
-  if (prediction) rows.front().back() = "predicted rmse";
+  if (prediction) rows.front().back() = "prediction rmse";
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     const Recording& recording = job.recordings[r];
     for (const SignalError& e : result.recordings[r].signals) {
-      const bool finished = result.recordings[r].prediction.finished;
+      const bool finished = result.recordings[r].free_running.finished;
       rows.push_back({series_name(recording, role_name(recording, e), e.signal),
                       finished ? fmt::format("{:.4g}", e.rmse) : "-",
                       finished ? fmt::format("{:.3g} %", e.nrmse_percent) : "-",
@@ -136,15 +140,18 @@ std::string errors_text(const Job& job, const FitResult& result) {
                       e.prediction_rmse ? fmt::format("{:.4g}", *e.prediction_rmse) : ""});
     }
   }
-  std::string text = "Errors of the free-running simulation\n" +
-                     aligned(rows, {Set::left, Set::right, Set::right, Set::right, Set::right,
-                                    Set::left, Set::right});
+  std::string text =
+      "Errors of the free-running simulation\n" +
+      format_table(rows, {Alignment::left, Alignment::right, Alignment::right, Alignment::right,
+                          Alignment::right, Alignment::left, Alignment::right});
   if (has_noise_from(job, NoiseSource::differences))
     text += "  * estimated from differences of the samples\n";
-  if (has_noise_from(job, NoiseSource::rest)) text += "  *** what the instrument shows at rest\n";
+  if (has_noise_from(job, NoiseSource::standstill))
+    text += "  *** estimated from the scatter at standstill\n";
   if (has_noise_from(job, NoiseSource::fit))
     text += paragraph(
-        "** estimated together with the parameters: the reduced chi-square judges nothing", 2);
+        "** estimated jointly with the parameters: the reduced chi-square is one by construction",
+        2);
   return text;
 }
 
@@ -154,38 +161,39 @@ std::string series_name(const Recording& recording, const char* role, Signal sig
   return fmt::format("{}, {}: {}", recording.name, role, info(signal).name);
 }
 
-std::string report_text(const Outcome& outcome) {
-  const Job& job = outcome.job();
-  const FitResult& result = outcome.fit();
-  std::string text =
-      fmt::format("{}\n{}{}\n{}\n{}\n", recordings_text(outcome), parameters_text(outcome),
-                  knowledge_text(result) + starts_text(outcome.first), legend_text(job, result),
-                  outcome.loop ? loop_text(outcome) : errors_text(job, result));
-  if (const std::string profiles = profiles_text(outcome); !profiles.empty())
+std::string report_text(const RunResult& run_result) {
+  const Job& job = run_result.job();
+  const FitResult& result = run_result.fit();
+  std::string text = fmt::format(
+      "{}\n{}{}\n{}\n{}\n", recordings_text(run_result), parameters_text(run_result),
+      uncertainty_text(result) + starts_text(run_result.first), legend_text(job, result),
+      run_result.selection ? selection_text(run_result) : errors_text(job, result));
+  if (const std::string profiles = profiles_text(run_result); !profiles.empty())
     text += profiles + "\n";
-  if (outcome.diagnosis && !outcome.diagnosis->explained) {
-    text += residual_text(job, *outcome.diagnosis) + "\n";
+  if (run_result.diagnosis && !run_result.diagnosis->explained) {
+    text += residual_text(job, *run_result.diagnosis) + "\n";
     // A loop has told of the force, and has put the suspects to the test.
-    const std::string suspects = outcome.loop ? "" : suspects_text(job, *outcome.diagnosis);
-    if (!suspects.empty()) text += suspects + "\n";
+    const std::string suspected_effects =
+        run_result.selection ? "" : suspected_effects_text(job, *run_result.diagnosis);
+    if (!suspected_effects.empty()) text += suspected_effects + "\n";
   }
-  if (outcome.diagnosis)
-    if (const std::string faults = instruments_text(job, *outcome.diagnosis); !faults.empty())
+  if (run_result.diagnosis)
+    if (const std::string faults = instruments_text(job, *run_result.diagnosis); !faults.empty())
       text += "Instruments\n" + faults + "\n";
-  text += paragraph(verdict_of(outcome));
-  for (const Separation& s : outcome.separations) text += paragraph(s.words);
-  if (!outcome.loop && outcome.diagnosis) text += residual_verdict(job, *outcome.diagnosis);
-  if (outcome.interrupted) {
+  text += paragraph(overall_verdict(run_result));
+  for (const Discrimination& s : run_result.discriminations) text += paragraph(s.description);
+  if (!run_result.selection && run_result.diagnosis)
+    text += residual_verdict(job, *run_result.diagnosis);
+  if (run_result.interrupted) {
     const int starts = std::max(1, job.options.starts);
     return text + "\n" +
            paragraph(fmt::format(
-               "Stopped{} before all was finished: this is the result of {}{}.",
-               stop_reason(outcome),
-               starts > 1 ? fmt::format("{} of {} starts", outcome.first.starts.size(), starts)
+               "Stopped early{}: this is the result of {}{}.", stop_reason(run_result),
+               starts > 1 ? fmt::format("{} of {} starts", run_result.first.starts.size(), starts)
                           : "the fit",
-               outcome.loop ? ", and of the effects accepted so far" : ""));
+               run_result.selection ? ", with the effects accepted so far" : ""));
   }
-  if (outcome.wishes.experiment) text += "\n" + suggestion_text(outcome);
+  if (run_result.run_options.experiment) text += "\n" + suggestion_text(run_result);
   return text;
 }
 
@@ -237,8 +245,9 @@ std::string residuals_csv(const Job& job, const FitResult& result,
       const auto index = static_cast<std::size_t>(m - recording.measurements.begin());
       for (std::size_t i = 0; i < recording.times.size(); ++i) {
         const double y = present ? m->values[i] : kNone;
-        const bool reached = present && i < result.recordings[r].prediction.simulated[index].size();
-        const double s = reached ? result.recordings[r].prediction.simulated[index][i] : kNone;
+        const bool reached =
+            present && i < result.recordings[r].free_running.simulated[index].size();
+        const double s = reached ? result.recordings[r].free_running.simulated[index][i] : kNone;
         measured.values.push_back(y);
         simulated.values.push_back(s);
         residual.values.push_back(y - s);

@@ -12,7 +12,7 @@
 namespace axisfit {
 
 /// Recordings, table of parameters, errors per signal or the models of the loop, and the verdicts.
-std::string report_text(const Outcome& outcome);
+std::string report_text(const RunResult& run_result);
 
 /// Its part on a residual that is not explained: how much that is, and what it depends on.
 std::string residual_text(const Job& job, const Diagnosis& diagnosis);
@@ -21,13 +21,13 @@ std::string residual_text(const Job& job, const Diagnosis& diagnosis);
 std::string instruments_text(const Job& job, const Diagnosis& diagnosis);
 
 /// What the residual may come from: the missing force and the suspects.
-std::string suspects_text(const Job& job, const Diagnosis& diagnosis);
+std::string suspected_effects_text(const Job& job, const Diagnosis& diagnosis);
 
 /// The verdict on the residual, one paragraph.
 std::string residual_verdict(const Job& job, const Diagnosis& diagnosis);
 
 /// Its part on the closed loop: effects that were tried, and the errors before and after.
-std::string loop_text(const Outcome& outcome);
+std::string selection_text(const RunResult& run_result);
 
 /// "step, fit: velocity"
 std::string series_name(const Recording& recording, const char* role, Signal signal);
@@ -36,17 +36,17 @@ std::string series_name(const Recording& recording, const char* role, Signal sig
 std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty>& known);
 
 /// What the intervals rest on, and what is known instead of parameters that are not determined.
-std::string knowledge_text(const FitResult& result);
+std::string uncertainty_text(const FitResult& result);
 
 /// What is known of the parameters together: weak directions, and the combinations that are
 /// determined.
-std::string together_text(const Identifiability& known);
+std::string identifiability_text(const Identifiability& known);
 
 /// Intervals by profile beside those by standard error; empty where there are no profiles.
-std::string profiles_text(const Outcome& outcome);
+std::string profiles_text(const RunResult& run_result);
 
 /// The next experiment, and what it is expected to bring.
-std::string suggestion_text(const Outcome& outcome);
+std::string suggestion_text(const RunResult& run_result);
 
 /// What the recordings of a job can tell of its parameters, before the fit.
 std::string forecast_text(const Job& job, const Forecast& forecast);
@@ -55,11 +55,11 @@ std::string forecast_text(const Job& job, const Forecast& forecast);
 std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& checks);
 
 /// What looks wrong with a recording, and what to do about it: a sentence or two each.
-std::vector<std::string> concerns_of(const Job& job, const Recording& recording,
-                                     const RecordingCheck& check);
+std::vector<std::string> warnings_for(const Job& job, const Recording& recording,
+                                      const RecordingCheck& check);
 
 /// How long the fit will take.
-std::string effort_text(const Job& job, const Effort& effort);
+std::string run_time_text(const Job& job, const RunTimeEstimate& run_time);
 
 /// Cells of one row about a missing force: name, rms, noise, per cent of the drive force, cutoff.
 std::vector<std::string> force_cells(const std::string& name, const MissingForce& force);

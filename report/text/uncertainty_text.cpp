@@ -33,7 +33,7 @@ std::string correlation_text(const FitResult& result) {
       if (const double c = result.correlation(i, k); std::abs(c) > kStrong)
         pairs.emplace_back(
             std::abs(c),
-            fmt::format("{} and {} by {:.3g}", result.parameters[static_cast<std::size_t>(k)].name,
+            fmt::format("{} and {} ({:.3g})", result.parameters[static_cast<std::size_t>(k)].name,
                         result.parameters[static_cast<std::size_t>(i)].name, c));
   if (pairs.empty()) return "";
   std::ranges::stable_sort(pairs, std::greater{}, [](const auto& pair) { return pair.first; });
@@ -51,30 +51,31 @@ std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty
   const ParameterSpace space(job);
   std::vector<std::vector<std::string>> rows;
   for (std::size_t i = 0; i < space.size(); ++i) {
-    std::string words(quantity_list()[space[i].quantity].quantity.meaning);
+    std::string description(quantity_list()[space[i].quantity].quantity.meaning);
     if (const std::string_view verdict = verdict_name(known[i]); verdict != "determined")
-      words += fmt::format(": {}", verdict);
-    rows.push_back({space.name(i), words});
+      description += fmt::format(": {}", verdict);
+    rows.push_back({space.name(i), description});
   }
-  return aligned(rows, {Set::left, Set::wrapped});
+  return format_table(rows, {Alignment::left, Alignment::wrapped});
 }
 
-std::string knowledge_text(const FitResult& result) {
+std::string uncertainty_text(const FitResult& result) {
   const double excess = std::sqrt(result.reduced_chi_square);
   std::string noise = excess > 1.0
-                          ? fmt::format("residuals as found, {:.3g} times the noise", excess)
-                          : "noise of the size stated below";
+                          ? fmt::format("residuals as observed, {:.3g} times the noise", excess)
+                          : "noise as stated below";
   constexpr double kWhite = 1.2;
-  noise += result.colour > kWhite
-               ? fmt::format(", in which up to {:.3g} samples tell no more than one", result.colour)
-               : ", white";
-  return paragraph("Standard errors and intervals: for " + noise + ".", 2) +
-         correlation_text(result) + together_text(result.identifiability);
+  noise += result.autocorrelation_time > kWhite
+               ? fmt::format(", with an autocorrelation time of up to {:.3g} samples",
+                             result.autocorrelation_time)
+               : ", uncorrelated in time";
+  return paragraph("Standard errors and intervals assume " + noise + ".", 2) +
+         correlation_text(result) + identifiability_text(result.identifiability);
 }
 
-std::string together_text(const Identifiability& known) {
+std::string identifiability_text(const Identifiability& known) {
   std::string text;
-  for (const WeakDirection& weak : known.weak) text += paragraph(weak.words, 2);
+  for (const WeakDirection& weak : known.weak) text += paragraph(weak.description, 2);
   for (const Combination& c : known.combinations)
     text += paragraph(fmt::format("{} = {} +- {:.2g}", c.name,
                                   with_digits_of(c.value, c.standard_error), c.standard_error),
@@ -82,13 +83,13 @@ std::string together_text(const Identifiability& known) {
   return text;
 }
 
-std::string profiles_text(const Outcome& outcome) {
-  if (outcome.profiles.empty()) return "";
-  const FitResult& fit = outcome.fit();
+std::string profiles_text(const RunResult& run_result) {
+  if (run_result.profiles.empty()) return "";
+  const FitResult& fit = run_result.fit();
   std::vector<std::vector<std::string>> rows{
-      {"", "value", "by profile", "by standard error", "unit"}};
+      {"", "value", "from profile", "from standard error", "unit"}};
   std::string better;
-  for (const Profile& profile : outcome.profiles) {
+  for (const Profile& profile : run_result.profiles) {
     const ParameterResult& p = fit.parameters[profile.parameter];
     const ParameterUncertainty& u = p.uncertainty;
     const double digits = u.determined ? u.standard_error : 0.0;
@@ -97,69 +98,72 @@ std::string profiles_text(const Outcome& outcome) {
     };
     rows.push_back({p.name, with_digits_of(p.value, digits),
                     end(profile.lower) + " .. " + end(profile.upper), interval_text(u),
-                    std::string(unit_of(outcome.job(), profile.parameter))});
+                    std::string(unit_of(run_result.job(), profile.parameter))});
     if (profile.better)
-      better += paragraph(
-          fmt::format(
-              "The profile of {} met a better fit, of reduced chi-square {:.4g}: the result "
-              "is not the best minimum. Try --starts 20.",
-              p.name, profile.better->reduced_cost),
-          2);
+      better +=
+          paragraph(fmt::format("The profile of {} found a better fit, with reduced chi-square "
+                                "{:.4g}: the result is not the best minimum. Try --starts 20.",
+                                p.name, profile.better->reduced_cost),
+                    2);
   }
   return "95 % intervals\n" +
-         aligned(rows, {Set::left, Set::right, Set::right, Set::right, Set::left}) + better;
+         format_table(rows, {Alignment::left, Alignment::right, Alignment::right, Alignment::right,
+                             Alignment::left}) +
+         better;
 }
 
-std::string suggestion_text(const Outcome& outcome) {
-  for (const Separation& separation : outcome.separations)
-    if (separation.experiment)
+std::string suggestion_text(const RunResult& run_result) {
+  for (const Discrimination& discrimination : run_result.discriminations)
+    if (discrimination.experiment)
       return "Next experiment\n" +
-             paragraph(fmt::format("Record {}, for {:.3g} s, with the {}: it tells the undecided "
-                                   "effects apart.",
-                                   separation.experiment->words, separation.experiment->duration,
-                                   info(*separation.signal).name),
+             paragraph(fmt::format("Record {}, for {:.3g} s, with the {}: it discriminates between "
+                                   "the undecided effects.",
+                                   discrimination.experiment->description,
+                                   discrimination.experiment->duration,
+                                   info(*discrimination.signal).name),
                        2);
-  if (!outcome.suggestion)
-    return paragraph("Next experiment: none of the motions that were tried keeps to the limits.");
-  const Suggestion& s = *outcome.suggestion;
-  const FitResult& fit = outcome.fit();
+  if (!run_result.suggestion)
+    return paragraph("Next experiment: none of the motions tried stays within the limits.");
+  const Suggestion& s = *run_result.suggestion;
+  const FitResult& fit = run_result.fit();
   const std::string& name = fit.parameters[s.parameter].name;
   std::string text = fmt::format(
-      "Record {}, for {:.3g} s: it does most for {}, which is known least. Of {} "
-      "motions, {} stay within {:.4g} .. {:.4g} m, {:.3g} m/s and {:.3g} V.",
-      s.experiment.words, s.experiment.duration, name, s.tried, s.allowed, *s.limits.lowest,
+      "Record {}, for {:.3g} s: it does most for {}, the least determined parameter. Of {} motions "
+      "tried, {} stay within {:.4g} .. {:.4g} m, {:.3g} m/s and {:.3g} V.",
+      s.experiment.description, s.experiment.duration, name, s.tried, s.feasible, *s.limits.lowest,
       *s.limits.highest, *s.limits.speed, *s.limits.voltage);
-  const MachineLimits& given = outcome.baseline.limits;
+  const MachineLimits& given = run_result.baseline.limits;
   if (!given.lowest || !given.speed)
-    text += " So far the recordings went; 'limits' in the job says how far the machine may go.";
+    text += " These limits are what the recordings covered; set 'limits' in the job to allow more.";
   if (!s.predicted.parameters[s.parameter].determined) {
-    const std::size_t quantity = outcome.job().free[s.parameter].quantity;
+    const std::size_t quantity = run_result.job().free[s.parameter].quantity;
     const std::string_view need = excitation_needed(quantity_list()[quantity].name);
-    text +=
-        fmt::format(" Even then {} stays open{}{}.", name, need.empty() ? "" : ": it needs ", need);
+    text += fmt::format(" Even then {} remains undetermined{}{}.", name,
+                        need.empty() ? "" : ": it needs ", need);
   }
   text = "Next experiment\n" + paragraph(text, 2);
   std::vector<std::vector<std::string>> rows{{"", "95 % interval now", "predicted", "unit"}};
   for (std::size_t i = 0; i < fit.parameters.size(); ++i)
     rows.push_back({fit.parameters[i].name, interval_text(s.now.parameters[i]),
                     interval_text(s.predicted.parameters[i]),
-                    std::string(unit_of(outcome.job(), i))});
-  return text + aligned(rows, {Set::left, Set::right, Set::right, Set::left});
+                    std::string(unit_of(run_result.job(), i))});
+  return text +
+         format_table(rows, {Alignment::left, Alignment::right, Alignment::right, Alignment::left});
 }
 
 std::string forecast_text(const Job& job, const Forecast& forecast) {
   if (!forecast.finite)
     return paragraph(
-        "What can be determined is not known: with the initial values the simulation does not get "
-        "through the recordings.");
-  std::vector<std::vector<std::string>> rows{{"", "expected error", "seen best in"}};
+        "Identifiability could not be checked: with the initial values the simulation does not "
+        "finish.");
+  std::vector<std::vector<std::string>> rows{{"", "expected std. error", "best seen in"}};
   const ParameterSpace space(job);
   std::string needs;
   for (std::size_t i = 0; i < space.size(); ++i) {
     const ParameterUncertainty& u = forecast.uncertainty.parameters[i];
     const std::string_view unit = unit_of(job, i);
     Eigen::Index best = 0;
-    const double most = forecast.shown.row(static_cast<Eigen::Index>(i)).maxCoeff(&best);
+    const double most = forecast.sensitivity.row(static_cast<Eigen::Index>(i)).maxCoeff(&best);
     const SeriesRows& series = forecast.series[static_cast<std::size_t>(best)];
     const Recording& recording = job.recordings[series.recording];
     rows.push_back(
@@ -173,9 +177,10 @@ std::string forecast_text(const Job& job, const Forecast& forecast) {
     if ((!u.determined || u.weak) && !u.at_bound && !need.empty())
       needs += paragraph(fmt::format("{} needs {}.", space.name(i), need), 2);
   }
-  return "What these recordings can tell, if the initial values are about right\n" +
-         aligned(rows, {Set::left, Set::right, Set::wrapped}) + together_text(forecast.together) +
-         needs + "\n" + meanings_text(job, forecast.uncertainty.parameters);
+  return "What these recordings determine, if the initial values are about right\n" +
+         format_table(rows, {Alignment::left, Alignment::right, Alignment::wrapped}) +
+         identifiability_text(forecast.identifiability) + needs + "\n" +
+         meanings_text(job, forecast.uncertainty.parameters);
 }
 
 }  // namespace axisfit

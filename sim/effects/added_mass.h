@@ -8,13 +8,13 @@ namespace axisfit {
 template <class T>
 struct AddedMass {
   static constexpr std::string_view name = "added_mass";
-  static constexpr std::string_view meaning = "mass on the arm beyond M";
+  static constexpr std::string_view meaning = "mass on the arm in addition to M";
 
   T dM;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"dM", "kg", "mass on the arm beyond M", -1e5, 1e5}, self.dM);
+    visit(Quantity{"dM", "kg", "mass on the arm in addition to M", -1e5, 1e5}, self.dM);
   }
 
   void add_to(Slots<T>& slots) const { slots.added_mass += dM; }

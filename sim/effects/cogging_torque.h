@@ -13,18 +13,17 @@ namespace axisfit {
 template <class T>
 struct CoggingTorque {
   static constexpr std::string_view name = "cogging_torque";
-  static constexpr std::string_view meaning = "torque that repeats with the motor angle";
+  static constexpr std::string_view meaning = "torque that is periodic in the motor angle";
 
   T T_s, T_c, order;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
     using enum UsedBy;
-    visit(Quantity{"T_s", "N m", "sine part", -1e3, 1e3, kRequired, motor}, self.T_s);
-    visit(Quantity{"T_c", "N m", "cosine part", -1e3, 1e3, kRequired, motor}, self.T_c);
-    visit(
-        Quantity{"order", "1", "periods per turn of the motor", 0.01, 1e3, kRequired, motor, true},
-        self.order);
+    visit(Quantity{"T_s", "N m", "sine coefficient", -1e3, 1e3, kRequired, motor}, self.T_s);
+    visit(Quantity{"T_c", "N m", "cosine coefficient", -1e3, 1e3, kRequired, motor}, self.T_c);
+    visit(Quantity{"order", "1", "periods per motor revolution", 0.01, 1e3, kRequired, motor, true},
+          self.order);
   }
 
   T motor_torque(const Instant<T>& at) const {

@@ -41,13 +41,13 @@ struct CurveForce {
   static constexpr std::string_view meaning = [] {
     switch (kVariable) {
       case CurveOver::velocity:
-        return "unnamed force, a curve over the velocity";
+        return "force as a curve over velocity";
       case CurveOver::position:
-        return "unnamed force, a curve over the position";
+        return "force as a curve over position";
       case CurveOver::motor_angle:
-        return "unnamed force, a curve over one turn of the motor";
+        return "force as a curve over the motor angle";
       case CurveOver::time:
-        return "unnamed force, a curve over the time";
+        return "force as a curve over time";
     }
   }();
   static constexpr std::string_view unit = [] {

@@ -25,7 +25,7 @@ struct DahlFriction {
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"F_d", "N", "friction after a long travel", 0, 1e5}, self.F_d);
+    visit(Quantity{"F_d", "N", "steady friction after a long travel", 0, 1e5}, self.F_d);
     visit(Quantity{"l_d", "m", "travel over which it builds up", 1e-7, 1, kRequired,
                    UsedBy::every_axis, true},
           self.l_d);

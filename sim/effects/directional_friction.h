@@ -21,9 +21,12 @@ struct DirectionalFriction {
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"dB_a", "N s/m", "viscous friction, positive less mean", -1e6, 1e6, 0.0},
+    visit(Quantity{"dB_a", "N s/m", "viscous friction in the positive direction minus the mean",
+                   -1e6, 1e6, 0.0},
           self.dB_a);
-    visit(Quantity{"dF_c", "N", "dry friction, positive less mean", -1e5, 1e5, 0.0}, self.dF_c);
+    visit(Quantity{"dF_c", "N", "dry friction in the positive direction minus the mean", -1e5, 1e5,
+                   0.0},
+          self.dF_c);
   }
 
   void add_to(Slots<T>& slots) const {

@@ -74,12 +74,12 @@ namespace slots {
 /// The present effects that have any strength, or are being differentiated by it. Leaving the
 /// others out makes an axis with an effect of strength zero the axis without it, bit for bit.
 template <class T>
-EffectSet in_play(const Effects<T>& effects, const EffectSet& present) {
+EffectSet active_effects(const Effects<T>& effects, const EffectSet& present) {
   EffectSet active;
   visit_effects(effects, [&](std::size_t index, const auto& effect) {
     if (!present[index]) return;
     effect.visit(effect, [&](const Quantity& quantity, const T& member) {
-      if (!quantity.shape && is_in_play(member)) active.set(index);
+      if (!quantity.shape && is_active(member)) active.set(index);
     });
   });
   return active;

@@ -21,8 +21,8 @@ struct ElasticMode {
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"m_e", "kg", "mass that vibrates", 0, 1e5}, self.m_e);
-    visit(Quantity{"f_e", "Hz", "frequency with the arm held", 0.1, 1e4, kRequired,
+    visit(Quantity{"m_e", "kg", "vibrating mass", 0, 1e5}, self.m_e);
+    visit(Quantity{"f_e", "Hz", "frequency with the arm fixed", 0.1, 1e4, kRequired,
                    UsedBy::every_axis, true},
           self.f_e);
     visit(Quantity{"zeta_e", "1", "damping ratio", 1e-4, 10, 0.02, UsedBy::every_axis, true},

@@ -12,7 +12,7 @@ namespace axisfit {
 template <class T>
 struct LoadFriction {
   static constexpr std::string_view name = "load_friction";
-  static constexpr std::string_view meaning = "friction in proportion to the transmitted force";
+  static constexpr std::string_view meaning = "friction proportional to the transmitted force";
 
   T mu;
 

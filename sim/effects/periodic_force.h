@@ -14,18 +14,17 @@ namespace axisfit {
 template <class T>
 struct PeriodicForce {
   static constexpr std::string_view name = "periodic_force";
-  static constexpr std::string_view meaning = "force that repeats along the stroke";
+  static constexpr std::string_view meaning = "force that is periodic along the stroke";
 
   T F_s1, F_c1, F_s2, F_c2, period;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"F_s1", "N", "sine part, first harmonic", -1e5, 1e5}, self.F_s1);
-    visit(Quantity{"F_c1", "N", "cosine part, first harmonic", -1e5, 1e5}, self.F_c1);
-    visit(Quantity{"F_s2", "N", "sine part, second harmonic", -1e5, 1e5, 0.0}, self.F_s2);
-    visit(Quantity{"F_c2", "N", "cosine part, second harmonic", -1e5, 1e5, 0.0}, self.F_c2);
-    visit(Quantity{"period", "m", "length after which it repeats", 1e-5, 1e3, kRequired,
-                   UsedBy::every_axis, true},
+    visit(Quantity{"F_s1", "N", "sine coefficient, first harmonic", -1e5, 1e5}, self.F_s1);
+    visit(Quantity{"F_c1", "N", "cosine coefficient, first harmonic", -1e5, 1e5}, self.F_c1);
+    visit(Quantity{"F_s2", "N", "sine coefficient, second harmonic", -1e5, 1e5, 0.0}, self.F_s2);
+    visit(Quantity{"F_c2", "N", "cosine coefficient, second harmonic", -1e5, 1e5, 0.0}, self.F_c2);
+    visit(Quantity{"period", "m", "spatial period", 1e-5, 1e3, kRequired, UsedBy::every_axis, true},
           self.period);
   }
 

@@ -15,11 +15,12 @@ struct PositionFriction {
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"G_c", "N/m", "growth of dry friction along the stroke", -1e6, 1e6, 0.0},
+    visit(Quantity{"G_c", "N/m", "slope of dry friction along the stroke", -1e6, 1e6, 0.0},
           self.G_c);
-    visit(Quantity{"G_q", "N/m^2", "the same with the square of the position", -1e6, 1e6, 0.0},
+    visit(Quantity{"G_q", "N/m^2", "quadratic coefficient of dry friction along the stroke", -1e6,
+                   1e6, 0.0},
           self.G_q);
-    visit(Quantity{"G_b", "N s/m^2", "growth of viscous friction along the stroke", -1e6, 1e6, 0.0},
+    visit(Quantity{"G_b", "N s/m^2", "slope of viscous friction along the stroke", -1e6, 1e6, 0.0},
           self.G_b);
   }
 

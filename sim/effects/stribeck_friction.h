@@ -21,9 +21,9 @@ struct StribeckFriction {
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"F_st", "N", "dry friction at low speed less that at speed", -1e5, 1e5},
+    visit(Quantity{"F_st", "N", "dry friction at low speed minus that at high speed", -1e5, 1e5},
           self.F_st);
-    visit(Quantity{"v_st", "m/s", "speed at which a 1/e of it is left", 1e-4, 10, kRequired,
+    visit(Quantity{"v_st", "m/s", "speed at which it has fallen to 1/e", 1e-4, 10, kRequired,
                    UsedBy::every_axis, true},
           self.v_st);
   }

@@ -15,9 +15,9 @@ struct TorqueDroop {
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(
-        Quantity{"c_i", "1/A", "loss of K_m per ampere", -1, 1, kRequired, UsedBy::electric_drive},
-        self.c_i);
+    visit(Quantity{"c_i", "1/A", "relative loss of K_m per ampere", -1, 1, kRequired,
+                   UsedBy::electric_drive},
+          self.c_i);
   }
 
   T motor_torque(const Instant<T>& at) const {

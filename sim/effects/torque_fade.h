@@ -15,7 +15,7 @@ struct TorqueFade {
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"c_t", "1/s", "loss of K_m per second, at first", -0.1, 10}, self.c_t);
+    visit(Quantity{"c_t", "1/s", "initial relative loss of K_m per second", -0.1, 10}, self.c_t);
   }
 
   T motor_torque(const Instant<T>& at) const {

@@ -20,9 +20,13 @@ struct TorqueRipple {
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
     using enum UsedBy;
-    visit(Quantity{"r_s", "1", "sine part, of K_m", -1, 1, kRequired, electric_drive}, self.r_s);
-    visit(Quantity{"r_c", "1", "cosine part, of K_m", -1, 1, kRequired, electric_drive}, self.r_c);
-    visit(Quantity{"order", "1", "periods per turn of the motor", 0.01, 1e3, kRequired,
+    visit(
+        Quantity{"r_s", "1", "sine coefficient, relative to K_m", -1, 1, kRequired, electric_drive},
+        self.r_s);
+    visit(Quantity{"r_c", "1", "cosine coefficient, relative to K_m", -1, 1, kRequired,
+                   electric_drive},
+          self.r_c);
+    visit(Quantity{"order", "1", "periods per motor revolution", 0.01, 1e3, kRequired,
                    electric_drive, true},
           self.order);
   }

@@ -281,7 +281,7 @@ TEST_F(CommandLineTest, JsonIsOneDocumentAndNothingElse) {
 }
 
 TEST_F(CommandLineTest, NoUsableFitHasItsOwnExitCode) {
-  const std::string poor = job(fit_job("{max_iterations: 1, coupling: none}"));
+  const std::string poor = job(fit_job("{max_iterations: 1, observer: none}"));
   const Outcome outcome = fit({poor, "--output", folder_.path("results")});
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_NE(outcome.out.find("No usable fit"), std::string::npos);
@@ -296,8 +296,8 @@ TEST_F(CommandLineTest, ABadJobWritesNothing) {
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_EQ(outcome.out, "");
   EXPECT_EQ(folder_.without_path(outcome.err),
-            "job.yaml:8:54: 'kg' does not fit a quantity in 'A'; write for example 'A'\n"
-            "job.yaml:16:3: there is no quantity 'B_b'; did you mean 'B_m'?\n");
+            "job.yaml:8:54: 'kg' cannot be converted to 'A'; use for example 'A'\njob.yaml:16:3: "
+            "unknown quantity 'B_b'; did you mean 'B_m'?\n");
   EXPECT_EQ(folder_.names(), (Names{"job.yaml", "judge.csv", "short.csv"}));
 }
 
@@ -305,7 +305,7 @@ TEST_F(CommandLineTest, OutputThatCannotBeWrittenIsAnError) {
   const Outcome outcome = fit({job(), "--output", folder_.path("job.yaml/results")});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_EQ(folder_.without_path(outcome.err),
-            "results not written to job.yaml/results: Not a directory\n");
+            "results could not be written to job.yaml/results: Not a directory\n");
   EXPECT_EQ(folder_.names(), (Names{"job.yaml", "judge.csv", "short.csv"}));
 }
 
@@ -317,7 +317,8 @@ TEST_F(CommandLineTest, OutputThatCannotBeWrittenIsFoundBeforeTheFit) {
   const Outcome outcome = fit({slow, "--output", folder_.path("results")});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(folder_.without_path(outcome.err), "results not written to results: Is a directory\n");
+  EXPECT_EQ(folder_.without_path(outcome.err),
+            "results could not be written to results: Is a directory\n");
 }
 
 TEST_F(CommandLineTest, TheLoopIsClosedOnDemand) {
@@ -339,14 +340,14 @@ TEST_F(CommandLineTest, TheLoopIsClosedOnDemand) {
 TEST_F(CommandLineTest, CtrlCKeepsWhatIsFinished) {
   // Each start solves one problem; one thread starts them in turn.
   const std::string results = outputs_.path("results"), axis = results + "/fitted.yaml";
-  const std::string path = job(fit_job("{coupling: none}")), output = "--output=" + results;
+  const std::string path = job(fit_job("{observer: none}")), output = "--output=" + results;
   const std::vector<std::string> arguments{path, "--starts=100000", "--threads=1", output};
   const auto solutions = [&] { return solutions_in(results + "/unfinished.journal"); };
   interrupt_when_ = [&] { return solutions() >= 1; };
   const Outcome stopped = fit(arguments);
   EXPECT_LT(cpu_time_, 20.0 * kSlower);
   EXPECT_EQ(stopped.exit_code, 130);
-  EXPECT_NE(stopped.out.find("Stopped before all was finished"), std::string::npos) << stopped.err;
+  EXPECT_NE(stopped.out.find("Stopped early"), std::string::npos) << stopped.err;
   const Json json = Json::parse(outputs_.read("results/result.json"));
   const std::size_t finished = json.at("starts").size();
   EXPECT_EQ(json.at("interrupted"), true);
@@ -358,10 +359,10 @@ TEST_F(CommandLineTest, CtrlCKeepsWhatIsFinished) {
   EXPECT_EQ(stopped.out.find("--resume"), std::string::npos);
   const std::string command = path + " --starts=100000 --threads=1 " + output + " --resume";
   EXPECT_EQ(stopped.err, "\nTo go on from here:\n  fit-params " + command + "\n");
-  std::vector<std::string> go_on = arguments;
-  go_on.emplace_back("--resume");
+  std::vector<std::string> resume = arguments;
+  resume.emplace_back("--resume");
   interrupt_when_ = [&] { return solutions() > finished; };
-  const Outcome on = fit(go_on);
+  const Outcome on = fit(resume);
   EXPECT_EQ(on.exit_code, 130);
   EXPECT_EQ(on.err.find("Going on with the run that ended in"), 0u) << on.err;
   EXPECT_TRUE(on.err.ends_with("\nTo go on from here:\n  fit-params " + command + "\n")) << on.err;
@@ -409,19 +410,19 @@ TEST_F(CommandLineTest, ATimeLimitKeepsWhatIsFinished) {
   EXPECT_NE(stopped.err.find("To go on from here:"), std::string::npos) << stopped.err;
   const Json json = Json::parse(outputs_.read("results/result.json"));
   EXPECT_EQ(json.at("interrupted"), true);
-  EXPECT_EQ(json.at("out_of_time"), true);
+  EXPECT_EQ(json.at("time_limit_reached"), true);
   EXPECT_GE(json.at("starts").size(), 1u);
   EXPECT_LT(json.at("starts").size(), 1000000u);
 
   // Where it is enough nothing is said of it; where it is far too short there is nothing to keep.
   const Json whole = Json::parse(fit({job(), "--time-limit=1000", "--threads=1", "--json"}).out);
   EXPECT_EQ(whole.at("interrupted"), false);
-  EXPECT_EQ(whole.at("out_of_time"), false);
+  EXPECT_EQ(whole.at("time_limit_reached"), false);
   const Outcome nothing = fit({job(), "--time-limit", "0.001"});
   EXPECT_EQ(nothing.exit_code, 124);
   EXPECT_EQ(nothing.out, "");
   EXPECT_TRUE(nothing.err.starts_with(
-      "Stopped by the time limit before a fit was finished: there is no result.\n"))
+      "Stopped by the time limit before any fit finished: there is no result.\n"))
       << nothing.err;
 }
 
@@ -498,12 +499,12 @@ TEST_F(CommandLineTest, AMisspeltColumnIsNamedWithTheColumnsThereAre) {
 }
 
 TEST_F(CommandLineTest, NoLoopIsClosedAroundAnUnusableFit) {
-  const std::string poor = job(fit_job("{max_iterations: 1, coupling: none}"));
+  const std::string poor = job(fit_job("{max_iterations: 1, observer: none}"));
   const Outcome outcome = fit({poor, "--close-loop", "--json"});
   EXPECT_EQ(outcome.exit_code, 3);
   const Json json = Json::parse(outcome.out);
   EXPECT_TRUE(json.at("residual").is_null());
-  EXPECT_FALSE(json.contains("closed_loop"));
+  EXPECT_FALSE(json.contains("selection"));
 }
 
 TEST_F(CommandLineTest, WhatCanBeDeterminedIsToldBeforeTheFit) {
@@ -524,7 +525,8 @@ TEST_F(CommandLineTest, WhatCanBeDeterminedIsToldBeforeTheFit) {
   for (const Json& parameter : json.at("parameters")) {
     EXPECT_EQ(parameter.at("verdict"), "determined");
     EXPECT_GT(parameter.at("standard_error"), 0.0);
-    for (const Json& shown : parameter.at("shown")) EXPECT_GT(shown.at("rms_over_noise"), 0.0);
+    for (const Json& shown : parameter.at("sensitivity"))
+      EXPECT_GT(shown.at("rms_over_noise"), 0.0);
   }
   const auto evaluations = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {job(), "--check", "--json", "--threads", "1"});
@@ -543,7 +545,7 @@ TEST_F(CommandLineTest, WhatLooksWrongInTheRecordingsIsToldBeforeTheFit) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     std::string all;
     const Json json = Json::parse(outcome.out);
-    for (const Json& concern : json.at("recordings")[0].at("concerns"))
+    for (const Json& concern : json.at("recordings")[0].at("warnings"))
       all += concern.get<std::string>() + "\n";
     return all;
   };
@@ -583,8 +585,8 @@ TEST_F(CommandLineTest, AJobIsMadeForRecordings) {
   const Outcome again = fit({"--init", folder_.path("judged.csv"), "--output", results});
   EXPECT_EQ(again.exit_code, 2);
   EXPECT_EQ(folder_.without_path(again.err),
-            "new/axis.yaml is there already and would be overwritten: move it away, or name "
-            "another folder with --output\n");
+            "new/axis.yaml already exists and would be overwritten: move it, or choose another "
+            "folder with --output\n");
   EXPECT_EQ(folder_.read("new/job.yaml"), before);
 
   // With an axis file there is none to write; and a recording is no job.
@@ -614,7 +616,8 @@ TEST_F(CommandLineTest, ProfilesAreOfParametersThatAreFitted) {
   const Outcome none = fit({job(), "--profile=nonsense", "--output", outputs_.path("results")});
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_EQ(none.out, "");
-  EXPECT_TRUE(none.err.starts_with("--profile: nonsense is not fitted; fitted are " + name));
+  EXPECT_TRUE(none.err.starts_with(
+      "--profile: nonsense is not a free parameter; free parameters are " + name));
   EXPECT_FALSE(std::filesystem::exists(outputs_.path("results")));
 }
 
@@ -624,7 +627,7 @@ TEST_F(CommandLineTest, TheNextExperimentCanBeRun) {
   EXPECT_EQ(suggested.exit_code, 0) << suggested.err;
   EXPECT_NE(suggested.out.find("\nNext experiment\n"), std::string::npos);
   const Json next = Json::parse(outputs_.read("results/result.json")).at("next_experiment");
-  EXPECT_GT(next.at("allowed"), 0);
+  EXPECT_GT(next.at("motions_feasible"), 0);
   const Outcome run = simulate({results + "/fitted.yaml", results + "/next-motion.yaml"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   const Table recording = recorded(run.out);
@@ -754,11 +757,11 @@ TEST_F(CommandLineTest, SetChangesQuantities) {
   for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
            {"M=161", "--set:1:4: M needs a unit, for example '161 kg'\n"},
            {"M=0 kg", "--set:1:4: M must lie between 0.001 kg and 1e+05 kg, not 0 kg\n"},
-           {"m=161 kg", "--set:1:1: there is no quantity 'm'; did you mean 'M'?\n"},
+           {"m=161 kg", "--set:1:1: unknown quantity 'm'; did you mean 'M'?\n"},
            {"M", "--set 'M': write NAME=VALUE, for example --set 'M=161 kg'\n"},
            {"J_m=0 kg m^2",
-            "J_m must be above zero where the gear has backlash: between the teeth nothing but J_m "
-            "carries the motor torque\n"}}) {
+            "J_m must be above zero with backlash: while the teeth are apart, the motor torque "
+            "acts on J_m alone\n"}}) {
     const Outcome outcome = simulate({kXAxis, motion(), "--set", text});
     EXPECT_EQ(outcome.exit_code, 2);
     EXPECT_EQ(outcome.out, "");

@@ -49,7 +49,7 @@ TEST(EmpsTest, FitAgreesWithThePublishedEstimates) {
 
   // The free-running simulation of both recordings stays within a few per cent of the stroke.
   for (const RecordingResult& recording : result.recordings) {
-    ASSERT_TRUE(recording.prediction.finished);
+    ASSERT_TRUE(recording.free_running.finished);
     ASSERT_EQ(recording.signals.size(), 1u);
     EXPECT_LT(recording.signals.front().nrmse_percent, 5.0);
   }

@@ -15,17 +15,17 @@ namespace {
 
 using Truth = std::map<std::string, double>;
 
-Outcome outcome_of(const std::string& job, const Wishes& wishes = {}) {
-  return find_outcome(read_job_file(AXISFIT_CONFIGS "/jobs/" + job).job, wishes);
+RunResult run_result_of(const std::string& job, const RunOptions& run_options = {}) {
+  return run(read_job_file(AXISFIT_CONFIGS "/jobs/" + job).job, run_options);
 }
 
 /// Every parameter lies within three standard errors of the truth, and nothing but noise is left in
 /// any recording, fitted or not.
-void expect_truth(const Outcome& outcome, const Truth& truth) {
-  const FitResult& fit = outcome.fit();
+void expect_truth(const RunResult& run_result, const Truth& truth) {
+  const FitResult& fit = run_result.fit();
   ASSERT_TRUE(fit.usable) << fit.verdict;
   EXPECT_NEAR(fit.reduced_chi_square, 1.0, 0.05);
-  EXPECT_TRUE(outcome.diagnosis->explained);
+  EXPECT_TRUE(run_result.diagnosis->explained);
   ASSERT_EQ(fit.parameters.size(), truth.size());
   for (const ParameterResult& p : fit.parameters) {
     ASSERT_TRUE(truth.contains(p.name)) << p.name;
@@ -47,44 +47,46 @@ Truth truth_of_the_screw() {
           {"constant_force.F_0", -6.0}};
 }
 
-TEST(ExamplesTest, PaperStep) { expect_truth(outcome_of("paper.yaml"), truth_of_the_paper()); }
+TEST(ExamplesTest, PaperStep) { expect_truth(run_result_of("paper.yaml"), truth_of_the_paper()); }
 
-TEST(ExamplesTest, PaperMove) { expect_truth(outcome_of("paper-move.yaml"), truth_of_the_paper()); }
+TEST(ExamplesTest, PaperMove) {
+  expect_truth(run_result_of("paper-move.yaml"), truth_of_the_paper());
+}
 
-TEST(ExamplesTest, Screw) { expect_truth(outcome_of("screw.yaml"), truth_of_the_screw()); }
+TEST(ExamplesTest, Screw) { expect_truth(run_result_of("screw.yaml"), truth_of_the_screw()); }
 
 TEST(ExamplesTest, ScrewWithoutDryFrictionIsGivenIt) {
-  const Outcome outcome = outcome_of("screw-viscous.yaml", {.close_loop = true});
-  EXPECT_GT(outcome.first.reduced_chi_square, 100.0);
-  ASSERT_TRUE(outcome.loop);
-  EXPECT_EQ(outcome.loop->models.size(), 2u);
-  expect_truth(outcome, truth_of_the_screw());
+  const RunResult run_result = run_result_of("screw-viscous.yaml", {.select_effects = true});
+  EXPECT_GT(run_result.first.reduced_chi_square, 100.0);
+  ASSERT_TRUE(run_result.selection);
+  EXPECT_EQ(run_result.selection->models.size(), 2u);
+  expect_truth(run_result, truth_of_the_screw());
 }
 
 // docs/tutorial.md
 TEST(ExamplesTest, BentScrewIsGivenAForceOncePerTurn) {
-  const Outcome outcome = outcome_of("screw-bent.yaml", {.close_loop = true});
-  EXPECT_GT(outcome.first.reduced_chi_square, 10.0);
-  ASSERT_TRUE(outcome.loop);
-  EXPECT_EQ(outcome.loop->models.size(), 2u);
+  const RunResult run_result = run_result_of("screw-bent.yaml", {.select_effects = true});
+  EXPECT_GT(run_result.first.reduced_chi_square, 10.0);
+  ASSERT_TRUE(run_result.selection);
+  EXPECT_EQ(run_result.selection->models.size(), 2u);
   Truth truth = truth_of_the_screw();
   truth.insert({{"periodic_force.F_s1", 6.0},
                 {"periodic_force.F_c1", 0.0},
                 {"periodic_force.period", 0.01}});
-  expect_truth(outcome, truth);
+  expect_truth(run_result, truth);
 }
 
 TEST(ExamplesTest, TwoPayloads) {
-  const Outcome outcome = outcome_of("payload.yaml");
-  expect_truth(outcome, {{"M@empty", 146.0},
-                         {"M@loaded", 161.0},
-                         {"V_L", 2.7},
-                         {"B_a", 200.0},
-                         {"b_g", 1500.0},
-                         {"k_g", 5e6}});
+  const RunResult run_result = run_result_of("payload.yaml");
+  expect_truth(run_result, {{"M@empty", 146.0},
+                            {"M@loaded", 161.0},
+                            {"V_L", 2.7},
+                            {"B_a", 200.0},
+                            {"b_g", 1500.0},
+                            {"k_g", 5e6}});
 
   // The masses err together, so that their difference is known much better than each of them.
-  const FitResult& fit = outcome.fit();
+  const FitResult& fit = run_result.fit();
   const double empty = fit.parameters[0].uncertainty.standard_error;
   const double loaded = fit.parameters[1].uncertainty.standard_error;
   const double error =

@@ -40,12 +40,12 @@ TEST(Soak, AThousandFitsTakeNoMoreMemoryThanTwoHundred) {
   const std::string wrong = folder.write("wrong.yaml", fit_job("{start: 3}"));
 
   // The whole of fit-params but for its command line.
-  const auto fit = [](const std::string& job, bool close_loop = false) {
-    const Outcome outcome = find_outcome(read_job_file(job).job, {.close_loop = close_loop});
-    ASSERT_TRUE(outcome.fit().usable);
-    const std::string json = result_json(outcome).dump(2), text = report_text(outcome),
-                      csv = residuals_csv(outcome.job(), outcome.fit(), outcome.diagnosis),
-                      page = report_page(outcome, {"fit-params", job, "", "", ""});
+  const auto fit = [](const std::string& job, bool select_effects = false) {
+    const RunResult run_result = run(read_job_file(job).job, {.select_effects = select_effects});
+    ASSERT_TRUE(run_result.fit().usable);
+    const std::string json = result_json(run_result).dump(2), text = report_text(run_result),
+                      csv = residuals_csv(run_result.job(), run_result.fit(), run_result.diagnosis),
+                      page = report_page(run_result, {"fit-params", job, "", "", ""});
     ASSERT_FALSE(json.empty() || text.empty() || csv.empty() || page.empty());
   };
   Memory early;

@@ -9,27 +9,27 @@ namespace {
 
 TEST(PlainText, WhatIsNoTextBecomesAQuestionMark) {
   for (const char* text : {"", "plain", "Größe µm", "\U0001F600", "a\u00A0b"}) {
-    EXPECT_EQ(harmless(text), text);
-    EXPECT_TRUE(is_harmless(text));
+    EXPECT_EQ(sanitized(text), text);
+    EXPECT_TRUE(is_sanitized(text));
   }
-  EXPECT_EQ(harmless("a\tb\nc\x1B[2J\x7F"), "a?b?c?[2J?");
-  EXPECT_EQ(harmless("\u0085\u009B1m\u2028\u2029\u202A"), "??1m??\u202A");
-  EXPECT_EQ(harmless("gr\xF6\xDF"
-                     "er"),
+  EXPECT_EQ(sanitized("a\tb\nc\x1B[2J\x7F"), "a?b?c?[2J?");
+  EXPECT_EQ(sanitized("\u0085\u009B1m\u2028\u2029\u202A"), "??1m??\u202A");
+  EXPECT_EQ(sanitized("gr\xF6\xDF"
+                      "er"),
             "gr??er");
-  EXPECT_EQ(harmless("\xC3"), "?");
-  EXPECT_EQ(harmless("\xE2\x80"), "??");
-  EXPECT_EQ(harmless(std::string("\0", 1)), "?");
-  EXPECT_FALSE(is_harmless("\xFF"));
+  EXPECT_EQ(sanitized("\xC3"), "?");
+  EXPECT_EQ(sanitized("\xE2\x80"), "??");
+  EXPECT_EQ(sanitized(std::string("\0", 1)), "?");
+  EXPECT_FALSE(is_sanitized("\xFF"));
 }
 
 TEST(PlainText, IsLinearInTheText) {
   // A second of work at the square of this.
   const std::string wrong(1 << 20, '\xFF'), control = "\u0085";
-  EXPECT_EQ(harmless(wrong), std::string(wrong.size(), '?'));
+  EXPECT_EQ(sanitized(wrong), std::string(wrong.size(), '?'));
   std::string many;
   for (int i = 0; i < 1 << 19; ++i) many += control;
-  EXPECT_EQ(harmless(many), std::string(1 << 19, '?'));
+  EXPECT_EQ(sanitized(many), std::string(1 << 19, '?'));
 }
 
 TEST(PlainText, IsCutBetweenCharacters) {

@@ -9,20 +9,20 @@ namespace axisfit {
 namespace {
 
 TEST(RunApart, ReturnsWhatTheWorkReturns) {
-  EXPECT_EQ(run_apart([] { return std::string(); }), "");
+  EXPECT_EQ(run_in_subprocess([] { return std::string(); }), "");
   const std::string large(10'000'000, 'x');  // more than a pipe holds
-  EXPECT_EQ(run_apart([&] { return large; }), large);
+  EXPECT_EQ(run_in_subprocess([&] { return large; }), large);
 }
 
 TEST(RunApart, SurvivesTheEndOfTheWork) {
   for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGKILL})
-    EXPECT_EQ(run_apart([&]() -> std::string {
+    EXPECT_EQ(run_in_subprocess([&]() -> std::string {
                 ::raise(signal);
                 return "not reached";
               }),
               std::nullopt)
         << signal;
-  EXPECT_EQ(run_apart([]() -> std::string { throw std::bad_alloc(); }), std::nullopt);
+  EXPECT_EQ(run_in_subprocess([]() -> std::string { throw std::bad_alloc(); }), std::nullopt);
 }
 
 }  // namespace

@@ -10,13 +10,8 @@ namespace axisfit {
 namespace {
 
 const std::string kReport =
-    "Parameters\n"
-    "  V_L  2.7  V\n"
-    "\n"
-    "  V_L  preamplifier limit: not determined\n"
-    "\n"
-    "Usable fit: reduced chi-square 1 of what was fitted. These recordings do not\n"
-    "determine V_L.\n";
+    "Parameters\n  V_L  2.7  V\n\n  V_L  preamplifier limit: not determined\n\nUsable fit: reduced "
+    "chi-square 1 on the fitted data. These recordings do not\ndetermine V_L.\n";
 
 TEST(Terminal, ColoursHeadingsAndVerdictsAndNothingElse) {
   const std::string text = coloured(kReport);

@@ -15,28 +15,29 @@ using Rows = std::vector<std::vector<std::string>>;
 TEST(TextTable, CountsCharactersNotBytes) {
   EXPECT_EQ(width_of("N s/m"), 5u);
   EXPECT_EQ(width_of("µm/s²"), 5u);
-  EXPECT_EQ(aligned({{"µm", "1"}, {"mm", "2"}}, {Set::left, Set::left}), "  µm  1\n  mm  2\n");
+  EXPECT_EQ(format_table({{"µm", "1"}, {"mm", "2"}}, {Alignment::left, Alignment::left}),
+            "  µm  1\n  mm  2\n");
 }
 
 TEST(TextTable, ANameThatIsTheReasonForALongLineStandsAboveItsNumbers) {
   const std::string wide(60, '7');
   const Rows rows{{"", wide, "unit"}, {"V_L", "2.7", "V"}, {"coulomb_friction.F_c", "25", "N"}};
-  EXPECT_EQ(aligned(rows, {Set::left, Set::right, Set::left}),
+  EXPECT_EQ(format_table(rows, {Alignment::left, Alignment::right, Alignment::left}),
             "       " + wide + "  unit\n" +                      //
                 "  V_L  " + std::string(57, ' ') + "2.7  V\n" +  //
                 "  coulomb_friction.F_c\n" +                     //
                 "       " + std::string(58, ' ') + "25  N\n");
   // Where there is room, it does not.
   const Rows narrow{{"V_L", "2.7"}, {"coulomb_friction.F_c", "25"}};
-  EXPECT_EQ(aligned(narrow, {Set::left, Set::right}),
+  EXPECT_EQ(format_table(narrow, {Alignment::left, Alignment::right}),
             "  V_L                   2.7\n  coulomb_friction.F_c   25\n");
 }
 
 TEST(TextTable, TheLastColumnIsWrappedBesideNames) {
   std::string words;
   for (int i = 0; i < 40; ++i) words += "word ";
-  std::istringstream lines(
-      aligned({{"name", words}, {std::string(70, 'x'), words}}, {Set::left, Set::wrapped}));
+  std::istringstream lines(format_table({{"name", words}, {std::string(70, 'x'), words}},
+                                        {Alignment::left, Alignment::wrapped}));
   std::size_t longest = 0, count = 0;
   for (std::string line; std::getline(lines, line); ++count)
     longest = std::max(longest, width_of(line));

@@ -131,11 +131,11 @@ TEST(UnitFactor, RefusesScalesThatAreNotProportional) {
 }
 
 TEST(UnitFactor, TellsWhatToWrite) {
-  EXPECT_EQ(message("furlongz", "m/s"), "unknown unit 'furlongz'; write for example 'm/s'");
-  EXPECT_EQ(message("kg", "m/s"), "'kg' does not fit a quantity in 'm/s'; write for example 'm/s'");
+  EXPECT_EQ(message("furlongz", "m/s"), "unknown unit 'furlongz'; use for example 'm/s'");
+  EXPECT_EQ(message("kg", "m/s"), "'kg' cannot be converted to 'm/s'; use for example 'm/s'");
   EXPECT_EQ(message("kg", "1"),
-            "'kg' does not fit a dimensionless quantity; write a plain number or '%'");
-  EXPECT_EQ(message("degC", "K"), "'degC' has a zero of its own; write for example 'K'");
+            "'kg' cannot be used for a dimensionless quantity; use a plain number or '%'");
+  EXPECT_EQ(message("degC", "K"), "'degC' is not proportional to it; use for example 'K'");
 }
 
 TEST(UnitFactor, ThrowsWhenTheWantedUnitIsWrong) {

@@ -138,7 +138,7 @@ inline FitResult result_at_start(const Job& job) {
   const Eigen::VectorXd u = space.internal(values);
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     result.recordings.emplace_back();
-    result.recordings.back().prediction = predict(job, space, r, u.data(), {});
+    result.recordings.back().free_running = simulate_recording(job, space, r, u.data(), {});
   }
   result.at_solution = std::make_shared<const Linearization>(linearize(job, space, u, 0.0));
   return result;

@@ -17,7 +17,7 @@ TEST(ColumnGuessTest, UnderstandsTheNamesOfTheTrade) {
     std::string name;
     Kind kind;
     std::string unit = {};
-    bool wanted = false;
+    bool is_setpoint = false;
   };
   using enum Kind;
   for (const Case& c : std::vector<Case>{
@@ -73,7 +73,7 @@ TEST(ColumnGuessTest, UnderstandsTheNamesOfTheTrade) {
     ASSERT_TRUE(guess);
     EXPECT_EQ(static_cast<int>(guess->kind), static_cast<int>(c.kind));
     EXPECT_EQ(guess->unit, c.unit);
-    EXPECT_EQ(guess->wanted, c.wanted);
+    EXPECT_EQ(guess->is_setpoint, c.is_setpoint);
   }
 }
 

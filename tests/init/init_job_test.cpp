@@ -87,7 +87,7 @@ TEST_F(InitJobTest, ThePapersAxisIsRecognised) {
   EXPECT_EQ(file.job.recordings[1].role, Role::validate);
   EXPECT_EQ(file.job.recordings[0].measurements.size(), 5u);
   EXPECT_EQ(file.job.model.structure.drive, Drive::velocity_loop);
-  file.job.options.coupling = CouplingMode::none;  // quicker; it starts at the truth
+  file.job.options.observer = ObserverMode::none;  // quicker; it starts at the truth
   const auto found = fitted(file);
   EXPECT_NEAR(found.at("V_L"), 2.7, 0.01);
   EXPECT_NEAR(found.at("k_g"), 5e6, 5e4);
@@ -98,7 +98,8 @@ TEST_F(InitJobTest, WhatTheRecordingsLeaveOpenIsNotFree) {
   make({AXISFIT_TESTDATA "/clean-slow.csv"}, AXISFIT_CONFIGS "/axes/x.yaml");
   EXPECT_EQ(folder_.names(), (std::set<std::string>{"job.yaml"}));
   const std::string text = folder_.read("job.yaml");
-  EXPECT_NE(text.find("\n  # V_L: {}   left out: no recorded signal shows it"), std::string::npos)
+  EXPECT_NE(text.find("\n  # V_L: {}   left out: no recorded signal depends on it"),
+            std::string::npos)
       << text;
   for (const FreeParameter& p : read().job.free) EXPECT_NE(quantity_list()[p.quantity].name, "V_L");
 }
@@ -298,15 +299,17 @@ TEST_F(InitJobTest, SaysWhatIsMissing) {
     }
     return std::string("no error");
   };
-  EXPECT_EQ(message("time_s,pos_mm"),
-            "a.csv: no column tells what drove the axis; it has pos_mm. If one of them does, "
-            "call it current_A, force_N or command_V, for example; if not, record it.");
+  EXPECT_EQ(
+      message("time_s,pos_mm"),
+      "a.csv: no column shows what drove the axis; the columns are pos_mm. If one of them does, "
+      "rename it, for example to current_A, force_N or command_V; otherwise record that signal.");
   EXPECT_EQ(message("time_s,iq"),
-            "a.csv: no column tells how the axis moved; it has iq. If one of them does, "
-            "call it position_mm or velocity_mps, for example; if not, record it.");
+            "a.csv: no column shows how the axis moved; the columns are iq. If one of them does, "
+            "rename it, for example to position_mm or velocity_mps; otherwise record that signal.");
   EXPECT_EQ(message("foo,bar"),
-            "a.csv: no column tells what drove the axis; it has bar (not understood). If one of "
-            "them does, call it current_A, force_N or command_V, for example; if not, record it.");
+            "a.csv: no column shows what drove the axis; the columns are bar (not understood). If "
+            "one of them does, rename it, for example to current_A, force_N or command_V; "
+            "otherwise record that signal.");
   EXPECT_TRUE(folder_.names().count("job.yaml") == 0);
 }
 

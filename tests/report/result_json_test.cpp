@@ -51,13 +51,13 @@ struct Found {
     write_rubbing_mass(folder);
     const JobFile file = read_job_file(folder.write("job.yaml", job));
     rig = file.rig;
-    outcome = find_outcome(file.job, {.close_loop = close_the_loop});
-    json = result_json(outcome);
-    text = report_text(outcome);
+    run_result = run(file.job, {.select_effects = close_the_loop});
+    json = result_json(run_result);
+    text = report_text(run_result);
     expect_narrow(text);
   }
   Rig rig;
-  Outcome outcome;
+  RunResult run_result;
   Json json;
   std::string text;
 };
@@ -80,7 +80,7 @@ TEST(ResultTest, JsonHasItsDocumentedKeys) {
                                                   "status",
                                                   "usable",
                                                   "interrupted",
-                                                  "out_of_time",
+                                                  "time_limit_reached",
                                                   "verdict",
                                                   "message",
                                                   "axis",
@@ -94,7 +94,7 @@ TEST(ResultTest, JsonHasItsDocumentedKeys) {
                                                   "weak_directions",
                                                   "combinations",
                                                   "assumptions",
-                                                  "coupling_rate",
+                                                  "observer_gain",
                                                   "stages",
                                                   "starts",
                                                   "minima",
@@ -107,13 +107,13 @@ TEST(ResultTest, JsonHasItsDocumentedKeys) {
   EXPECT_EQ(json.at("singular_values").size(), json.at("parameters").size());
   EXPECT_TRUE(json.at("weak_directions").empty());
   EXPECT_EQ(keys(json.at("residual")),
-            (std::vector<std::string>{"explained", "tests", "suspects", "missing_force"}));
+            (std::vector<std::string>{"explained", "tests", "suspected_effects", "missing_force"}));
   ASSERT_EQ(json.at("residual").at("tests").size(), 2u);
   for (const Json& test : json.at("residual").at("tests"))
     EXPECT_EQ(keys(test),
               (std::vector<std::string>{"recording", "signal", "role", "reduced_chi_square",
                                         "autocorrelation_time", "unexplained_percent", "explained",
-                                        "dependences", "outliers", "drift", "grid"}));
+                                        "dependences", "outliers", "drift", "resolution"}));
   ASSERT_EQ(json.at("residual").at("missing_force").size(), 2u);
   for (const Json& force : json.at("residual").at("missing_force"))
     EXPECT_EQ(keys(force), (std::vector<std::string>{"recording", "rms_n", "noise_n", "cutoff_hz",
@@ -121,7 +121,7 @@ TEST(ResultTest, JsonHasItsDocumentedKeys) {
   for (const Json& recording : json.at("recordings")) {
     EXPECT_EQ(keys(recording),
               (std::vector<std::string>{"name", "file", "role", "samples", "start_s", "end_s",
-                                        "events", "concerns", "signals"}));
+                                        "events", "warnings", "signals"}));
     for (const Json& signal : recording.at("signals"))
       EXPECT_EQ(keys(signal),
                 (std::vector<std::string>{"name", "unit", "fitted", "rmse", "nrmse_percent",
@@ -139,18 +139,18 @@ TEST(ResultTest, JsonSaysWhatTheFitFound) {
   const Json& json = fit.json;
   EXPECT_EQ(json.at("status"), "converged");
   EXPECT_EQ(json.at("usable"), true);
-  EXPECT_EQ(json.at("verdict"), fit.outcome.first.verdict);
+  EXPECT_EQ(json.at("verdict"), fit.run_result.first.verdict);
   EXPECT_EQ(json.at("axis"), "x axis of the Automatix AID 600");
   EXPECT_EQ(json.at("version"), version());
   EXPECT_EQ(json.at("seed"), 5);
-  EXPECT_EQ(json.at("wall_time_s"), fit.outcome.wall_time);
-  EXPECT_GT(fit.outcome.wall_time, 0.0);
-  EXPECT_EQ(json.at("iterations"), fit.outcome.first.iterations);
-  EXPECT_GT(fit.outcome.first.iterations, 0);
-  EXPECT_EQ(json.at("reduced_chi_square"), fit.outcome.first.reduced_chi_square);
-  EXPECT_EQ(json.at("coupling_rate"), 0.0);
+  EXPECT_EQ(json.at("wall_time_s"), fit.run_result.wall_time);
+  EXPECT_GT(fit.run_result.wall_time, 0.0);
+  EXPECT_EQ(json.at("iterations"), fit.run_result.first.iterations);
+  EXPECT_GT(fit.run_result.first.iterations, 0);
+  EXPECT_EQ(json.at("reduced_chi_square"), fit.run_result.first.reduced_chi_square);
+  EXPECT_EQ(json.at("observer_gain"), 0.0);
   EXPECT_EQ(json.at("starts").size(), 2u);
-  EXPECT_EQ(json.at("stages").size(), fit.outcome.first.stages.size());
+  EXPECT_EQ(json.at("stages").size(), fit.run_result.first.stages.size());
 
   ASSERT_EQ(json.at("recordings").size(), 2u);
   const Json& first = json.at("recordings")[0];
@@ -163,7 +163,7 @@ TEST(ResultTest, JsonSaysWhatTheFitFound) {
   EXPECT_EQ(json.at("recordings")[1].at("role"), "validate");
   ASSERT_EQ(first.at("signals").size(), 2u);
   const Json& velocity = first.at("signals")[0];
-  const SignalError& error = fit.outcome.first.recordings[0].signals[0];
+  const SignalError& error = fit.run_result.first.recordings[0].signals[0];
   EXPECT_EQ(velocity.at("name"), "velocity");
   EXPECT_EQ(velocity.at("unit"), "m/s");
   EXPECT_EQ(velocity.at("fitted"), true);
@@ -177,7 +177,7 @@ TEST(ResultTest, JsonSaysWhatTheFitFound) {
 
   ASSERT_EQ(json.at("parameters").size(), 2u);
   const Json& damping = json.at("parameters")[0];
-  const ParameterResult& found = fit.outcome.first.parameters[0];
+  const ParameterResult& found = fit.run_result.first.parameters[0];
   EXPECT_EQ(damping.at("name"), "B_a");
   EXPECT_EQ(damping.at("unit"), "N s/m");
   EXPECT_EQ(damping.at("value"), found.value);
@@ -191,8 +191,8 @@ TEST(ResultTest, JsonSaysWhatTheFitFound) {
   EXPECT_EQ(damping.at("verdict"), "determined");
   // The truth, by which the recording was made.
   EXPECT_NEAR(found.value, 200.0, 5.0 * found.uncertainty.standard_error);
-  EXPECT_NEAR(fit.outcome.first.parameters[1].value, 2.7,
-              5.0 * fit.outcome.first.parameters[1].uncertainty.standard_error);
+  EXPECT_NEAR(fit.run_result.first.parameters[1].value, 2.7,
+              5.0 * fit.run_result.first.parameters[1].uncertainty.standard_error);
 }
 
 TEST(ResultTest, AParameterAtItsBoundHasAOneSidedInterval) {
@@ -209,12 +209,12 @@ TEST(ResultTest, AParameterAtItsBoundHasAOneSidedInterval) {
 }
 
 TEST(ResultTest, AFixedCouplingAlsoTellsThePredictionError) {
-  const Found fit(fit_job("{coupling: {fixed: 100 1/s}}"));
+  const Found fit(fit_job("{observer: {fixed: 100 1/s}}"));
   const Json& velocity = fit.json.at("recordings")[0].at("signals")[0];
   EXPECT_EQ(velocity.at("prediction_rmse"),
-            fit.outcome.first.recordings[0].signals[0].prediction_rmse.value());
+            fit.run_result.first.recordings[0].signals[0].prediction_rmse.value());
   EXPECT_TRUE(velocity.contains("prediction_reduced_chi_square"));
-  EXPECT_EQ(fit.json.at("coupling_rate"), 100.0);
+  EXPECT_EQ(fit.json.at("observer_gain"), 100.0);
   EXPECT_NE(fit.text.find("predicted rmse"), std::string::npos);
 }
 
@@ -225,7 +225,7 @@ TEST(ResultTest, ReportHasEveryFreeParameterAndTheVerdict) {
                            "judge", "validate", "compare", "motor_current", "151 samples",
                            "* estimated from differences of the samples"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
-  EXPECT_NE(text.find("\n" + fit.outcome.first.verdict + "\n"), std::string::npos);
+  EXPECT_NE(text.find("\n" + fit.run_result.first.verdict + "\n"), std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -261,7 +261,7 @@ struct Csv {
 
 TEST(ResultTest, ResidualsAreMeasuredMinusSimulated) {
   const Found fit(fit_job());
-  const Csv csv(residuals_csv(fit.outcome.baseline, fit.outcome.first));
+  const Csv csv(residuals_csv(fit.run_result.baseline, fit.run_result.first));
   ASSERT_EQ(csv.header, (std::vector<std::string>{
                             "recording", "time_s", "velocity_measured", "velocity_simulated",
                             "velocity_residual", "motor_current_measured",
@@ -273,8 +273,8 @@ TEST(ResultTest, ResidualsAreMeasuredMinusSimulated) {
     ASSERT_EQ(row.size(), csv.header.size());
     const std::size_t recording = i / 151, sample = i % 151;
     EXPECT_EQ(row[0], static_cast<double>(recording + 1));
-    EXPECT_EQ(row[1], fit.outcome.baseline.recordings[recording].times[sample]);
-    EXPECT_EQ(row[2], fit.outcome.baseline.recordings[recording].measurements[0].values[sample]);
+    EXPECT_EQ(row[1], fit.run_result.baseline.recordings[recording].times[sample]);
+    EXPECT_EQ(row[2], fit.run_result.baseline.recordings[recording].measurements[0].values[sample]);
     EXPECT_NEAR(row[4], row[2] - row[3], 1e-8);
     squares[recording][0] += row[4] * row[4];
     if (recording == 0) {
@@ -285,7 +285,7 @@ TEST(ResultTest, ResidualsAreMeasuredMinusSimulated) {
     }
   }
   const auto rmse = [&](std::size_t recording, std::size_t signal) {
-    return fit.outcome.first.recordings[recording].signals[signal].rmse;
+    return fit.run_result.first.recordings[recording].signals[signal].rmse;
   };
   EXPECT_NEAR(std::sqrt(squares[0][0] / 151.0) / rmse(0, 0), 1.0, 1e-6);
   EXPECT_NEAR(std::sqrt(squares[0][1] / 151.0) / rmse(0, 1), 1.0, 1e-6);
@@ -298,29 +298,29 @@ TEST(ResultTest, ARecordingThatCannotBeSimulatedHasNoErrors) {
   write_recordings(folder);
   JobFile file = read_job_file(folder.write("job.yaml", fit_job("{max_iterations: 1}")));
   file.job.model.axis.J_m = 0.0;
-  const Outcome outcome = find_outcome(file.job, {.close_loop = true});
-  EXPECT_EQ(outcome.first.status, Status::failed);
-  EXPECT_FALSE(outcome.first.usable);
-  EXPECT_FALSE(outcome.loop.has_value());
-  const Json json = result_json(outcome);
+  const RunResult run_result = run(file.job, {.select_effects = true});
+  EXPECT_EQ(run_result.first.status, Status::failed);
+  EXPECT_FALSE(run_result.first.usable);
+  EXPECT_FALSE(run_result.selection.has_value());
+  const Json json = result_json(run_result);
   EXPECT_EQ(json.at("status"), "failed");
   EXPECT_TRUE(json.at("recordings")[0].at("signals")[0].at("rmse").is_null());
   EXPECT_TRUE(json.at("residual").is_null());
-  EXPECT_FALSE(json.contains("closed_loop"));
+  EXPECT_FALSE(json.contains("selection"));
   EXPECT_EQ(json.dump().find("nan"), std::string::npos);
   EXPECT_EQ(json.dump().find("inf,"), std::string::npos);
-  const Csv csv(residuals_csv(outcome.job(), outcome.fit()));
+  const Csv csv(residuals_csv(run_result.job(), run_result.fit()));
   EXPECT_EQ(csv.rows.size(), 302u);
-  const std::string text = report_text(outcome);
+  const std::string text = report_text(run_result);
   EXPECT_NE(text.find(" - "), std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
-  EXPECT_TRUE(text.ends_with(std::string("\n").append(paragraph(outcome.first.verdict))));
+  EXPECT_TRUE(text.ends_with(std::string("\n").append(paragraph(run_result.first.verdict))));
 }
 
 TEST(ResultTest, LongNamesAndNumbersFitInTheWidth) {
   const TempFolder folder;
   write_recordings(folder);
-  std::string text = fit_job("{coupling: {fixed: 100 1/s}}");
+  std::string text = fit_job("{observer: {fixed: 100 1/s}}");
   text =
       replaced(text, "file: short.csv\n", "file: short.csv\n    name: a_recording_of_many_words\n");
   text = replaced(text, "free:\n",
@@ -328,16 +328,16 @@ TEST(ResultTest, LongNamesAndNumbersFitInTheWidth) {
                   "s/m}, coulomb_friction: {F_c: 1 N}}\nfree:\n"
                   "  directional_friction.dB_a: {}\n  coulomb_friction.F_c: {}\n"
                   "  quadratic_drag.c: {initial: 1 N s^2/m^2}\n");
-  Outcome outcome =
-      find_outcome(read_job_file(folder.write("job.yaml", text)).job, {.profiles = {"V_L"}});
+  RunResult run_result =
+      run(read_job_file(folder.write("job.yaml", text)).job, {.profiles = {"V_L"}});
   expect_narrow(
-      forecast_text(outcome.job(), forecast(outcome.job(), draw_start(outcome.job(), 0))));
-  for (ParameterResult& p : outcome.first.parameters) {
+      forecast_text(run_result.job(), forecast(run_result.job(), draw_start(run_result.job(), 0))));
+  for (ParameterResult& p : run_result.first.parameters) {
     p.value = -5000311.7;
     p.uncertainty = {
         .determined = true, .standard_error = 2812.3, .lower = -5005812.0, .upper = -4994890.0};
   }
-  const std::string report = report_text(outcome);
+  const std::string report = report_text(run_result);
   expect_narrow(report);
   EXPECT_NE(report.find("\n  directional_friction.dB_a\n"), std::string::npos) << report;
   EXPECT_NE(report.find("-5.0058e+06 .. -4.9949e+06"), std::string::npos) << report;
@@ -346,9 +346,9 @@ TEST(ResultTest, LongNamesAndNumbersFitInTheWidth) {
 TEST(ResultTest, AnExplainedResidualIsSaidToBe) {
   const Found fit(fit_job());
   EXPECT_EQ(fit.json.at("residual").at("explained"), true);
-  EXPECT_EQ(fit.json.at("residual").at("suspects"), Json::array());
+  EXPECT_EQ(fit.json.at("residual").at("suspected_effects"), Json::array());
   EXPECT_EQ(fit.text.find("Suspects"), std::string::npos);
-  EXPECT_NE(fit.text.find("\nWhat was not fitted is explained down to the noise, too. "),
+  EXPECT_NE(fit.text.find("\nData that were not fitted are also explained down to the noise. "),
             std::string::npos);
 }
 
@@ -363,15 +363,15 @@ TEST(ResultTest, AResidualThatIsNotExplainedNamesItsSuspects) {
   EXPECT_EQ(test.at("role"), "validate");
   EXPECT_EQ(test.at("explained"), false);
   EXPECT_GT(test.at("unexplained_percent"), 90.0);
-  ASSERT_GE(residual.at("suspects").size(), 1u);
-  for (const Json& suspect : residual.at("suspects"))
-    EXPECT_EQ(keys(suspect), (std::vector<std::string>{"name", "slot", "meaning", "share",
+  ASSERT_GE(residual.at("suspected_effects").size(), 1u);
+  for (const Json& suspect : residual.at("suspected_effects"))
+    EXPECT_EQ(keys(suspect), (std::vector<std::string>{"name", "acts_on", "meaning", "fraction",
                                                        "strengths", "shapes"}));
-  const auto rubbing = std::ranges::find_if(residual.at("suspects"), [](const Json& suspect) {
-    return suspect.at("name") == "coulomb_friction";
-  });
-  ASSERT_NE(rubbing, residual.at("suspects").end());
-  EXPECT_EQ(rubbing->at("slot"), "friction");
+  const auto rubbing = std::ranges::find_if(
+      residual.at("suspected_effects"),
+      [](const Json& suspect) { return suspect.at("name") == "coulomb_friction"; });
+  ASSERT_NE(rubbing, residual.at("suspected_effects").end());
+  EXPECT_EQ(rubbing->at("acts_on"), "friction");
   EXPECT_EQ(keys(rubbing->at("strengths")[0]), (std::vector<std::string>{"name", "unit", "value"}));
   EXPECT_EQ(rubbing->at("strengths")[0].at("name"), "coulomb_friction.F_c");
   EXPECT_GT(rubbing->at("strengths")[0].at("value"), 0.5);
@@ -382,15 +382,18 @@ TEST(ResultTest, AResidualThatIsNotExplainedNamesItsSuspects) {
 
 TEST(ResultTest, WhatAResidualDependsOnIsNamed) {
   Found fit(rubbing_job());
-  for (SeriesTest& test : fit.outcome.diagnosis->tests) test.dependences.clear();
-  fit.outcome.diagnosis->tests[1].dependences = {{"motor angle", 0.25, 1e-9},
-                                                 {"load", 0.125, 1e-5}};
-  const Json dependences = result_json(fit.outcome).at("residual").at("tests")[1].at("dependences");
+  for (SeriesTest& test : fit.run_result.diagnosis->tests) test.dependences.clear();
+  fit.run_result.diagnosis->tests[1].dependences = {{"motor angle", 0.25, 1e-9},
+                                                    {"load", 0.125, 1e-5}};
+  const Json dependences =
+      result_json(fit.run_result).at("residual").at("tests")[1].at("dependences");
   ASSERT_EQ(dependences.size(), 2u);
-  EXPECT_EQ(dependences[0], (Json{{"on", "motor angle"}, {"share", 0.25}, {"p_value", 1e-9}}));
-  EXPECT_NE(report_text(fit.outcome).find(" %  motor angle 25 %, load 12 %\n"), std::string::npos);
-  fit.outcome.diagnosis->explained = true;
-  std::string text = report_text(fit.outcome);
+  EXPECT_EQ(dependences[0],
+            (Json{{"variable", "motor angle"}, {"fraction", 0.25}, {"p_value", 1e-9}}));
+  EXPECT_NE(report_text(fit.run_result).find(" %  motor angle 25 %, load 12 %\n"),
+            std::string::npos);
+  fit.run_result.diagnosis->explained = true;
+  std::string text = report_text(fit.run_result);
   std::ranges::replace(text, '\n', ' ');
   EXPECT_NE(
       text.find("A trace is left that depends on load, motor angle: at most 25 % of the mean "),
@@ -399,8 +402,8 @@ TEST(ResultTest, WhatAResidualDependsOnIsNamed) {
 
 TEST(ResultTest, ADriftOfUnknownErrorHasNone) {
   Found fit(rubbing_job());
-  fit.outcome.diagnosis->tests[1].drift.standard_error = INFINITY;
-  const Json drift = result_json(fit.outcome).at("residual").at("tests")[1].at("drift");
+  fit.run_result.diagnosis->tests[1].drift.standard_error = INFINITY;
+  const Json drift = result_json(fit.run_result).at("residual").at("tests")[1].at("drift");
   EXPECT_TRUE(drift.at("standard_error").is_null());  // and no infinity, which becomes one in text
   EXPECT_TRUE(drift.at("over_sigma_per_second").is_number());
 }
@@ -408,17 +411,17 @@ TEST(ResultTest, ADriftOfUnknownErrorHasNone) {
 TEST(ResultTest, SamplesAtRestAreCounted) {
   const Found fit(rubbing_job());
   const Json& acceleration = fit.json.at("recordings")[0].at("signals")[1];
-  EXPECT_GT(acceleration.at("left_out"), 80);
-  EXPECT_NEAR(acceleration.at("mean_left_out"), 0.0, 0.03);
-  EXPECT_FALSE(fit.json.at("recordings")[0].at("signals")[0].contains("left_out"));
+  EXPECT_GT(acceleration.at("excluded_samples"), 80);
+  EXPECT_NEAR(acceleration.at("excluded_mean"), 0.0, 0.03);
+  EXPECT_FALSE(fit.json.at("recordings")[0].at("signals")[0].contains("excluded_samples"));
   Measurement biased;
   biased.values = {1.0, 0.2, 0.2};
   biased.sigma = 0.05;
-  biased.left_out = {false, true, true};
-  ASSERT_TRUE(left_out(biased).has_value());
-  EXPECT_EQ(left_out(biased)->samples, 2u);
-  EXPECT_DOUBLE_EQ(left_out(biased)->mean, 0.2);
-  EXPECT_FALSE(left_out(biased)->is_noise);
+  biased.excluded = {false, true, true};
+  ASSERT_TRUE(excluded_samples(biased).has_value());
+  EXPECT_EQ(excluded_samples(biased)->samples, 2u);
+  EXPECT_DOUBLE_EQ(excluded_samples(biased)->mean, 0.2);
+  EXPECT_FALSE(excluded_samples(biased)->is_within_noise);
 }
 
 TEST(ResultTest, FaultsOfInstrumentsAreTold) {
@@ -429,9 +432,8 @@ TEST(ResultTest, FaultsOfInstrumentsAreTold) {
     Table table = good;
     spoil(table.columns[0].values, table.columns[2].values);
     folder.write("short.csv", table, 12);
-    const Outcome outcome =
-        find_outcome(read_job_file(folder.write("job.yaml", fit_job())).job, {});
-    return std::pair{report_text(outcome), result_json(outcome)["residual"]["tests"]};
+    const RunResult run_result = run(read_job_file(folder.write("job.yaml", fit_job())).job, {});
+    return std::pair{report_text(run_result), result_json(run_result)["residual"]["tests"]};
   };
   using Values = std::vector<double>;
   EXPECT_EQ(told([](const Values&, Values&) {}).first.find("Instruments"), std::string::npos);
@@ -449,12 +451,13 @@ TEST(ResultTest, FaultsOfInstrumentsAreTold) {
   EXPECT_NE(drift.find("The velocity of judge drifts: "), std::string::npos) << drift;
   EXPECT_LT(drift_test[1].at("drift").at("p_value"), 1e-3);
 
-  const auto [grid, grid_test] = told([](const Values&, Values& v) {
+  const auto [resolution, grid_test] = told([](const Values&, Values& v) {
     for (double& x : v) x = 0.01 * std::round(x / 0.01);
   });
-  EXPECT_NE(grid.find("The velocity of short is rounded to steps of 0.01 m/s."), std::string::npos)
-      << grid;
-  EXPECT_NEAR(grid_test[0].at("grid"), 0.01, 1e-9);
+  EXPECT_NE(resolution.find("The velocity of short has a resolution of 0.01 m/s."),
+            std::string::npos)
+      << resolution;
+  EXPECT_NEAR(grid_test[0].at("resolution"), 0.01, 1e-9);
 }
 
 /// The job of the rubbing mass, before anything is fitted.
@@ -483,8 +486,8 @@ TEST(ResultTest, InstrumentsAreJudgedInTheirUnits) {
   SeriesTest drifting;
   drifting.drift = {.per_second = 3.0, .standard_error = 0.1, .p_value = 1e-6, .span = -4.5};
   EXPECT_EQ(told(drifting),
-            "The velocity of fitted drifts: its residual changes by 0.006 m/s per second, "
-            "-0.009 m/s in all.");
+            "The velocity of fitted drifts: its residual changes by 0.006 m/s per second, -0.009 "
+            "m/s in total.");
   // An outlier's place is one of the series, which lacks what was left out.
   SeriesTest spoilt;
   spoilt.series.samples = {10, 20, 50};
@@ -492,17 +495,17 @@ TEST(ResultTest, InstrumentsAreJudgedInTheirUnits) {
   spoilt.outliers = {0, 2};
   ASSERT_EQ(job.recordings[0].times[50], 0.2);
   EXPECT_EQ(told(spoilt),
-            "The velocity of fitted has 2 outliers, the farthest 7.5 times the noise off at 0.2 s: "
-            "bad readings, or an event that comes a sample early or late.");
+            "The velocity of fitted has 2 outliers, the largest 7.5 times the noise at 0.2 s: bad "
+            "readings, or an event simulated one sample early or late.");
 }
 
 TEST(ResultTest, OutliersHaveTheTimesOfTheirSamples) {
   Found fit(rubbing_job());
-  SeriesTest& test = fit.outcome.diagnosis->tests[1];
+  SeriesTest& test = fit.run_result.diagnosis->tests[1];
   test.series.samples = {10, 20, 50};
   test.series.values = {4.5, 0.5, -7.5};
   test.outliers = {0, 2};
-  EXPECT_EQ(result_json(fit.outcome).at("residual").at("tests")[1].at("outliers"),
+  EXPECT_EQ(result_json(fit.run_result).at("residual").at("tests")[1].at("outliers"),
             Json::parse(R"([{"time_s": 0.04, "residual_over_sigma": 4.5},
                             {"time_s": 0.2, "residual_over_sigma": -7.5}])"));
 }
@@ -512,16 +515,16 @@ TEST(ResultTest, StrongCorrelationsOfEitherSignAreNamed) {
   for (const char* name : {"M", "B_a", "K_f"}) fit.parameters.push_back({name, 1.0, {}});
   fit.reduced_chi_square = 1.0;
   fit.correlation = Eigen::Matrix3d{{1.0, 0.96, -0.98}, {0.96, 1.0, 0.94}, {-0.98, 0.94, 1.0}};
-  EXPECT_NE(on_one_line(knowledge_text(fit))
+  EXPECT_NE(on_one_line(uncertainty_text(fit))
                 .find("Strongly correlated: M and K_f by -0.98, M and B_a by 0.96."),
             std::string::npos)
-      << knowledge_text(fit);
+      << uncertainty_text(fit);
 }
 
 TEST(ResultTest, TheNextExperimentPredictsWhatIsKnownAfterIt) {
-  Outcome outcome = Found(rubbing_job()).outcome;
-  outcome.wishes.experiment = true;
-  Suggestion& s = outcome.suggestion.emplace();
+  RunResult run_result = Found(rubbing_job()).run_result;
+  run_result.run_options.experiment = true;
+  Suggestion& s = run_result.suggestion.emplace();
   s.experiment = {.motion = StepMotion{}, .duration = 2.0, .words = "a step of 3 V"};
   s.limits = {.lowest = -1.0, .highest = 1.0, .speed = 0.5, .voltage = 10.0};
   const auto known = [](double value, double error) {
@@ -534,20 +537,20 @@ TEST(ResultTest, TheNextExperimentPredictsWhatIsKnownAfterIt) {
     s.now.parameters.push_back(known(value, 0.5));
     s.predicted.parameters.push_back(known(value, 0.125));
   }
-  EXPECT_EQ(result_json(outcome).at("next_experiment").at("predicted"), Json::parse(R"([
+  EXPECT_EQ(result_json(run_result).at("next_experiment").at("predicted"), Json::parse(R"([
     {"name": "M", "standard_error": 0.125, "confidence_interval": [3.75, 4.25]},
     {"name": "B_a", "standard_error": 0.125, "confidence_interval": [7.75, 8.25]}])"));
-  EXPECT_NE(on_one_line(suggestion_text(outcome))
+  EXPECT_NE(on_one_line(suggestion_text(run_result))
                 .find("95 % interval now predicted unit M 3.00 .. 5.00 3.75 .. 4.25 kg"),
             std::string::npos)
-      << suggestion_text(outcome);
+      << suggestion_text(run_result);
 }
 
 TEST(ResultTest, TheTimeOfAFitIsSaidToItsFirstDigit) {
   Job job;
   job.options.threads = 1;
   const auto told = [&](double seconds) {
-    return on_one_line(effort_text(job, {.evaluation = 0.01, .expected = seconds}));
+    return on_one_line(run_time_text(job, {.evaluation = 0.01, .expected = seconds}));
   };
   EXPECT_EQ(told(0.9),
             "The fit will take about a second on this machine with 1 thread; if the model does not "
@@ -559,20 +562,20 @@ TEST(ResultTest, TheTimeOfAFitIsSaidToItsFirstDigit) {
 }
 
 TEST(ResultTest, ErrorsOfAHeldSimulationStandBesideTheFreeRunningOnes) {
-  Outcome outcome;
-  outcome.file = rubbing_file();
-  ClosedLoop& loop = outcome.loop.emplace();
-  loop.result.job = outcome.file.job;
-  loop.models.resize(1);
+  RunResult run_result;
+  run_result.file = rubbing_file();
+  EffectSelection& selection = run_result.selection.emplace();
+  selection.result.job = run_result.file.job;
+  selection.models.resize(1);
   SignalScore score{{.fitted = true}, SignalErrors{.rmse = 0.5}, SignalErrors{0.25, 3.0, 1.5}};
-  outcome.scores = {{.signals = {score}, .forces = {{}, {}}}};
-  const auto told = [&] { return on_one_line(loop_text(outcome)); };
+  run_result.scores = {{.signals = {score}, .forces = {{}, {}}}};
+  const auto told = [&] { return on_one_line(selection_text(run_result)); };
   EXPECT_NE(told().find("Errors of the held simulation, before and after rmse of range red. chi2 "
                         "free-running rmse fitted, fit: velocity declared 0.25 m/s 3 % 1.5 "
                         "0.5 m/s "),
             std::string::npos)
       << told();
-  outcome.scores[0].signals[0].held.reset();
+  run_result.scores[0].signals[0].held.reset();
   EXPECT_NE(told().find("Errors of the free-running simulation, before and after rmse of range "
                         "red. chi2 fitted, fit: velocity declared 0.5 m/s 0 % 0 Missing force"),
             std::string::npos)
@@ -587,7 +590,7 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
                                                   "status",
                                                   "usable",
                                                   "interrupted",
-                                                  "out_of_time",
+                                                  "time_limit_reached",
                                                   "verdict",
                                                   "message",
                                                   "axis",
@@ -605,24 +608,24 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
                                                   "before",
                                                   "after",
                                                   "models",
-                                                  "closed_loop",
-                                                  "coupling_rate",
+                                                  "selection",
+                                                  "observer_gain",
                                                   "stages",
                                                   "starts",
                                                   "minima",
                                                   "iterations",
                                                   "seed",
                                                   "wall_time_s"}));
-  EXPECT_EQ(keys(json.at("closed_loop")),
+  EXPECT_EQ(keys(json.at("selection")),
             (std::vector<std::string>{"verdict", "explained", "held_out_blocks", "hints"}));
-  EXPECT_EQ(json.at("closed_loop").at("explained"), true);
-  EXPECT_EQ(json.at("closed_loop").at("held_out_blocks"), false);
+  EXPECT_EQ(json.at("selection").at("explained"), true);
+  EXPECT_EQ(json.at("selection").at("held_out_blocks"), false);
   int accepted = 0;
   for (const Json& effect : json.at("effects")) {
     EXPECT_EQ(keys(effect),
-              (std::vector<std::string>{"name", "slot", "meaning", "decision", "accepted", "reason",
-                                        "round", "score", "parameters", "p_value",
-                                        "validate_improvement_percent"}));
+              (std::vector<std::string>{"name", "acts_on", "meaning", "decision", "accepted",
+                                        "reason", "round", "score", "parameters", "p_value",
+                                        "validation_improvement_percent"}));
     EXPECT_EQ(effect.at("accepted"), effect.at("decision") == "accepted");
     EXPECT_NE(effect.at("reason"), "");
     if (!effect.at("accepted").get<bool>()) continue;
@@ -631,7 +634,7 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
     EXPECT_EQ(effect.at("parameters")[0].at("name"), "coulomb_friction.F_c");
     EXPECT_NEAR(effect.at("parameters")[0].at("value"), 6.0, 0.1);
     EXPECT_LT(effect.at("p_value"), 1e-3);
-    EXPECT_GT(effect.at("validate_improvement_percent"), 50.0);
+    EXPECT_GT(effect.at("validation_improvement_percent"), 50.0);
   }
   EXPECT_EQ(accepted, 1);
 
@@ -676,7 +679,7 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
     EXPECT_NE(found.text.find(part), std::string::npos) << part << " in\n" << found.text;
 
   // residuals.csv and fitted.yaml are of the final model.
-  const Csv csv(residuals_csv(found.outcome.job(), found.outcome.fit()));
+  const Csv csv(residuals_csv(found.run_result.job(), found.run_result.fit()));
   double squares = 0.0;
   for (std::size_t i = 0; i < 501; ++i) squares += csv.rows[i][4] * csv.rows[i][4];
   EXPECT_NEAR(std::sqrt(squares / 501.0) /
@@ -684,7 +687,7 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
               1.0, 1e-5);
   const TempFolder folder;
   Rig fitted = found.rig;
-  fitted.model = fitted_model(found.outcome.job(), found.outcome.fit());
+  fitted.model = fitted_model(found.run_result.job(), found.run_result.fit());
   Diagnostics diagnostics;
   const auto again =
       read_axis_file(folder.write("fitted.yaml", format_axis_file(fitted, "")), diagnostics);
@@ -697,7 +700,7 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
 
 TEST(ResultTest, BlocksHeldOutAreScoredApart) {
   const Found found(rubbing_job(false), true);
-  EXPECT_EQ(found.json.at("closed_loop").at("held_out_blocks"), true);
+  EXPECT_EQ(found.json.at("selection").at("held_out_blocks"), true);
   const Json& signals = found.json.at("after").at("recordings")[0].at("signals");
   ASSERT_EQ(signals.size(), 2u);
   std::set<std::string> roles;

@@ -114,10 +114,10 @@ struct Run {
 
 template <class T>
 Run<T> run(const Model<T>& model, const Schedule& command, std::span<const double> times,
-           const IntegratorOptions& options = {}, const Coupling& coupling = {},
-           const Measured& measured = {}) {
+           const IntegratorOptions& options = {}, const Observer& observer = {},
+           const TargetSeries& measured = {}) {
   Run<T> result;
-  const SimulationOutcome outcome = simulate(
+  const SimulationResult simulation_result = simulate(
       model, command, times,
       [&](std::size_t, const Integrator<T>& axis) {
         result.states.push_back(axis.state());
@@ -128,8 +128,8 @@ Run<T> run(const Model<T>& model, const Schedule& command, std::span<const doubl
         result.acceleration.push_back(
             value_of(axis.equations().acceleration(axis.mode(), axis.state(), axis.input())));
       },
-      coupling, measured, options);
-  result.finished = outcome.finished;
+      observer, measured, options);
+  result.finished = simulation_result.finished;
   return result;
 }
 

@@ -51,10 +51,10 @@ TEST(Derivatives, EqualDifferencesInTheRigidVariants) {
 }
 
 TEST(Derivatives, EqualDifferencesInACoupledRun) {
-  for (const Coupling& coupling : {Coupling::to_velocity(30.0, true), Coupling::to_position(300.0),
-                                   Coupling::to_velocity(3000.0, false)}) {
+  for (const Observer& observer : {Observer::of_velocity(30.0, true), Observer::of_position(300.0),
+                                   Observer::of_velocity(3000.0, false)}) {
     SCOPED_TRACE(testing::Message()
-                 << coupling.velocity << " " << coupling.position << " " << coupling.acceleration);
+                 << observer.velocity << " " << observer.position << " " << observer.acceleration);
     Experiment experiment = up_and_back();
     experiment.command = {{0.0, 0.3}, {10.0, 0.0}};
     experiment.times = instants(600, 1e-3);
@@ -65,7 +65,7 @@ TEST(Derivatives, EqualDifferencesInACoupledRun) {
     const Traces<double> measured = experiment.traces(other);
     experiment.velocity = measured.signals[0];
     experiment.position = measured.signals[2];
-    experiment.coupling = coupling;
+    experiment.observer = observer;
     expect_derivatives(experiment);
   }
 }

@@ -225,14 +225,14 @@ TEST_P(EveryEffect, DoesNotDependOnTheStep) {
     if (quantities(variant).empty()) continue;
     Experiment experiment = to_and_fro(variant, true);
     add_to(experiment.model, 1.0);
-    const auto standard = run(experiment.model, experiment.command, experiment.times);
+    const auto at_default_step = run(experiment.model, experiment.command, experiment.times);
     const auto small = run(experiment.model, experiment.command, experiment.times, {.step = 1e-4});
-    ASSERT_TRUE(standard.finished && small.finished);
-    EXPECT_EQ(standard.events.back(), small.events.back());
+    ASSERT_TRUE(at_default_step.finished && small.finished);
+    EXPECT_EQ(at_default_step.events.back(), small.events.back());
     // What is affine is exact. Else the current, which follows the preamplifier in microseconds,
     // has an error of its own at the end of a Runge-Kutta step; it does not add up.
     const bool smooth = Equations<double>(experiment.model).has_smooth_forces();
-    auto a = standard.states, b = small.states;
+    auto a = at_default_step.states, b = small.states;
     double current = 0.0;
     const double range = ranges(b)[6];
     for (std::size_t k = 0; k < a.size(); ++k) {

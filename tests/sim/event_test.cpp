@@ -490,7 +490,7 @@ TEST(Delay, HasMinusTheTimeDerivative) {
   double worst = 0.0;
   State<double> range{};
   std::vector<State<double>> error;
-  const auto outcome =
+  const auto simulation_result =
       simulate(model, level_command(), times, [&](std::size_t, const Integrator<J>& axis) {
         const State<J> f = axis.equations().rate(axis.mode(), axis.state(), axis.input());
         State<double> e;
@@ -500,7 +500,7 @@ TEST(Delay, HasMinusTheTimeDerivative) {
         }
         error.push_back(e);
       });
-  ASSERT_TRUE(outcome.finished);
+  ASSERT_TRUE(simulation_result.finished);
   for (const State<double>& e : error)
     for (std::size_t i = 0; i < kStates; ++i) worst = std::max(worst, std::abs(e[i]) / range[i]);
   std::cout << "derivative by T_d off by " << worst << "\n";

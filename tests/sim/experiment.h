@@ -34,22 +34,22 @@ struct Experiment {
   Model<double> model;
   Schedule command;
   std::vector<double> times;
-  Coupling coupling;
-  std::vector<double> velocity, position;  // what a coupled run is held to
+  Observer observer;
+  std::vector<double> velocity, position;  // what a tracking run is held to
 
   template <class T>
   Traces<T> traces(const Model<T>& at, const IntegratorOptions& options = {}) const {
     Traces<T> result;
     Recorder<T> recorder(at.instruments, kRecorded, times);
     const std::vector<double> v = recorder.refined(velocity), p = recorder.refined(position);
-    const auto outcome = simulate(
+    const auto simulation_result = simulate(
         at, command, recorder.instants(),
         [&](std::size_t i, const Integrator<T>& axis) {
           recorder.read(axis);
           if (recorder.is_sample(i)) result.events.push_back(axis.events());
         },
-        coupling, Measured{v, p}, options);
-    EXPECT_TRUE(outcome.finished);
+        observer, TargetSeries{v, p}, options);
+    EXPECT_TRUE(simulation_result.finished);
     for (std::size_t s = 0; s < kRecorded.size(); ++s) result.signals[s] = recorder.readings(s);
     return result;
   }

@@ -466,7 +466,7 @@ TEST(ForceLaw, OfTorquesIsInTheForceOfTheDrive) {
       model.structure.transmission = transmission;
       prepare(model);
       const Axis<double>& a = model.axis;
-      const auto outcome = simulate(
+      const auto simulation_result = simulate(
           model, level_command(), times, [&](std::size_t k, const Integrator<double>& axis) {
             const auto read = [&](Signal signal) {
               return reading(axis.equations(), signal, axis.mode(), axis.state(), axis.input());
@@ -480,7 +480,7 @@ TEST(ForceLaw, OfTorquesIsInTheForceOfTheDrive) {
                           force - friction * axis.state()[1], 1e-9);
             }
           });
-      EXPECT_TRUE(outcome.finished);
+      EXPECT_TRUE(simulation_result.finished);
     }
   };
   compare(

@@ -10,9 +10,9 @@ namespace axisfit {
 namespace {
 
 /// Guards as the equations have them, with rates by a unit step along f.
-Look by_equations(const Equations<double>& equations, const Mode& mode, const State<double>& y,
-                  Input<double> input, const Target& slope) {
-  Look seen;
+GuardValues by_equations(const Equations<double>& equations, const Mode& mode,
+                         const State<double>& y, Input<double> input, const Target& slope) {
+  GuardValues seen;
   equations.visit_guards(mode, y, input, [&](Guard, double g, double scale) {
     seen.nodes[seen.count++] = {g, 0.0, scale};
   });
@@ -29,14 +29,15 @@ Look by_equations(const Equations<double>& equations, const Mode& mode, const St
 }
 
 /// Expects the forms of one mode to give at every instant within a step what its equations do.
-void expect_followed(const Model<double>& model, const Coupling& coupling, const Mode& mode,
+void expect_followed(const Model<double>& model, const Observer& observer, const Mode& mode,
                      std::mt19937_64& random) {
   std::normal_distribution<double> normal;
-  const Equations<double> equations(model, coupling);
-  const Matrix<double> a = matrix_of(equations, mode);
-  const Driven<State<double>> b = driven_by(equations, mode);
-  Propagator<double> propagator(a, ladder_for(a, 1e-3, 12),
-                                {b[kByTargetVelocity], b[kByTargetPosition]}, equations.states());
+  const Equations<double> equations(model, observer);
+  const Matrix<double> a = system_matrix(equations, mode);
+  const PerInput<State<double>> b = input_matrix(equations, mode);
+  Propagator<double> propagator(a, step_levels_for(a, 1e-3, 12),
+                                {b[kTargetVelocityInput], b[kTargetPositionInput]},
+                                equations.states());
   const LinearGuards guards(equations, mode, a, b);
   constexpr int kLevel = 1, kHalvings = 3;
   const GuardForms forms(guards, propagator, kLevel, kHalvings, true);
@@ -46,17 +47,18 @@ void expect_followed(const Model<double>& model, const Coupling& coupling, const
   if (mode.sliding == 0) y[1] = 0.0;
   y[2] = (y[0] + 1e-5 * mode.contact) / model.axis.r_g;
   Input<double> input{4.0, {0.2, y[0]}, 0.0, {}};
-  const auto look = [&] { return guards.look(y, input, slopes); };
+  const auto guard_values = [&] { return guards.guard_values(y, input, slopes); };
 
-  const Look start = look();
+  const GuardValues start = guard_values();
   GuardCourse course(start, start, std::size_t{1} << kHalvings, 0.5e-3);
   forms.follow(start, equations.rate(mode, y, input), slopes, course);
   const double* inner = course.inner();
-  const double part = propagator.ladder().length(kLevel + kHalvings);
+  const double part = propagator.step_levels().length(kLevel + kHalvings);
   for (int k = 1; k < 1 << kHalvings; ++k) {
     y = propagator.advance(y, equations.rate(mode, y, input), slopes, kLevel + kHalvings);
     input.target.move(slope, part);
-    const Look linear = look(), exact = by_equations(equations, mode, y, input, slope);
+    const GuardValues linear = guard_values(),
+                      exact = by_equations(equations, mode, y, input, slope);
     ASSERT_EQ(linear.count, exact.count);
     for (std::size_t i = 0; i < exact.count; ++i, ++inner) {
       const auto& [value, rate, scale] = exact.nodes[i];
@@ -79,7 +81,7 @@ TEST(GuardForms, FollowTheGuardsThroughAStep) {
         mode.v_c = static_cast<std::int8_t>(v_c);
         mode.v_m = static_cast<std::int8_t>(v_m);
         mode.sliding = 1;
-        expect_followed(paper_axis(), Coupling::to_velocity(300.0, true), mode, random);
+        expect_followed(paper_axis(), Observer::of_velocity(300.0, true), mode, random);
       }
 }
 
@@ -88,19 +90,19 @@ TEST(GuardForms, FollowTheGuardsOfAnArmAtRestThatIsHeldToATarget) {
   std::mt19937_64 random(1);
   Model<double> model = paper_axis();
   add_effect<CoulombFriction>(model).F_c = 25.0;
-  for (const Coupling& coupling :
-       {Coupling::to_velocity(300.0, true), Coupling::to_position(300.0)})
+  for (const Observer& observer :
+       {Observer::of_velocity(300.0, true), Observer::of_position(300.0)})
     for (const int contact : {-1, 0, 1}) {
       Mode mode;
       mode.contact = static_cast<std::int8_t>(contact);
       mode.sliding = 0;
-      expect_followed(model, coupling, mode, random);
+      expect_followed(model, observer, mode, random);
     }
 }
 
 TEST(GuardCourse, SeesADipBetweenInstants) {
   const auto crossing = [](double start, double start_rate, double end, double end_rate) {
-    Look a, b;
+    GuardValues a, b;
     a.count = b.count = 1;
     a.nodes[0] = {start, start_rate, 0.0};
     b.nodes[0] = {end, end_rate, 0.0};
@@ -119,7 +121,7 @@ TEST(GuardCourse, SeesADipBetweenInstants) {
 // parts is off by 0.4 at the middle one: a quarter of that is the margin.
 TEST(GuardCourse, AllowsForWhatACubicGetsWrong) {
   const auto review = [](std::array<std::array<double, 2>, 3> course, bool doubted) {
-    std::array<Look, 3> looks;
+    std::array<GuardValues, 3> looks;
     for (std::size_t k = 0; k < 3; ++k) {
       looks[k].count = 1;
       looks[k].nodes[0] = {course[k][0], course[k][1], 0.0};

@@ -81,12 +81,12 @@ TEST(Integrator, DoesNotDependOnItsStepHoweverStiffTheCurrentLoop) {
     const Model<double> model = axis_with_gain(K_v);
     for (const auto& [name, command] : commands()) {
       SCOPED_TRACE(testing::Message() << "K_v " << K_v << ", " << name);
-      const auto standard = run(model, command, times);
+      const auto at_default_step = run(model, command, times);
       const auto small = run(model, command, times, {.step = 1e-5});
-      ASSERT_TRUE(standard.finished);
+      ASSERT_TRUE(at_default_step.finished);
       ASSERT_TRUE(small.finished);
-      EXPECT_EQ(standard.events.back(), small.events.back());
-      const State<double> e = errors(standard.states, small.states);
+      EXPECT_EQ(at_default_step.events.back(), small.events.back());
+      const State<double> e = errors(at_default_step.states, small.states);
       for (std::size_t i = 0; i < kStates; ++i) worst[i] = std::max(worst[i], e[i]);
       for (std::size_t i = 0; i < 6; ++i) EXPECT_LT(e[i], 1e-9) << "y" << i;
       // The current follows K_i (y4 + T_z y5): ten thousand volts that cancel down to a few. One
@@ -124,11 +124,11 @@ TEST(Integrator, DoesNotDependOnItsStepWhereTheLoopRings) {
   Model<double> model = paper_axis();
   model.axis.T_p = 0.0071;
   const auto times = instants(1000, 1e-3);
-  const auto standard = run(model, step_command(), times);
+  const auto at_default_step = run(model, step_command(), times);
   const auto small = run(model, step_command(), times, {.step = 1e-5});
-  ASSERT_TRUE(standard.finished && small.finished);
-  EXPECT_EQ(standard.events.back(), small.events.back());
-  EXPECT_LT(largest_difference(standard.states, small.states), 1e-8);
+  ASSERT_TRUE(at_default_step.finished && small.finished);
+  EXPECT_EQ(at_default_step.events.back(), small.events.back());
+  EXPECT_LT(largest_difference(at_default_step.states, small.states), 1e-8);
 }
 
 TEST(Integrator, PassesAGuardThatIsReachedAndLeftWithinTheShortestStep) {

@@ -16,10 +16,11 @@ class StepResponse {
  public:
   StepResponse(const Axis<double>& a, double U) {
     const double J = a.J_m + a.r_g * a.r_g * a.M, B = a.B_m + a.r_g * a.r_g * a.B_a;
-    const double g = a.K_m * a.K_i, loop = g * a.K_2 * a.K_t;
+    const double g = a.K_m * a.K_i, selection = g * a.K_2 * a.K_t;
     const double p2 = a.T_p * a.T_r, p1 = a.T_p + a.T_r;
     // Denominator d3 s^3 + d2 s^2 + d1 s + d0, numerator n (1 + T_z s).
-    const double d3 = J * p2, d2 = J * p1 + B * p2, d1 = J + B * p1 + loop * a.T_z, d0 = B + loop;
+    const double d3 = J * p2, d2 = J * p1 + B * p2, d1 = J + B * p1 + selection * a.T_z,
+                 d0 = B + selection;
     const double n = a.r_g * g * a.K_1 * U;
     final_ = n / d0;
     Eigen::Matrix3d companion;

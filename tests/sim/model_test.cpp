@@ -50,9 +50,9 @@ TEST(QuantityList, DescribesEveryQuantity) {
     EXPECT_FALSE(q.unit.empty()) << entry.name;
     EXPECT_FALSE(q.meaning.empty()) << entry.name;
     EXPECT_LT(q.lower, q.upper) << entry.name;
-    if (!std::isnan(q.standard)) {
-      EXPECT_GE(q.standard, q.lower) << entry.name;
-      EXPECT_LE(q.standard, q.upper) << entry.name;
+    if (!std::isnan(q.default_value)) {
+      EXPECT_GE(q.default_value, q.lower) << entry.name;
+      EXPECT_LE(q.default_value, q.upper) << entry.name;
     }
   }
 }
@@ -140,7 +140,7 @@ Names operator-(Names a, const Names& b) {
 }
 
 TEST(IsUsed, FollowsTheStructure) {
-  const Names loop{"R", "L", "K_e", "V_s", "K_v", "initial.y6"};
+  const Names selection{"R", "L", "K_e", "V_s", "K_v", "initial.y6"};
   const Names gear{"H", "b_g", "k_g", "initial.x", "initial.dx"};
   const Names electric{"K_m", "K_t", "T_z", "T_p",        "T_r",       "K_1",
                        "K_2", "K_i", "V_L", "initial.y4", "initial.y5"};
@@ -156,11 +156,11 @@ TEST(IsUsed, FollowsTheStructure) {
     Names of_axis, of_effects;  // left out by this structure
   } variants[] = {
       {Drive::velocity_loop, Transmission::backlash, {"K_f"}, {}},
-      {Drive::current_source, Transmission::backlash, loop + Names{"K_f"}, {}},
-      {Drive::force_source, Transmission::backlash, loop + electric, of_electric},
+      {Drive::current_source, Transmission::backlash, selection + Names{"K_f"}, {}},
+      {Drive::force_source, Transmission::backlash, selection + electric, of_electric},
       {Drive::velocity_loop, Transmission::rigid, gear + Names{"K_f"}, {}},
-      {Drive::current_source, Transmission::rigid, gear + loop + Names{"K_f"}, {}},
-      {Drive::force_source, Transmission::rigid, gear + loop + electric + motor,
+      {Drive::current_source, Transmission::rigid, gear + selection + Names{"K_f"}, {}},
+      {Drive::force_source, Transmission::rigid, gear + selection + electric + motor,
        of_electric + of_motor},
   };
   for (const auto& [drive, transmission, of_axis, of_effects] : variants) {
@@ -204,11 +204,11 @@ TEST(IsUsed, WhatIsNotUsedHasNoInfluence) {
 
 TEST(Refusal, OfAGearWithoutMotorInertia) {
   Model<double> model = paper_axis();
-  EXPECT_EQ(refusal(model), "");
+  EXPECT_EQ(model_error(model), "");
   model.axis.J_m = 0.0;
-  EXPECT_NE(refusal(model).find("J_m"), std::string::npos);
+  EXPECT_NE(model_error(model).find("J_m"), std::string::npos);
   model.structure.transmission = Transmission::rigid;
-  EXPECT_EQ(refusal(model), "");
+  EXPECT_EQ(model_error(model), "");
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct Recorded {
 Recorded recorded(const Model<double>& model, const Schedule& command,
                   std::span<const double> times) {
   Recorded result;
-  const auto outcome =
+  const auto simulation_result =
       simulate(model, command, times, [&](std::size_t, const Integrator<double>& axis) {
         const auto read = [&](Signal signal) {
           return reading(axis.equations(), signal, axis.mode(), axis.state(), axis.input());
@@ -25,22 +25,22 @@ Recorded recorded(const Model<double>& model, const Schedule& command,
         result.velocity.push_back(read(Signal::velocity));
         result.position.push_back(read(Signal::position));
       });
-  EXPECT_TRUE(outcome.finished);
+  EXPECT_TRUE(simulation_result.finished);
   return result;
 }
 
-/// Coupling force at every instant, N.
+/// Observer force at every instant, N.
 std::vector<double> coupling_forces(const Model<double>& model, const Schedule& command,
-                                    std::span<const double> times, const Coupling& coupling,
+                                    std::span<const double> times, const Observer& observer,
                                     const Recorded& data) {
   std::vector<double> forces;
-  const auto outcome = simulate(
+  const auto simulation_result = simulate(
       model, command, times,
       [&](std::size_t, const Integrator<double>& axis) {
-        forces.push_back(axis.equations().coupling_force(axis.state(), axis.input().target));
+        forces.push_back(axis.equations().observer_force(axis.state(), axis.input().target));
       },
-      coupling, Measured{data.velocity, data.position});
-  EXPECT_TRUE(outcome.finished);
+      observer, TargetSeries{data.velocity, data.position});
+  EXPECT_TRUE(simulation_result.finished);
   return forces;
 }
 
@@ -49,8 +49,8 @@ double rms(const std::vector<double>& values) {
                    static_cast<double>(values.size()));
 }
 
-const Coupling kCouplings[] = {Coupling::to_velocity(30.0, false),
-                               Coupling::to_velocity(1000.0, true), Coupling::to_position(100.0)};
+const Observer kCouplings[] = {Observer::of_velocity(30.0, false),
+                               Observer::of_velocity(1000.0, true), Observer::of_position(100.0)};
 
 // A parabola: the line through the corners is right in the mean over each interval of an even
 // sampling, and over all of them of an uneven one.
@@ -88,18 +88,18 @@ TEST(TargetCorners, OfTwoSamplesAreTheSamples) {
   EXPECT_EQ(target_corners(times, values), values);
 }
 
-TEST(Coupling, DoesNothingToAModelThatIsRight) {
+TEST(Observer, DoesNothingToAModelThatIsRight) {
   const Model<double> model = paper_axis();
-  for (const Coupling& coupling : kCouplings) {
+  for (const Observer& observer : kCouplings) {
     SCOPED_TRACE(testing::Message()
-                 << coupling.velocity << " " << coupling.position << " " << coupling.acceleration);
+                 << observer.velocity << " " << observer.position << " " << observer.acceleration);
     // What is left is the error of the line between samples: it falls with the square of their
     // distance, down to which the motion has to be smooth.
     double before = 0.0;
     for (const double dt : {2e-4, 1e-4, 0.5e-4}) {
       const auto times = instants(static_cast<std::size_t>(std::lround(0.4 / dt)), dt);
       const Recorded data = recorded(model, step_command(), times);
-      const double force = rms(coupling_forces(model, step_command(), times, coupling, data));
+      const double force = rms(coupling_forces(model, step_command(), times, observer, data));
       std::cout << "dt " << dt << ": " << force << " N\n";
       EXPECT_LT(force, 0.02 * 408.0);
       if (before > 0.0) {
@@ -110,18 +110,18 @@ TEST(Coupling, DoesNothingToAModelThatIsRight) {
   }
 }
 
-TEST(Coupling, StaysOnAMotionThatIsALineBetweenSamplesExactly) {
+TEST(Observer, StaysOnAMotionThatIsALineBetweenSamplesExactly) {
   // Constant acceleration, velocity recorded: the line is the motion.
   Model<double> model = driven_mass(12.0);
   const auto times = instants(500, 1e-3);
   const Schedule command{{0.0}, {24.0}};
   const Recorded data = recorded(model, command, times);
   for (const double force :
-       coupling_forces(model, command, times, Coupling::to_velocity(1000.0, false), data))
+       coupling_forces(model, command, times, Observer::of_velocity(1000.0, false), data))
     ASSERT_NEAR(force, 0.0, 1e-10);
 }
 
-TEST(Coupling, ForceConvergesToWhatTheModelLacks) {
+TEST(Observer, ForceConvergesToWhatTheModelLacks) {
   constexpr double F = 35.0;
   Model<double> truth = paper_axis();
   add_effect<ConstantForce>(truth).F_0 = F;
@@ -130,7 +130,7 @@ TEST(Coupling, ForceConvergesToWhatTheModelLacks) {
   // An arm held to a velocity has the missing force after some time constants, as far as the rest
   // of it (the motor behind the teeth) has settled; one held to position needs the motor as well.
   const auto forces = coupling_forces(paper_axis(), step_command(), times,
-                                      Coupling::to_velocity(200.0, false), data);
+                                      Observer::of_velocity(200.0, false), data);
   double mean = 0.0;
   for (std::size_t k = 300; k < 500; ++k) mean += forces[k] / 200.0;
   std::cout << "mean force " << mean << " N\n";
@@ -143,18 +143,18 @@ TEST(Coupling, ForceConvergesToWhatTheModelLacks) {
   add_effect<ConstantForce>(pushed).F_0 = F;
   const Recorded line = recorded(pushed, push, times);
   const auto approach =
-      coupling_forces(mass, push, times, Coupling::to_velocity(50.0, false), line);
+      coupling_forces(mass, push, times, Observer::of_velocity(50.0, false), line);
   for (std::size_t k = 0; k < times.size(); ++k)
     ASSERT_NEAR(approach[k], F * (1.0 - std::exp(-50.0 * times[k])), 1e-9 * F);
 }
 
-TEST(Coupling, ToPositionIsCriticallyDamped) {
+TEST(Observer, ToPositionIsCriticallyDamped) {
   // A mass at rest with its recorded position a step away: e = (1 + ...) exp(-w t), no overshoot.
   const Model<double> mass = driven_mass(12.0);
   constexpr double w = 40.0, away = 0.01;
   const auto times = instants(400, 1e-3);
   const std::vector<double> position(times.size(), away);
-  const auto r = run(mass, {}, times, {}, Coupling::to_position(w), Measured{{}, position});
+  const auto r = run(mass, {}, times, {}, Observer::of_position(w), TargetSeries{{}, position});
   ASSERT_TRUE(r.finished);
   for (std::size_t k = 0; k < times.size(); ++k) {
     // e' = -v - 2 w e, v' = w^2 e from e = away, v = 0.
@@ -164,7 +164,7 @@ TEST(Coupling, ToPositionIsCriticallyDamped) {
   }
 }
 
-TEST(Coupling, SeesThroughTheInstruments) {
+TEST(Observer, SeesThroughTheInstruments) {
   // Gain and bias of what was recorded do not make a force.
   Model<double> model = driven_mass(12.0);
   model.instruments[index_of(Signal::velocity)] = {1.2, 0.05};
@@ -173,24 +173,24 @@ TEST(Coupling, SeesThroughTheInstruments) {
   const Schedule command{{0.0}, {0.0}};
   model.initial[1] = 0.4;
   const Recorded data = recorded(model, command, times);
-  for (const Coupling& coupling : kCouplings)
-    for (const double force : coupling_forces(model, command, times, coupling, data))
+  for (const Observer& observer : kCouplings)
+    for (const double force : coupling_forces(model, command, times, observer, data))
       ASSERT_NEAR(force, 0.0, 1e-9);
 }
 
-TEST(Coupling, LeavesTheGearForceAlone) {
+TEST(Observer, LeavesTheGearForceAlone) {
   // The place of the axis is corrected, arm and motor together.
   Model<double> model = paper_axis();
   const auto times = instants(100, 1e-3);
   const auto free = run(model, step_command(), times);
   std::vector<double> position;
   for (const State<double>& y : free.states) position.push_back(y[2] * model.axis.r_g + 0.02);
-  const auto held =
-      run(model, step_command(), times, {}, Coupling{0.0, 50.0, 0.0}, Measured{{}, position});
+  const auto tracking =
+      run(model, step_command(), times, {}, Observer{0.0, 50.0, 0.0}, TargetSeries{{}, position});
   for (std::size_t k = 0; k < times.size(); ++k) {
     const auto gear = [&](const State<double>& y) { return model.axis.r_g * y[2] - y[0]; };
-    ASSERT_NEAR(gear(held.states[k]), gear(free.states[k]), 1e-12);
-    ASSERT_NEAR(held.states[k][1], free.states[k][1], 1e-10);
+    ASSERT_NEAR(gear(tracking.states[k]), gear(free.states[k]), 1e-12);
+    ASSERT_NEAR(tracking.states[k][1], free.states[k][1], 1e-10);
   }
 }
 

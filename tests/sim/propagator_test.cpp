@@ -44,8 +44,8 @@ State<T> unit(std::size_t j) {
 
 /// A propagator of which the first ramp leads to state j.
 template <class T>
-Propagator<T> with_ramp(const Matrix<T>& a, const Ladder& ladder, std::size_t j) {
-  return Propagator<T>(a, ladder, {unit<T>(j), State<T>{}});
+Propagator<T> with_ramp(const Matrix<T>& a, const StepLevels& step_levels, std::size_t j) {
+  return Propagator<T>(a, step_levels, {unit<T>(j), State<T>{}});
 }
 
 constexpr Slopes kFlat{}, kRising{1.0, 0.0};
@@ -53,9 +53,9 @@ constexpr Slopes kFlat{}, kRising{1.0, 0.0};
 /// Largest errors of the columns of exp, Psi and Xi at a level, by the largest entry of each
 /// matrix.
 void expect_exact(const Matrix<double>& a, double step, int least, double tolerance) {
-  const Ladder ladder = ladder_for(a, step, least);
+  const StepLevels step_levels = step_levels_for(a, step, least);
   std::vector<Propagator<double>> propagators;
-  for (std::size_t j = 0; j < kStates; ++j) propagators.push_back(with_ramp(a, ladder, j));
+  for (std::size_t j = 0; j < kStates; ++j) propagators.push_back(with_ramp(a, step_levels, j));
   const State<double> zero{};
   const auto close = [&](const char* what, int level, std::size_t j, const State<double>& column,
                          const Long& truth) {
@@ -66,8 +66,8 @@ void expect_exact(const Matrix<double>& a, double step, int least, double tolera
           << what << " level " << level << " (" << i << ", " << j << ")";
     }
   };
-  for (int level = 0; level <= ladder.last; level += std::max(1, ladder.last / 3)) {
-    const Exact truth = exact(a, ladder.length(level));
+  for (int level = 0; level <= step_levels.last; level += std::max(1, step_levels.last / 3)) {
+    const Exact truth = exact(a, step_levels.length(level));
     for (std::size_t j = 0; j < kStates; ++j) {
       const State<double> e = unit<double>(j);
       Propagator<double>& propagator = propagators[j];
@@ -77,7 +77,7 @@ void expect_exact(const Matrix<double>& a, double step, int least, double tolera
     }
   }
   for (const double share : {1.0, 0.37, 1e-3}) {
-    const double length = share * ladder.length(ladder.resolved);
+    const double length = share * step_levels.length(step_levels.resolved);
     const Exact truth = exact(a, length);
     for (std::size_t j = 0; j < kStates; ++j) {
       const auto series = [&](const State<double>& f, const Slopes& slopes) {
@@ -94,7 +94,7 @@ TEST(Propagator, OfADecayHasItsClosedForm) {
     Matrix<double> a{};
     a[2][2] = -rate;
     constexpr double h = 0.5e-3;
-    Propagator<double> propagator = with_ramp(a, ladder_for(a, h, 0), 2);
+    Propagator<double> propagator = with_ramp(a, step_levels_for(a, h, 0), 2);
     const State<double> zero{}, e = unit<double>(2);
     const double z = -rate * h;
     // phi_2 by its series where the closed form cancels.
@@ -111,7 +111,7 @@ TEST(Propagator, OfAnOscillatorHasItsClosedForm) {
     a[0][1] = 1.0;
     a[1][0] = -w * w;
     constexpr double h = 0.5e-3;
-    Propagator<double> propagator = with_ramp(a, ladder_for(a, h, 0), 1);
+    Propagator<double> propagator = with_ramp(a, step_levels_for(a, h, 0), 1);
     const State<double> zero{}, e = unit<double>(1);
     const State<double> psi = propagator.advance(zero, e, kFlat, 0);
     EXPECT_NEAR(psi[0], (1.0 - std::cos(w * h)) / (w * w), 1e-12 * h / w);
@@ -126,7 +126,7 @@ TEST(Propagator, OfANilpotentMatrixIsAPolynomial) {
   for (std::size_t i = 0; i + 1 < kStates; ++i) a[i][i + 1] = 3.0;
   constexpr double h = 0.5;
   for (const int least : {0, 5}) {
-    Propagator<double> propagator = with_ramp(a, ladder_for(a, h, least), kStates - 1);
+    Propagator<double> propagator = with_ramp(a, step_levels_for(a, h, least), kStates - 1);
     const State<double> zero{}, e = unit<double>(kStates - 1);
     const State<double> psi = propagator.advance(zero, e, kFlat, 0);
     const State<double> xi = propagator.advance(zero, zero, kRising, 0);
@@ -139,14 +139,14 @@ TEST(Propagator, OfANilpotentMatrixIsAPolynomial) {
   }
 }
 
-TEST(Ladder, FindsNoRateInAChainOfIntegrators) {
+TEST(StepLevels, FindsNoRateInAChainOfIntegrators) {
   // As far as the eighth power sees it, which is further than any chain of the axis goes. A longer
   // one is taken to be fast; that costs steps, not accuracy, see OfANilpotentMatrixIsAPolynomial.
   static_assert(kPaperStates < 8);
   for (std::size_t length = 1; length <= 8; ++length) {
     Matrix<double> a{};
     for (std::size_t i = 0; i + 1 < length; ++i) a[i][i + 1] = 3e3;
-    EXPECT_EQ(ladder_for(a, 0.5, 0).resolved, 0) << length;
+    EXPECT_EQ(step_levels_for(a, 0.5, 0).resolved, 0) << length;
   }
 }
 
@@ -193,7 +193,7 @@ TEST(Propagator, StepsCompose) {
   // Two steps of half the length are one, with a slope in time as well.
   const Matrix<double> a = stiff_matrix(1e5);
   const State<double> y{0.1, 0.2, 15.0, 30.0, 2.0, -50.0, 3.0};
-  Propagator<double> propagator(a, ladder_for(a, 0.5e-3, 3),
+  Propagator<double> propagator(a, step_levels_for(a, 0.5e-3, 3),
                                 {State<double>{0.0, 1.0, 2.0, 3.0, 0.0, 0.0, 7.0},
                                  State<double>{0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0}});
   constexpr Slopes slope{1.0, 5.0};
@@ -202,7 +202,7 @@ TEST(Propagator, StepsCompose) {
     propagator.add_ramps(f, slope, t);
     return f;
   };
-  const double half = propagator.ladder().length(1);
+  const double half = propagator.step_levels().length(1);
   const State<double> once = propagator.advance(y, rate(y, 0.0), slope, 0);
   const State<double> middle = propagator.advance(y, rate(y, 0.0), slope, 1);
   const State<double> twice = propagator.advance(middle, rate(middle, half), slope, 1);
@@ -221,7 +221,7 @@ TEST(Propagator, CarriesDerivatives) {
       using T = std::decay_t<decltype(a[0][0])>;
       State<T> start;
       for (std::size_t i = 0; i < kStates; ++i) start[i] = T(y[i]);
-      Propagator<T> propagator = with_ramp(a, ladder_for(a, 0.5e-3, 0), 5);
+      Propagator<T> propagator = with_ramp(a, step_levels_for(a, 0.5e-3, 0), 5);
       return propagator.advance(start, propagator.a_times(start), {5.0, 0.0}, 0);
     };
     const auto at = [&, row = row, column = column](double change) {
@@ -246,15 +246,15 @@ TEST(Propagator, CarriesDerivatives) {
   }
 }
 
-TEST(Ladder, ReachesDownToTheFastestMotion) {
+TEST(StepLevels, ReachesDownToTheFastestMotion) {
   for (const double rate : {1e2, 1e5, 1e8}) {
     const Matrix<double> a = stiff_matrix(rate);
-    const Ladder ladder = ladder_for(a, 0.5e-3, 0);
+    const StepLevels step_levels = step_levels_for(a, 0.5e-3, 0);
     const double fastest = std::max(rate, 6e3);
-    EXPECT_LE(ladder.length(ladder.resolved) * fastest, 2.0) << rate;
-    EXPECT_GE(ladder.length(ladder.resolved) * fastest, 0.05) << rate;
-    EXPECT_EQ(ladder.last, ladder.resolved);
-    EXPECT_EQ(ladder_for(a, 0.5e-3, 40).last, 40);
+    EXPECT_LE(step_levels.length(step_levels.resolved) * fastest, 2.0) << rate;
+    EXPECT_GE(step_levels.length(step_levels.resolved) * fastest, 0.05) << rate;
+    EXPECT_EQ(step_levels.last, step_levels.resolved);
+    EXPECT_EQ(step_levels_for(a, 0.5e-3, 40).last, 40);
   }
 }
 

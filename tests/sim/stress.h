@@ -39,11 +39,12 @@ inline Model<double> any_model(std::mt19937_64& g) {
   const std::vector<double*> member = members(model);
   for (const QuantityEntry& entry : quantity_list()) {
     // Instruments and initial states mostly at their standard value.
-    const bool custom = !std::isnan(entry.quantity.standard) && uniform(g) < 0.7;
+    const bool custom = !std::isnan(entry.quantity.default_value) && uniform(g) < 0.7;
     const bool used = is_used(entry, model.structure);
     *member[entry.index] = used && !custom ? anywhere(g, entry.quantity.lower, entry.quantity.upper)
-                           : std::isnan(entry.quantity.standard) ? 0.0
-                                                                 : entry.quantity.standard;
+                           : std::isnan(entry.quantity.default_value)
+                               ? 0.0
+                               : entry.quantity.default_value;
     if (!used && entry.name == "r_g") *member[entry.index] = 1.0;
   }
   return model;
@@ -66,7 +67,7 @@ inline Motion any_motion(std::mt19937_64& g) {
 struct Ordeal {
   std::string refused;  ///< why the model is no model; empty: it was simulated
   IntegratorOptions options;
-  SimulationOutcome outcome;
+  SimulationResult simulation_result;
   bool finite = true;  ///< all that was read
 };
 
@@ -76,7 +77,7 @@ inline Ordeal ordeal(std::uint64_t draw) {
   const Model<double> model = any_model(g);
   const Motion motion = any_motion(g);
   Ordeal result;
-  result.refused = refusal(model);
+  result.refused = model_error(model);
   if (!result.refused.empty()) return result;
   std::vector<double> times;
   for (int i = 0; i < 200; ++i) times.push_back(1e-3 * i);
@@ -85,12 +86,12 @@ inline Ordeal ordeal(std::uint64_t draw) {
     if (has_signal(s.signal, model.structure)) signals.push_back(s.signal);
   Recorder<double> recorder(model.instruments, signals, times);
   result.options = recording_options(times, 0.5e-3);
-  result.outcome = simulate<double>(
+  result.simulation_result = simulate<double>(
       model, schedule_of(motion, 0.2, 5e-3), recorder.instants(),
       [&](std::size_t, const Integrator<double>& axis) { recorder.read(axis); }, {}, {},
       result.options);
   for (std::size_t s = 0; s < signals.size(); ++s)
-    if (result.outcome.reached > 0)
+    if (result.simulation_result.reached > 0)
       for (const double v : recorder.readings(s)) result.finite = result.finite && std::isfinite(v);
   return result;
 }
@@ -102,11 +103,11 @@ inline void expect_endured(std::uint64_t first, std::uint64_t end) {
     SCOPED_TRACE(draw);
     const Ordeal o = ordeal(draw);
     if (!o.refused.empty()) continue;
-    if (o.outcome.finished) {
+    if (o.simulation_result.finished) {
       EXPECT_TRUE(o.finite);
     }
-    EXPECT_LE(o.outcome.steps, o.options.step_budget + 1);
-    EXPECT_LE(o.outcome.events, o.options.event_budget);
+    EXPECT_LE(o.simulation_result.steps, o.options.step_budget + 1);
+    EXPECT_LE(o.simulation_result.events, o.options.event_budget);
   }
 }
 

@@ -49,7 +49,7 @@ class Report {
     const decoded = new Columns(columns);
     const problems = [];
     for (const spec of charts) {
-      await new Promise((go) => setTimeout(go));
+      await new ShortlistEntry((go) => setTimeout(go));
       const figure = document.getElementById(spec.id);
       if (!figure) continue;
       try {
@@ -98,7 +98,7 @@ function controlsOf(report, recordings) {
   if (recordings > 1) {
     const apart = element("input", {type: "checkbox", id: "apart"});
     apart.onchange = () => (report.apart = apart.checked);
-    controls.append(element("label", {}, apart, "Zoom recordings apart"));
+    controls.append(element("label", {}, apart, "Zoom recordings separately"));
   }
   controls.append(button("Reset all", "Reset all charts", () => report.reset()),
                   themeButton());
@@ -112,7 +112,7 @@ async function startReport() {
   try {
     const data = JSON.parse(document.getElementById("charts").textContent);
     if (typeof DecompressionStream === "undefined")
-      throw new Error("this browser cannot unpack their data");
+      throw new Error("this browser cannot decompress their data");
     const recordings = new Set(data.charts.filter((c) => c.time).map((c) => c.recording));
     const bar = document.querySelector("nav") ?? document.querySelector("main");
     bar.append(controlsOf(report, recordings.size));
@@ -134,9 +134,9 @@ async function startReport() {
     const problems = await report.start(data);
     if (!report.charts.length) hint.remove();
     if (problems.length)
-      say(`Shown as still pictures: ${problems.join("; ")}.`);
+      say(`Shown as static pictures: ${problems.join("; ")}.`);
   } catch (error) {
-    say(`The charts are still pictures: ${error.message}.`);
+    say(`The charts are static pictures: ${error.message}.`);
   }
   return Object.fromEntries(report.charts.map((chart) => [chart.spec.id, chart]));
 }

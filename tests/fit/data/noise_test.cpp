@@ -44,7 +44,7 @@ TEST(Noise, OfAnEncoderIsItsRounding) {
   std::vector<double> values = smooth_signal(4000);
   const double count = 5e-4;
   for (double& x : values) x = count * std::floor(x / count);
-  EXPECT_NEAR(quantum(values), count, 1e-9);
+  EXPECT_NEAR(resolution_of(values), count, 1e-9);
   const double rounding = count / std::sqrt(12.0);
   EXPECT_GE(noise_from_differences(values), rounding * (1.0 - 1e-9));
   EXPECT_LE(noise_from_differences(values), 1.25 * rounding);
@@ -59,7 +59,7 @@ TEST(Noise, HasNoGridInRealNumbers) {
   std::normal_distribution<double> normal(0.0, 1.0);
   std::vector<double> values(1000);
   for (double& x : values) x = normal(generator);
-  EXPECT_EQ(quantum(values), 0.0);
+  EXPECT_EQ(resolution_of(values), 0.0);
 }
 
 TEST(Noise, OfAConstantIsZero) {

@@ -62,17 +62,18 @@ TEST(TellingCouplingTest, ShowsAHundredthOfTheAccelerationAboveTheNoise) {
              &velocity = recording.measurements[1].values;
   // An acceleration of 0.1 kRate^2 / sqrt(2), noise of 1e-5 m and 2e-3 m/s.
   const double missing = 0.01 * 0.1 * kRate * kRate / std::sqrt(2.0);
-  EXPECT_NEAR(telling_coupling(recording.times, position, {}), std::sqrt(missing / 1e-4), 1.0);
+  EXPECT_NEAR(suggested_observer_gain(recording.times, position, {}), std::sqrt(missing / 1e-4),
+              1.0);
   // The loosest: ten times in two seconds.
   EXPECT_NEAR(missing / 2e-2, 2.4, 0.1);
-  EXPECT_NEAR(telling_coupling(recording.times, {}, velocity), 10.0 / 2.0, 0.1);
+  EXPECT_NEAR(suggested_observer_gain(recording.times, {}, velocity), 10.0 / 2.0, 0.1);
   // The firmest: with next to no noise all shows.
   std::mt19937_64 generator(1);
   std::normal_distribution<double> noise(0.0, 4e-8);
   std::vector<double> clean;
   for (const double t : recording.times)
     clean.push_back(0.1 * std::sin(kRate * t) + noise(generator));
-  EXPECT_NEAR(telling_coupling(recording.times, clean, {}), 0.3 / kInterval, 1e-6);
+  EXPECT_NEAR(suggested_observer_gain(recording.times, clean, {}), 0.3 / kInterval, 1e-6);
 }
 
 TEST(RateRatioTest, FindsFactorAndSignThroughNoiseAndBias) {
@@ -103,9 +104,9 @@ TEST(RecordingCheckTest, ASoundRecordingHasNothingWrong) {
   const RecordingCheck check = check_recording(moving());
   ASSERT_EQ(check.measurements.size(), 3u);
   for (const ValueCheck& values : check.measurements) {
-    EXPECT_EQ(values.frozen, 0u);
+    EXPECT_EQ(values.stuck, 0u);
     EXPECT_EQ(values.clipped, 0u);
-    EXPECT_EQ(values.grid, 0.0);
+    EXPECT_EQ(values.resolution, 0.0);
   }
   EXPECT_NEAR(check.measurements[1].noise, 2e-3, 2e-4);
   EXPECT_NEAR(check.measurements[0].high, 0.1, 1e-4);
@@ -115,7 +116,7 @@ TEST(RecordingCheckTest, ASoundRecordingHasNothingWrong) {
   EXPECT_EQ(check.switches, 2u);
   EXPECT_EQ(check.command.low, -3.0);
   EXPECT_EQ(check.command.high, 2.0);
-  EXPECT_NEAR(check.at_largest, 0.25, 1e-3);  // 0.5 s of 2 s at -3 V
+  EXPECT_NEAR(check.at_maximum, 0.25, 1e-3);  // 0.5 s of 2 s at -3 V
   EXPECT_NEAR(check.speed, 0.1 * kRate, 0.02);
 }
 
@@ -124,8 +125,8 @@ TEST(RecordingCheckTest, FindsASensorThatHangs) {
   std::vector<double>& velocity = recording.measurements[1].values;
   for (std::size_t i = 1100; i < 1160; ++i) velocity[i] = velocity[1100];
   const ValueCheck check = check_recording(recording).measurements[1];
-  EXPECT_EQ(check.frozen, 60u);
-  EXPECT_EQ(check.frozen_at, recording.times[1100]);
+  EXPECT_EQ(check.stuck, 60u);
+  EXPECT_EQ(check.stuck_at, recording.times[1100]);
   EXPECT_EQ(check.clipped, 0u);
 }
 
@@ -143,7 +144,7 @@ TEST(RecordingCheckTest, ARestIsNeitherHangingNorClipped) {
     for (Measurement& m : recording.measurements)
       m.values[i] = m.signal == Signal::position ? recording.measurements[0].values[1499] : 0.0;
   for (const ValueCheck& values : check_recording(recording).measurements) {
-    EXPECT_EQ(values.frozen, 0u);
+    EXPECT_EQ(values.stuck, 0u);
     EXPECT_EQ(values.clipped, 0u);
   }
 }

@@ -26,8 +26,8 @@ struct Phase {
 };
 
 double velocity_at(double t, double moving, const std::vector<Phase>& rests) {
-  for (const Phase& rest : rests)
-    if (t >= rest.begin && t < rest.end) return 0.0;
+  for (const Phase& standstill : rests)
+    if (t >= standstill.begin && t < standstill.end) return 0.0;
   return moving;
 }
 
@@ -67,9 +67,9 @@ Recording without(Recording recording, Signal signal) {
 }
 
 /// Share of the samples of a phase that are said to rest.
-double share(const std::vector<bool>& rest, Phase phase) {
+double share(const std::vector<bool>& standstill, Phase phase) {
   const auto at = [](double t) { return static_cast<std::ptrdiff_t>(std::lround(t / kStep)); };
-  const auto begin = rest.begin() + at(phase.begin), end = rest.begin() + at(phase.end);
+  const auto begin = standstill.begin() + at(phase.begin), end = standstill.begin() + at(phase.end);
   return static_cast<double>(std::count(begin, end, true)) / static_cast<double>(end - begin);
 }
 
@@ -81,21 +81,21 @@ TEST(Rest, IsFoundByTheVelocityOrElseThePosition) {
   const Recording both = recorded(0.2, rests);
   for (const Recording& recording :
        {both, without(both, Signal::position), without(both, Signal::velocity)}) {
-    const std::vector<bool> rest = resting(recording);
-    ASSERT_EQ(rest.size(), kSamples);
+    const std::vector<bool> standstill = at_standstill(recording);
+    ASSERT_EQ(standstill.size(), kSamples);
     // Up to the ends of the recording, and nowhere in motion; a window at the border sees both.
-    EXPECT_GT(share(rest, {0.0, 0.3 - kHalf}), 0.99);
-    EXPECT_EQ(share(rest, {0.3 + kHalf, 0.8 - kHalf}), 0.0);
-    EXPECT_GT(share(rest, {0.8 + kHalf, 1.2 - kHalf}), 0.99);
-    EXPECT_EQ(share(rest, {1.2 + kHalf, 1.7 - kHalf}), 0.0);
-    EXPECT_GT(share(rest, {1.7 + kHalf, 2.0}), 0.99);
+    EXPECT_GT(share(standstill, {0.0, 0.3 - kHalf}), 0.99);
+    EXPECT_EQ(share(standstill, {0.3 + kHalf, 0.8 - kHalf}), 0.0);
+    EXPECT_GT(share(standstill, {0.8 + kHalf, 1.2 - kHalf}), 0.99);
+    EXPECT_EQ(share(standstill, {1.2 + kHalf, 1.7 - kHalf}), 0.0);
+    EXPECT_GT(share(standstill, {1.7 + kHalf, 2.0}), 0.99);
   }
 }
 
 TEST(Rest, IsHardlyEverMissedUnderNoise) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Recording recording = recorded(0.0, {}, seed);
-    EXPECT_GT(share(resting(recording), {0.0, 2.0}), 0.97) << seed;
+    EXPECT_GT(share(at_standstill(recording), {0.0, 2.0}), 0.97) << seed;
   }
 }
 
@@ -103,44 +103,44 @@ TEST(Rest, IsNotSlowMotion) {
   // Less than the noise of one sample, more than that of the mean over 25.
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Recording recording = recorded(1.3 * kVelocityNoise, {}, seed);
-    EXPECT_EQ(share(resting(recording), {0.0, 2.0}), 0.0) << seed;
+    EXPECT_EQ(share(at_standstill(recording), {0.0, 2.0}), 0.0) << seed;
     const Recording by_position =
         without(recorded(10.0 * kPositionNoise / (24 * kStep), {}, seed), Signal::velocity);
-    EXPECT_EQ(share(resting(by_position), {0.0, 2.0}), 0.0) << seed;
+    EXPECT_EQ(share(at_standstill(by_position), {0.0, 2.0}), 0.0) << seed;
   }
 }
 
 TEST(Rest, IsNotAShortPauseNorATurn) {
   const Recording pause = recorded(0.2, {{1.0, 1.04}});
-  EXPECT_EQ(share(resting(pause), {0.0, 2.0}), 0.0);
+  EXPECT_EQ(share(at_standstill(pause), {0.0, 2.0}), 0.0);
   Recording turn = recorded(0.0, {});
   for (std::size_t k = 0; k < kSamples; ++k)
     turn.measurements[0].values[k] += 2.0 * (turn.times[k] - 1.0);
-  EXPECT_EQ(share(resting(turn), {0.0, 2.0}), 0.0);
+  EXPECT_EQ(share(at_standstill(turn), {0.0, 2.0}), 0.0);
   // As long as twice the window it counts.
-  const Recording rest = recorded(0.2, {{1.0, 1.1}});
-  EXPECT_GT(share(resting(rest), {1.0 + kHalf, 1.1 - kHalf}), 0.99);
+  const Recording standstill = recorded(0.2, {{1.0, 1.1}});
+  EXPECT_GT(share(at_standstill(standstill), {1.0 + kHalf, 1.1 - kHalf}), 0.99);
 }
 
 TEST(Rest, IsUnknownWithoutVelocityAndPosition) {
   const Recording recording =
       without(without(recorded(0.0, {}), Signal::velocity), Signal::position);
-  EXPECT_TRUE(resting(recording).empty());
+  EXPECT_TRUE(at_standstill(recording).empty());
   Recording shorter = recorded(0.0, {});
   shorter.times.resize(40);
   for (Measurement& m : shorter.measurements) m.values.resize(40);
-  EXPECT_TRUE(resting(shorter).empty());
+  EXPECT_TRUE(at_standstill(shorter).empty());
 }
 
 TEST(Rest, LeavesOutTheAccelerationAlone) {
   Recording recording = recorded(0.2, {{1.0, 2.0}});
-  leave_out_acceleration_at_rest(recording);
+  exclude_acceleration_at_standstill(recording);
   for (const Measurement& m : recording.measurements) {
     EXPECT_TRUE(m.counts(500));
     EXPECT_EQ(m.counts(1500), m.signal != Signal::acceleration);
   }
   Recording unknown = without(without(recording, Signal::velocity), Signal::position);
-  leave_out_acceleration_at_rest(unknown);
+  exclude_acceleration_at_standstill(unknown);
   EXPECT_TRUE(unknown.measurements[0].counts(1500));
 }
 
@@ -155,12 +155,12 @@ TEST(Rest, OfTheCleanRecordingComesAfterItsStep) {
   // The position is that of the motor, which rests while the arm still rings against it.
   for (const auto& [by, begin] :
        {std::pair{recording, 2120.0}, std::pair{without(recording, Signal::velocity), 1970.0}}) {
-    const std::vector<bool> rest = resting(by);
-    ASSERT_EQ(rest.size(), 2501U);
-    const auto first = std::ranges::find(rest, true) - rest.begin();
+    const std::vector<bool> standstill = at_standstill(by);
+    ASSERT_EQ(standstill.size(), 2501U);
+    const auto first = std::ranges::find(standstill, true) - standstill.begin();
     std::cout << "rest from " << first << " ms\n";
     EXPECT_NEAR(static_cast<double>(first), begin, 25.0);
-    EXPECT_EQ(std::find(rest.begin() + first, rest.end(), false), rest.end());
+    EXPECT_EQ(std::find(standstill.begin() + first, standstill.end(), false), standstill.end());
   }
 }
 
@@ -169,11 +169,11 @@ TEST(NoiseAtRest, IsWhatTheInstrumentsShowThere) {
   // An offset that differs between rests is no noise, nor is motion.
   for (std::size_t k = 1000; k < kSamples; ++k) recording.measurements[2].values[k] += 3.0;
   for (std::size_t k = 0; k < 250; ++k) recording.measurements[2].values[k] *= 10.0;
-  EXPECT_NEAR(noise_at_rest(recording, recording.measurements[2]), 0.05, 0.05 * 0.1);
-  EXPECT_NEAR(noise_at_rest(recording, recording.measurements[0]), kVelocityNoise,
+  EXPECT_NEAR(noise_at_standstill(recording, recording.measurements[2]), 0.05, 0.05 * 0.1);
+  EXPECT_NEAR(noise_at_standstill(recording, recording.measurements[0]), kVelocityNoise,
               0.1 * kVelocityNoise);
   const Recording moving = recorded(0.1, {});
-  EXPECT_EQ(noise_at_rest(moving, moving.measurements[2]), 0.0);
+  EXPECT_EQ(noise_at_standstill(moving, moving.measurements[2]), 0.0);
 }
 
 TEST(NoiseAtRest, IsTheSampleStandardDeviation) {
@@ -186,7 +186,7 @@ TEST(NoiseAtRest, IsTheSampleStandardDeviation) {
   }
   recording.measurements = {
       measurement(Signal::velocity, kVelocityNoise, std::vector<double>(kFew, 0.0)), acceleration};
-  EXPECT_NEAR(noise_at_rest(recording, acceleration), std::sqrt(60.0 / 59.0), 1e-12);
+  EXPECT_NEAR(noise_at_standstill(recording, acceleration), std::sqrt(60.0 / 59.0), 1e-12);
 }
 
 }  // namespace

@@ -22,42 +22,43 @@ class SeparationTest : public testing::Test {
     job.recordings = {recorded(model_, StepMotion{1.0, 0.0}, 0.5, 1, {Signal::velocity})};
     loop_.result.fit = result_at_start(job);
   }
-  Separation advice(Signal signal, double bias, const MachineLimits& limits) const {
-    Rivals rivals{"this", "that", model_, model_};
+  Discrimination advice(Signal signal, double bias, const MachineLimits& limits) const {
+    UndecidedPair rivals{"this", "that", model_, model_};
     rivals.with_rival.instruments[index_of(signal)].bias = bias;
-    return what_separates(loop_, rivals, ControllerSettings(), limits);
+    return discriminate(loop_, rivals, ControllerSettings(), limits);
   }
 
   /// No motion keeps to these: only those that were recorded are left.
   static constexpr MachineLimits kNone{0.0, 0.0, 1e-9, 1.0};
 
   Model<double> model_;
-  ClosedLoop loop_;
+  EffectSelection loop_;
 };
 
 // Without a known noise it is a thousandth of the range, here 0.25 mm.
 TEST_F(SeparationTest, IsTheDifferenceInUnitsOfTheNoise) {
-  const Separation found = advice(Signal::position, -1e-3, kNone);
+  const Discrimination found = advice(Signal::position, -1e-3, kNone);
   ASSERT_TRUE(found.signal);
   EXPECT_EQ(*found.signal, Signal::position);
   EXPECT_FALSE(found.experiment);
   EXPECT_NEAR(found.size, 4.0, 1e-6);
-  EXPECT_EQ(found.words,
+  EXPECT_EQ(found.description,
             "this and that explain these recordings equally well; they differ most in the position "
             "during the motion of fit: by 4 times its noise.");
 }
 
 TEST_F(SeparationTest, IsNotSoughtInWhatWasRecorded) {
-  const Separation none = advice(Signal::velocity, 0.1, kNone);
+  const Discrimination none = advice(Signal::velocity, 0.1, kNone);
   EXPECT_FALSE(none.signal);
   EXPECT_EQ(none.size, 0.0);
-  EXPECT_NE(none.words.find("no motion that was tried"), std::string::npos);
+  EXPECT_NE(none.description.find("no motion that was tried"), std::string::npos);
   // Another motion may show it: there the noise of the recorded signal counts.
-  const Separation other = advice(Signal::velocity, 0.1, {-1.0, 1.0, 2.0, 1.0});
+  const Discrimination other = advice(Signal::velocity, 0.1, {-1.0, 1.0, 2.0, 1.0});
   ASSERT_TRUE(other.signal && other.experiment);
   EXPECT_EQ(*other.signal, Signal::velocity);
   EXPECT_NEAR(other.size, 0.1 / usual_noise(Signal::velocity), 1e-6);
-  EXPECT_NE(other.words.find(other.experiment->words), std::string::npos) << other.words;
+  EXPECT_NE(other.description.find(other.experiment->description), std::string::npos)
+      << other.description;
 }
 
 TEST_F(SeparationTest, OfLessThanATenthOfTheNoiseIsNone) {

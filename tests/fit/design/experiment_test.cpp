@@ -30,8 +30,8 @@ TEST(Forecast, KnowsWhatIsNotSeenAndWhatThatNeeds) {
   const Forecast expected = forecast(job, draw_start(job, 0));
   EXPECT_FALSE(expected.uncertainty.parameters[0].determined);
   EXPECT_TRUE(expected.uncertainty.parameters[1].determined);
-  EXPECT_EQ(expected.together.without_influence, std::vector<std::size_t>{0});
-  EXPECT_TRUE(expected.shown.row(0).isZero());
+  EXPECT_EQ(expected.identifiability.without_influence, std::vector<std::size_t>{0});
+  EXPECT_TRUE(expected.sensitivity.row(0).isZero());
   EXPECT_NE(excitation_needed("V_L").find("larger step"), std::string_view::npos);
 }
 
@@ -70,7 +70,7 @@ TEST(SuggestExperiment, IsFollowedWithTheSuccessPredicted) {
     EXPECT_NEAR(after.parameters[i].uncertainty.standard_error, predicted, 0.15 * predicted);
   }
   // And the machine stayed within its limits.
-  for (const Sample& s : after.recordings.back().prediction.samples) {
+  for (const Sample& s : after.recordings.back().free_running.samples) {
     EXPECT_GE(s.position, *kLimits.lowest - 1e-3);
     EXPECT_LE(s.position, *kLimits.highest + 1e-3);
     EXPECT_LE(std::abs(s.velocity), *kLimits.speed + 1e-3);
@@ -84,9 +84,9 @@ TEST(SuggestExperiment, KeepsToWhatTheRecordingsCovered) {
   const auto suggestion = suggest_experiment(job, fit, ControllerSettings(), {});
   ASSERT_TRUE(suggestion);
   EXPECT_GT(suggestion->tried, 200);
-  EXPECT_LT(suggestion->allowed, suggestion->tried);
+  EXPECT_LT(suggestion->feasible, suggestion->tried);
   double highest = 0.0;
-  for (const Sample& s : fit.recordings[0].prediction.samples)
+  for (const Sample& s : fit.recordings[0].free_running.samples)
     highest = std::max(highest, s.position);
   EXPECT_DOUBLE_EQ(*suggestion->limits.highest, highest);
 }

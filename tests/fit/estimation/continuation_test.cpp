@@ -23,33 +23,33 @@ Job sampled(std::initializer_list<double> intervals, Signal signal) {
 
 TEST(CouplingRate, BeginsAsFirmAsTheSamplingAllows) {
   Job job = sampled({2e-3}, Signal::velocity);
-  EXPECT_NEAR(first_coupling_rate(job), 500.0, 1e-9);
+  EXPECT_NEAR(initial_observer_gain(job), 500.0, 1e-9);
   job.recordings[0].measurements.emplace_back().signal = Signal::position;
-  EXPECT_NEAR(first_coupling_rate(job), 500.0, 1e-9);
-  EXPECT_NEAR(first_coupling_rate(sampled({2e-3}, Signal::position)), 150.0, 1e-9);
-  job.options.coupling_rate = 70.0;
-  EXPECT_EQ(first_coupling_rate(job), 70.0);
+  EXPECT_NEAR(initial_observer_gain(job), 500.0, 1e-9);
+  EXPECT_NEAR(initial_observer_gain(sampled({2e-3}, Signal::position)), 150.0, 1e-9);
+  job.options.observer_gain = 70.0;
+  EXPECT_EQ(initial_observer_gain(job), 70.0);
 }
 
 TEST(CouplingRate, IsThatOfTheCoarsestRecordingToBeFitted) {
   Job job = sampled({2e-3, 4e-3, 8e-3}, Signal::velocity);
   job.recordings[2].role = Role::validate;
-  EXPECT_NEAR(first_coupling_rate(job), 250.0, 1e-9);
+  EXPECT_NEAR(initial_observer_gain(job), 250.0, 1e-9);
 }
 
 TEST(CouplingRate, EndsAtZeroUnlessItIsFixed) {
   Job job = sampled({2e-3}, Signal::velocity);
-  EXPECT_EQ(last_coupling_rate(job), 0.0);
-  job.options.coupling = CouplingMode::none;
-  EXPECT_EQ(last_coupling_rate(job), 0.0);
-  job.options.coupling = CouplingMode::fixed;
-  EXPECT_NEAR(last_coupling_rate(job), 500.0, 1e-9);
+  EXPECT_EQ(final_observer_gain(job), 0.0);
+  job.options.observer = ObserverMode::none;
+  EXPECT_EQ(final_observer_gain(job), 0.0);
+  job.options.observer = ObserverMode::fixed;
+  EXPECT_NEAR(final_observer_gain(job), 500.0, 1e-9);
 }
 
 ContinuationResult one_continuation(Job job) {
   job.options.attempts = 1;
   const ParameterSpace space(job);
-  return continue_to_free(job, space, space.internal(draw_start(job, 0)));
+  return run_continuation(job, space, space.internal(draw_start(job, 0)));
 }
 
 // An axis that lacks much loses the data when it is let go: by leaps, if it were in great steps.
@@ -57,17 +57,17 @@ TEST(Continuation, TakesShorterStepsWhereTheSimulationWouldLoseTheData) {
   Model<double> truth = slide();
   add_effect<CoulombFriction>(truth).F_c = 60.0;
   const ContinuationResult result = one_continuation(two_recordings(truth, slide(), {"M"}));
-  double rate = result.stages.front().coupling_rate, cost = result.stages.front().reduced_cost;
+  double rate = result.stages.front().observer_gain, cost = result.stages.front().reduced_cost;
   int refused = 0;
   for (const Stage& stage : std::span(result.stages).subspan(1)) {
-    EXPECT_LT(stage.coupling_rate, rate);
+    EXPECT_LT(stage.observer_gain, rate);
     const bool leap = stage.reduced_cost > 3.0 * cost + 1.0;
     if (stage.accepted) {
-      EXPECT_TRUE(!leap || rate < 1.3 * stage.coupling_rate) << stage.coupling_rate;
-      rate = stage.coupling_rate;
+      EXPECT_TRUE(!leap || rate < 1.3 * stage.observer_gain) << stage.observer_gain;
+      rate = stage.observer_gain;
       cost = stage.reduced_cost;
     } else {
-      EXPECT_TRUE(leap) << stage.coupling_rate;
+      EXPECT_TRUE(leap) << stage.observer_gain;
       ++refused;
     }
   }

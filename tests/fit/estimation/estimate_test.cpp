@@ -50,7 +50,7 @@ TEST(Estimate, FindsTheTruthFromAPoorStart) {
   ASSERT_TRUE(result.usable) << result.verdict;
   EXPECT_EQ(result.status, Status::converged);
   EXPECT_LT(result.reduced_chi_square, 1.1);
-  EXPECT_EQ(result.coupling_rate, 0.0);
+  EXPECT_EQ(result.observer_gain, 0.0);
   const double truth[] = {2.7, 5e6};
   for (std::size_t i = 0; i < 2; ++i) {
     const ParameterUncertainty& u = result.parameters[i].uncertainty;
@@ -60,10 +60,10 @@ TEST(Estimate, FindsTheTruthFromAPoorStart) {
   }
 }
 
-// Without the coupling the ringing leaves the fit in a local minimum: what continuation is for.
+// Without the observer the ringing leaves the fit in a local minimum: what continuation is for.
 TEST(Estimate, NeedsTheContinuation) {
   Job job = example_job();
-  job.options.coupling = CouplingMode::none;
+  job.options.observer = ObserverMode::none;
   EXPECT_GT(estimate(job).reduced_chi_square, 2.0);
 }
 

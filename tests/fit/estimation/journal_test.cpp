@@ -23,7 +23,7 @@ class MemoryJournal : public Journal {
     ++found;
     return known->second;
   }
-  void keep(const ProblemKey& key, const SolveResult& solution) override {
+  void store(const ProblemKey& key, const SolveResult& solution) override {
     const std::lock_guard lock(mutex_);
     solutions_.emplace(key, solution);
     ++kept;
@@ -51,7 +51,7 @@ Job job() { return two_recordings(heavier(), slide(), {"M", "B_a"}); }
 
 /// Every digit of a fit.
 std::vector<double> digits(const FitResult& fit) {
-  std::vector<double> list{fit.reduced_chi_square, fit.colour, fit.freedom,
+  std::vector<double> list{fit.reduced_chi_square, fit.autocorrelation_time, fit.degrees_of_freedom,
                            static_cast<double>(fit.iterations)};
   for (const ParameterResult& p : fit.parameters)
     list.insert(list.end(), {p.value, p.uncertainty.standard_error});
@@ -83,7 +83,7 @@ TEST(JournalTest, AFitThatIsBegunAgainSolvesNothingAgain) {
 TEST(JournalTest, ASearchForEffectsThatIsBegunAgainEndsTheSame) {
   const Job plain = job();
   const FitResult fit = estimate(plain);
-  const ClosedLoop wanted = close_loop(plain, fit);
+  const EffectSelection wanted = select_effects(plain, fit);
   ASSERT_EQ(wanted.models.size(), 2u);
   EXPECT_EQ(wanted.models.back().added, "coulomb_friction");
   for (const int stop_after : {2, 11}) {
@@ -92,10 +92,10 @@ TEST(JournalTest, ASearchForEffectsThatIsBegunAgainEndsTheSame) {
     j.options.journal = &journal;
     j.options.stop = &journal.stop;
     journal.stop_after = stop_after;
-    EXPECT_TRUE(close_loop(j, fit).interrupted);
+    EXPECT_TRUE(select_effects(j, fit).interrupted);
     journal.stop = false;
     const int kept = journal.kept;
-    const ClosedLoop again = close_loop(j, fit);
+    const EffectSelection again = select_effects(j, fit);
     EXPECT_GE(journal.found, kept);
     EXPECT_EQ(again.verdict, wanted.verdict);
     EXPECT_EQ(digits(again.result.fit), digits(wanted.result.fit));
@@ -137,7 +137,7 @@ TEST(JournalTest, TheKeyDependsOnAllThatTheSolutionFollowsFrom) {
       [](Problem& p) { p.job.recordings[0].measurements[1].fitted = false; },
       [](Problem& p) { p.job.recordings[0].measurements[1].signal = Signal::position; },
       [](Problem& p) { p.job.recordings[0].measurements.pop_back(); },
-      [](Problem& p) { p.job.recordings[0].measurements[0].left_out.resize(300); },
+      [](Problem& p) { p.job.recordings[0].measurements[0].excluded.resize(300); },
       [](Problem& p) { p.job.recordings[0].held_out.resize(300); },
       [](Problem& p) { p.job.recordings[0].held_out.resize(301); },
       [](Problem& p) { p.job.recordings[0].overrides.emplace_back(3, 1.0); },
@@ -166,7 +166,7 @@ TEST(JournalTest, TheKeyDependsOnAllThatTheSolutionFollowsFrom) {
       [](Problem& p) { p.options.max_iterations = 7; },
       [](Problem& p) { p.options.function_tolerance = 1e-3; },
       [](Problem& p) { p.options.parameter_tolerance = 1e-3; },
-      [](Problem& p) { p.options.keep_to_start = true; },
+      [](Problem& p) { p.options.penalize_distance_from_start = true; },
       [](Problem& p) { p.options.fixed = {0}; },
       [](Problem& p) { p.options.fixed = {1}; },
   };

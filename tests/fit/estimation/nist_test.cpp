@@ -266,7 +266,8 @@ TEST_P(Nist, TakesTheNoiseFromTheResiduals) {
   const Uncertainty found = uncertainty(
       space, result.u,
       in_white_order(linearize(space, costs(space, 0.01 * problem_.deviation), result.u)));
-  EXPECT_DOUBLE_EQ(found.freedom, static_cast<double>(problem_.data.size() - space.size()));
+  EXPECT_DOUBLE_EQ(found.degrees_of_freedom,
+                   static_cast<double>(problem_.data.size() - space.size()));
   for (std::size_t i = 0; i < space.size(); ++i) {
     const double certified = problem_.parameters[i].standard_error;
     const ParameterUncertainty& p = found.parameters[i];

@@ -94,7 +94,7 @@ TEST(RecordingCost, JacobianIsThatOfDifferencesForAnyNumberOfParameters) {
     std::vector<double> start;
     for (const FreeParameter& f : job.free) start.push_back(f.initial);
     const Eigen::VectorXd u = space.internal(start);
-    const RecordingCost cost(job, space, 0, Coupling::to_velocity(100.0, false));
+    const RecordingCost cost(job, space, 0, Observer::of_velocity(100.0, false));
     const Evaluated e = evaluate(cost, u);
     ASSERT_TRUE(e.finite);
     const std::size_t columns = job.free.size(), last = columns - 1;
@@ -195,8 +195,8 @@ std::pair<double, double> errors_when_held(const Model<double>& truth, Signal si
   Job job;
   job.model = truth;
   job.options.threads = 1;
-  job.options.coupling = CouplingMode::fixed;
-  job.options.coupling_rate = rate;
+  job.options.observer = ObserverMode::fixed;
+  job.options.observer_gain = rate;
   Recording& recording = job.recordings.emplace_back();
   recording.name = "fit";
   const int samples = static_cast<int>(std::lround(kDuration / interval));
@@ -263,14 +263,14 @@ TEST(HeldFirmly, ToAnExactVelocityFindsTheTruth) {
 
 TEST(CouplingFor, TakesVelocityThenPosition) {
   Recording recording;
-  EXPECT_FALSE(coupling_for(recording, 100.0).active());
+  EXPECT_FALSE(observer_for(recording, 100.0).active());
   const auto add = [&](Signal signal) { recording.measurements.emplace_back().signal = signal; };
   add(Signal::position);
-  EXPECT_EQ(coupling_for(recording, 100.0).acceleration, 1e4);
+  EXPECT_EQ(observer_for(recording, 100.0).acceleration, 1e4);
   add(Signal::velocity);
-  EXPECT_EQ(coupling_for(recording, 100.0).velocity, 100.0);
-  EXPECT_EQ(coupling_for(recording, 100.0).position, 100.0);
-  EXPECT_FALSE(coupling_for(recording, 0.0).active());
+  EXPECT_EQ(observer_for(recording, 100.0).velocity, 100.0);
+  EXPECT_EQ(observer_for(recording, 100.0).position, 100.0);
+  EXPECT_FALSE(observer_for(recording, 0.0).active());
 }
 
 }  // namespace

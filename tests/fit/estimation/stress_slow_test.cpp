@@ -19,7 +19,7 @@ Job anywhere_job(std::uint64_t draw) {
     r.times.resize(kSamples);
     for (Measurement& m : r.measurements) {
       m.values.resize(kSamples);
-      if (!m.left_out.empty()) m.left_out.resize(kSamples);
+      if (!m.excluded.empty()) m.excluded.resize(kSamples);
     }
   }
   std::mt19937_64 g(draw);

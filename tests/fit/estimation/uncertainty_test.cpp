@@ -68,8 +68,8 @@ TEST_F(UncertaintyTest, OfWhiteResidualsIsTheInverseOfTheNormalMatrix) {
     EXPECT_NEAR(p.standard_error, kWhite, 0.03 * kWhite);
     EXPECT_NEAR(p.upper - p.lower, 2 * 1.9605 * p.standard_error, 1e-3 * p.standard_error);
   }
-  EXPECT_EQ(u.colour, 1.0);
-  EXPECT_EQ(u.freedom, double(kRows - 3));
+  EXPECT_EQ(u.autocorrelation_time, 1.0);
+  EXPECT_EQ(u.degrees_of_freedom, double(kRows - 3));
   EXPECT_NEAR(u.correlation(0, 0), 1.0, 1e-12);
   EXPECT_NEAR(u.correlation(0, 1), 0.0, 1e-12);
 }
@@ -92,7 +92,7 @@ TEST_F(UncertaintyTest, AllowsForColour) {
   const double slow = std::sqrt((1.0 + kColour) / (1.0 - kColour));
   EXPECT_NEAR(u.parameters[0].standard_error, slow * kWhite, 0.15 * slow * kWhite);
   EXPECT_NEAR(u.parameters[1].standard_error, kWhite / slow, 0.15 * kWhite / slow);
-  EXPECT_NEAR(u.colour, slow * slow, 0.3 * slow * slow);
+  EXPECT_NEAR(u.autocorrelation_time, slow * slow, 0.3 * slow * slow);
 }
 
 TEST_F(UncertaintyTest, CountsAPriorAsAMeasurement) {
@@ -180,7 +180,7 @@ TEST_F(UncertaintyTest, ADirectionIsWeakFromAnErrorOfOne) {
       ASSERT_EQ(seen.weak.size(), error > 1.0 ? 1u : 0u) << scale << " " << error;
       if (error < 1.0) continue;
       EXPECT_NEAR(seen.weak[0].singular_value, scale / error, 1e-9);
-      EXPECT_EQ(seen.weak[0].words, "k_g is hardly seen in these recordings.");
+      EXPECT_EQ(seen.weak[0].description, "k_g hardly affects these recordings.");
     }
 }
 
@@ -190,9 +190,9 @@ TEST_F(UncertaintyTest, NamesWhatIsSeenOfTwoParameters) {
   linear_.jacobian.col(1) = -linear_.jacobian.col(0);
   const Identifiability seen = known({std::log(6.0), std::log(2.0), 0.0});
   ASSERT_EQ(seen.weak.size(), 1u);
-  EXPECT_TRUE(seen.weak[0].words == "Of B_a and b_g only B_a / b_g is seen." ||
-              seen.weak[0].words == "Of b_g and B_a only b_g / B_a is seen.")
-      << seen.weak[0].words;
+  EXPECT_TRUE(seen.weak[0].description == "B_a and b_g are determined only as B_a / b_g." ||
+              seen.weak[0].description == "b_g and B_a are determined only as b_g / B_a.")
+      << seen.weak[0].description;
   ASSERT_EQ(seen.combinations.size(), 1u);
   const bool turned = seen.combinations[0].name == "b_g / B_a";
   EXPECT_NEAR(seen.combinations[0].value, turned ? 1.0 / 3.0 : 3.0, 1e-12);
@@ -211,7 +211,8 @@ TEST_F(UncertaintyTest, ClaimsNoCombinationThatAnotherWeakDirectionHides) {
   ASSERT_EQ(seen.weak.size(), 2u);
   EXPECT_TRUE(seen.combinations.empty()) << seen.combinations[0].name;
   for (const WeakDirection& weak : seen.weak)
-    EXPECT_TRUE(weak.words.starts_with("These can change together, hardly seen:")) << weak.words;
+    EXPECT_TRUE(weak.description.starts_with("These can change together, hardly seen:"))
+        << weak.description;
 }
 
 TEST_F(UncertaintyTest, NamesWhatNoSignalShows) {

@@ -62,7 +62,7 @@ class ResidualSeriesTest : public testing::Test {
     m.values.resize(10);
     std::iota(m.values.begin(), m.values.end(), 10.0);
     m.sigma = 2.0;
-    Prediction& p = result_.recordings.emplace_back().prediction;
+    SimulatedRecording& p = result_.recordings.emplace_back().free_running;
     p.finished = true;
     p.simulated = {std::vector<double>(10, 0.0)};
   }
@@ -100,7 +100,7 @@ TEST_F(ResidualSeriesTest, OfARecordingToValidateAreNotFitted) {
 }
 
 TEST_F(ResidualSeriesTest, LeaveOutWhatDoesNotCount) {
-  measurement().left_out = only({0, 4});
+  measurement().excluded = only({0, 4});
   const auto list = residual_series(job_, result_);
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list[0].samples, (std::vector<std::size_t>{1, 2, 3, 5, 6, 7, 8, 9}));
@@ -108,7 +108,7 @@ TEST_F(ResidualSeriesTest, LeaveOutWhatDoesNotCount) {
 
 TEST_F(ResidualSeriesTest, OfHeldOutSamplesAreASeriesOfTheirOwn) {
   recording().held_out = only({2, 3, 7});
-  measurement().left_out = only({3, 8});
+  measurement().excluded = only({3, 8});
   const auto list = residual_series(job_, result_);
   ASSERT_EQ(list.size(), 2u);
   EXPECT_TRUE(list[0].fitted);
@@ -131,14 +131,14 @@ TEST_F(ResidualSeriesTest, LeaveOutComparedSignalsAndFailedSimulations) {
   auto list = residual_series(job_, result_);
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list[0].recording, 1u);
-  result_.recordings[1].prediction.finished = false;
+  result_.recordings[1].free_running.finished = false;
   EXPECT_TRUE(residual_series(job_, result_).empty());
 }
 
 TEST_F(ResidualSeriesTest, AreThoseOfTheHeldSimulationWhereThatWasFitted) {
-  Prediction held = result_.recordings[0].prediction;
-  held.simulated[0].assign(10, 10.0);
-  result_.recordings[0].held = held;
+  SimulatedRecording tracking = result_.recordings[0].free_running;
+  tracking.simulated[0].assign(10, 10.0);
+  result_.recordings[0].tracking = tracking;
   EXPECT_EQ(residual_series(job_, result_)[0].values[3], 1.5);
 }
 
@@ -190,11 +190,13 @@ class DependenceTest : public testing::Test {
         recorded(job_.model, LevelsMotion{{8, -5, 3, -8, 2}, 0.3}, 1.5, 1, {Signal::velocity})};
     result_ = result_at_start(job_);
     measurement().sigma = 1.0;
-    result_.recordings[0].prediction.simulated[0].assign(size(), 0.0);
+    result_.recordings[0].free_running.simulated[0].assign(size(), 0.0);
   }
   std::size_t size() const { return job_.recordings[0].times.size(); }
   Measurement& measurement() { return job_.recordings[0].measurements[0]; }
-  const Sample& sample(std::size_t i) const { return result_.recordings[0].prediction.samples[i]; }
+  const Sample& sample(std::size_t i) const {
+    return result_.recordings[0].free_running.samples[i];
+  }
 
   SeriesTest test_of(std::vector<double> residuals) {
     measurement().values = std::move(residuals);
@@ -253,9 +255,9 @@ TEST_F(DependenceTest, OnTheDirectionIsFound) {
   // The velocity tells the direction, and may tell a little more of the noise.
   const auto direction = std::ranges::find(test.dependences, "direction", &Dependence::on);
   ASSERT_NE(direction, test.dependences.end());
-  EXPECT_GT(direction->share, 0.99 * test.dependences[0].share);
+  EXPECT_GT(direction->fraction, 0.99 * test.dependences[0].fraction);
   EXPECT_TRUE(test.dependences[0].on == "direction" || test.dependences[0].on == "velocity");
-  EXPECT_GT(direction->share, 0.5);
+  EXPECT_GT(direction->fraction, 0.5);
 }
 
 TEST_F(DependenceTest, OnTheTimeIsFound) {
@@ -335,7 +337,7 @@ TEST(MissingForce, OfACleanRecordingIsItsNoise) {
   }
 }
 
-// With the paper's gear the mass that the coupling moves is that of the arm alone. While the motor
+// With the paper's gear the mass that the observer moves is that of the arm alone. While the motor
 // is not at its limit, the velocity loop takes on a part of the force that is missing.
 TEST(MissingForce, SeesTheArmThroughTheGear) {
   Model<double> truth = paper_axis();

@@ -127,35 +127,35 @@ TEST(DisadvantageTest, IsWhatTheOtherExplainsLess) {
   const auto best = pair(noise(1), noise(2));
   const auto other = pair(with_wave(noise(1), 0.5), with_wave(noise(2), 0.5));
   // Two series with a mean square of 1 / 8 each.
-  EXPECT_NEAR(disadvantage(best, 3, other, 3), 2.0 * kSamples / 8.0, 0.1 * kSamples);
+  EXPECT_NEAR(bic_difference(best, 3, other, 3), 2.0 * kSamples / 8.0, 0.1 * kSamples);
   // The other way round. NOLINTNEXTLINE(readability-suspicious-call-argument)
-  EXPECT_LT(disadvantage(other, 3, best, 3), 0.0);
-  EXPECT_EQ(disadvantage(best, 3, best, 3), 0.0);
+  EXPECT_LT(bic_difference(other, 3, best, 3), 0.0);
+  EXPECT_EQ(bic_difference(best, 3, best, 3), 0.0);
 }
 
 TEST(DisadvantageTest, PricesParametersByTheNumberOfSamples) {
   const auto same = pair(noise(1), noise(2));
   const double price = std::log(2.0 * kSamples);
-  EXPECT_NEAR(disadvantage(same, 3, same, 5), 2.0 * price, 0.02 * price);
-  EXPECT_NEAR(disadvantage(same, 5, same, 3), -2.0 * price, 0.02 * price);
+  EXPECT_NEAR(bic_difference(same, 3, same, 5), 2.0 * price, 0.02 * price);
+  EXPECT_NEAR(bic_difference(same, 5, same, 3), -2.0 * price, 0.02 * price);
 }
 
 TEST(DisadvantageTest, OfAModelThatFailsIsInfinite) {
   const auto both = pair(noise(1), noise(2));
-  EXPECT_EQ(disadvantage(both, 3, {series(true, noise(1))}, 3), INFINITY);
+  EXPECT_EQ(bic_difference(both, 3, {series(true, noise(1))}, 3), INFINITY);
 }
 
 TEST(DisadvantageTest, CorrelatedResidualsCountLess) {
   const auto best = pair(held_for_five(noise(1)), held_for_five(noise(2)));
   const auto other = pair(with_wave(best[0].values, 0.5), with_wave(best[1].values, 0.5));
-  EXPECT_NEAR(disadvantage(best, 3, other, 3), 2.0 * kSamples / 8.0 / 5.0, 0.03 * kSamples);
+  EXPECT_NEAR(bic_difference(best, 3, other, 3), 2.0 * kSamples / 8.0 / 5.0, 0.03 * kSamples);
 }
 
 TEST(RefusalTest, OfAnImprovementThatIsRealIsNone) {
   const Improvement gain = improvement(pair(with_wave(noise(1), 1.0), with_wave(noise(2), 1.0)),
                                        pair(noise(1), noise(2)));
-  EXPECT_EQ(refusal(candidate(), gain, determined(), 100), "");
-  EXPECT_EQ(refusal(candidate(2, 1), gain, determined(), 100), "");
+  EXPECT_EQ(rejection_reason(candidate(), gain, determined(), 100), "");
+  EXPECT_EQ(rejection_reason(candidate(2, 1), gain, determined(), 100), "");
 }
 
 // A parameter that was fitted to the noise gains about one of the sum of squares, and the best of a
@@ -185,7 +185,7 @@ TEST(RefusalTest, OfChance) {
       }
     }
     const Improvement gain = improvement(pair(fitted, judged), pair(after_fitted, after_judged));
-    refused += refusal(candidate(), gain, determined(), 100).empty() ? 0 : 1;
+    refused += rejection_reason(candidate(), gain, determined(), 100).empty() ? 0 : 1;
   }
   EXPECT_EQ(refused, kTrials);
 }
@@ -196,7 +196,8 @@ TEST(RefusalTest, OfWhatOnlyFits) {
   EXPECT_GT(gain.fit_gain, 500.0);
   EXPECT_LT(gain.validate_percent, 0.0);
   EXPECT_GT(gain.p_value, 0.9);
-  EXPECT_NE(refusal(candidate(), gain, determined(), 100).find("not fitted"), std::string::npos);
+  EXPECT_NE(rejection_reason(candidate(), gain, determined(), 100).find("not fitted"),
+            std::string::npos);
 }
 
 TEST(RefusalTest, OfWhatHardlyHelps) {
@@ -207,9 +208,10 @@ TEST(RefusalTest, OfWhatHardlyHelps) {
   gain.z = 6.0;
   gain.p_value = 1e-9;
   gain.validate_percent = 0.3;
-  EXPECT_NE(refusal(candidate(), gain, determined(), 100).find("hardly"), std::string::npos);
+  EXPECT_NE(rejection_reason(candidate(), gain, determined(), 100).find("hardly"),
+            std::string::npos);
   gain.validate_percent = 0.6;
-  EXPECT_EQ(refusal(candidate(), gain, determined(), 100), "");
+  EXPECT_EQ(rejection_reason(candidate(), gain, determined(), 100), "");
 }
 
 TEST(RefusalTest, OfWhatHelpsByChanceMoreOftenThanOnceInAThousand) {
@@ -219,10 +221,11 @@ TEST(RefusalTest, OfWhatHelpsByChanceMoreOftenThanOnceInAThousand) {
   gain.samples = 2000.0;
   gain.validate_percent = 5.0;
   gain.p_value = 1.1e-3;
-  EXPECT_NE(refusal(candidate(), gain, determined(), 100).find("p = 0.0011"), std::string::npos);
-  EXPECT_EQ(refusal(candidate(), gain, determined(), 100, 1.2e-3), "");
+  EXPECT_NE(rejection_reason(candidate(), gain, determined(), 100).find("p = 0.0011"),
+            std::string::npos);
+  EXPECT_EQ(rejection_reason(candidate(), gain, determined(), 100, 1.2e-3), "");
   gain.p_value = 0.9e-3;
-  EXPECT_EQ(refusal(candidate(), gain, determined(), 100), "");
+  EXPECT_EQ(rejection_reason(candidate(), gain, determined(), 100), "");
 }
 
 TEST(RefusalTest, PricesParametersAndTheChoice) {
@@ -230,17 +233,19 @@ TEST(RefusalTest, PricesParametersAndTheChoice) {
                                  pair(noise(1), noise(2)));
   gain.samples = 2000.0;  // log 7.6
   gain.fit_gain = 8.0;
-  EXPECT_EQ(refusal(candidate(), gain, determined(), 1), "");
-  EXPECT_NE(refusal(candidate(), gain, determined(), 100), "");
-  EXPECT_NE(refusal(candidate(1, 1), gain, determined(), 1), "");
+  EXPECT_EQ(rejection_reason(candidate(), gain, determined(), 1), "");
+  EXPECT_NE(rejection_reason(candidate(), gain, determined(), 100), "");
+  EXPECT_NE(rejection_reason(candidate(1, 1), gain, determined(), 1), "");
   gain.fit_gain = 17.0;
-  EXPECT_EQ(refusal(candidate(), gain, determined(), 100), "");
+  EXPECT_EQ(rejection_reason(candidate(), gain, determined(), 100), "");
 }
 
 TEST(RefusalTest, OfWhatIsNotDetermined) {
   const Improvement gain = improvement(pair(with_wave(noise(1), 1.0), with_wave(noise(2), 1.0)),
                                        pair(noise(1), noise(2)));
-  const auto reason = [&](const Determination& d) { return refusal(candidate(), gain, d, 100); };
+  const auto reason = [&](const Determination& d) {
+    return rejection_reason(candidate(), gain, d, 100);
+  };
   Determination d = determined();
   d.wald = 9.0;
   EXPECT_NE(reason(d).find("3 standard errors"), std::string::npos) << reason(d);
@@ -249,13 +254,15 @@ TEST(RefusalTest, OfWhatIsNotDetermined) {
   EXPECT_NE(reason(d).find("imitate"), std::string::npos);
   d = determined();
   d.at_bound = "F_c";
-  EXPECT_NE(reason(d).find("F_c ends at its bound"), std::string::npos);
+  EXPECT_NE(reason(d).find("F_c is at its bound"), std::string::npos);
   d = determined();
-  d.open = "v_st";
+  d.undetermined = "v_st";
   EXPECT_NE(reason(d).find("do not determine v_st"), std::string::npos);
 }
 
-TEST(RefusalTest, OfWhatCannotBeSimulated) { EXPECT_NE(refusal(candidate(), {}, {}, 1), ""); }
+TEST(RefusalTest, OfWhatCannotBeSimulated) {
+  EXPECT_NE(rejection_reason(candidate(), {}, {}, 1), "");
+}
 
 /// The slide with dry friction, fitted with it.
 class DeterminationTest : public testing::Test {
@@ -270,7 +277,7 @@ class DeterminationTest : public testing::Test {
     for (const FreeParameter& p : job_.free) values.push_back(p.initial);
     const std::vector<double> strengths{friction};
     job_ = with_candidate(job_, candidate_, values, strengths, {});
-    job_.options.coupling = CouplingMode::none;
+    job_.options.observer = ObserverMode::none;
     result_ = estimate(job_);
   }
   Determination determination_now() {
@@ -294,7 +301,7 @@ TEST_F(DeterminationTest, IsTheSquareOfValueOverStandardError) {
   EXPECT_GT(d.distinct, 0.01);
   EXPECT_LE(d.distinct, 1.0);
   EXPECT_EQ(d.at_bound, "");
-  EXPECT_EQ(d.open, "");
+  EXPECT_EQ(d.undetermined, "");
 }
 
 TEST_F(DeterminationTest, CorrelatedResidualsCountLess) {

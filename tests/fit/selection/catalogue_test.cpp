@@ -75,7 +75,7 @@ TEST(Catalogue, EntriesAreComplete) {
   for (const Candidate& c : list) {
     SCOPED_TRACE(c.name);
     EXPECT_FALSE(c.meaning.empty());
-    EXPECT_FALSE(c.slot.empty());
+    EXPECT_FALSE(c.acts_on.empty());
     ASSERT_FALSE(c.strengths.empty());
     EXPECT_TRUE(seen.insert(c.strengths).second) << "twice in the catalogue";
     ASSERT_FALSE(c.settings.empty());
@@ -93,7 +93,7 @@ TEST(Catalogue, EntriesAreComplete) {
       if (!entry.quantity.shape || entry.group != quantities[c.strengths[0]].group) continue;
       EXPECT_NE(std::ranges::find(c.shapes, entry.index), c.shapes.end()) << entry.name;
     }
-    EXPECT_EQ(c.unnamed, c.name.starts_with("force_over_"));
+    EXPECT_EQ(c.is_curve, c.name.starts_with("force_over_"));
   }
 }
 
@@ -269,7 +269,7 @@ TEST_F(WithCandidate, AddsItsStrengthsAndShapesAndNothingElse) {
     }
     EXPECT_LE((after.structure.effects ^ before.structure.effects).count(), 1u);
     EXPECT_EQ(job.recordings.size(), job_.recordings.size());
-    EXPECT_EQ(refusal(job.model), "");
+    EXPECT_EQ(model_error(job.model), "");
   }
 }
 
@@ -311,14 +311,14 @@ TEST_F(WithCandidate, OfNeutralStrengthPredictsTheSameBitForBit) {
     SCOPED_TRACE(c.name);
     std::vector<double> neutral;
     for (const std::size_t q : c.strengths) {
-      const double standard = quantity_list()[q].quantity.standard;
-      neutral.push_back(std::isnan(standard) ? 0.0 : standard);
+      const double default_value = quantity_list()[q].quantity.default_value;
+      neutral.push_back(std::isnan(default_value) ? 0.0 : default_value);
     }
     for (const auto& setting : c.settings) {
       const FitResult with = result_at_start(with_candidate(job_, c, values, neutral, setting));
       for (std::size_t r = 0; r < 2; ++r)
-        ASSERT_EQ(with.recordings[r].prediction.simulated,
-                  without.recordings[r].prediction.simulated);
+        ASSERT_EQ(with.recordings[r].free_running.simulated,
+                  without.recordings[r].free_running.simulated);
     }
   }
 }

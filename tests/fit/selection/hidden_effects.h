@@ -13,8 +13,8 @@
 
 namespace axisfit {
 
-struct Secret {
-  std::string slot;
+struct HiddenEffect {
+  std::string acts_on;
   std::string name;                                       ///< as in the catalogue
   std::vector<std::pair<std::string, double>> strengths;  ///< full names of quantities
   std::vector<std::pair<std::string, double>> shapes = {};
@@ -40,21 +40,21 @@ struct Secret {
   }
   Job job() const { return two_recordings(truth(), declared(), free); }
   double neutral(std::size_t strength) const {
-    const double standard = find_quantity(strengths[strength].first)->quantity.standard;
-    return std::isnan(standard) ? 0.0 : standard;
+    const double default_value = find_quantity(strengths[strength].first)->quantity.default_value;
+    return std::isnan(default_value) ? 0.0 : default_value;
   }
   /// Letters and underscores only.
   std::string label() const {
-    std::string text = slot + "_" + name;
+    std::string text = acts_on + "_" + name;
     for (char& c : text)
       if (c == ' ' || c == '.') c = '_';
     return text;
   }
-  friend void PrintTo(const Secret& secret, std::ostream* out) { *out << secret.name; }
+  friend void PrintTo(const HiddenEffect& secret, std::ostream* out) { *out << secret.name; }
 };
 
-inline std::vector<Secret> secrets() {
-  std::vector<Secret> list{
+inline std::vector<HiddenEffect> hidden_effects() {
+  std::vector<HiddenEffect> list{
       {"friction", "coulomb_friction", {{"coulomb_friction.F_c", 5.0}}},
       {"arm force", "stroke_spring", {{"stroke_spring.k_s", 20.0}}},
       {"arm force",
@@ -82,8 +82,8 @@ inline std::vector<Secret> secrets() {
       {"sensor", "velocity.gain", {{"velocity.gain", 1.02}}},
       {"sensor", "velocity.lag", {{"velocity.lag", 3e-3}}},
   };
-  const auto secret = [&](std::string_view name) -> Secret& {
-    return *std::ranges::find(list, name, &Secret::name);
+  const auto secret = [&](std::string_view name) -> HiddenEffect& {
+    return *std::ranges::find(list, name, &HiddenEffect::name);
   };
   // With M free as well it would be the same twice.
   secret("added_mass").free = {"B_a"};
@@ -97,9 +97,9 @@ inline std::vector<Secret> secrets() {
 }
 
 /// Those that have a twin, or those that have none.
-inline std::vector<Secret> secrets(bool with_twin) {
-  std::vector<Secret> list = secrets();
-  std::erase_if(list, [&](const Secret& s) { return s.twin.empty() == with_twin; });
+inline std::vector<HiddenEffect> hidden_effects(bool with_twin) {
+  std::vector<HiddenEffect> list = hidden_effects();
+  std::erase_if(list, [&](const HiddenEffect& s) { return s.twin.empty() == with_twin; });
   return list;
 }
 

@@ -48,7 +48,7 @@ class PeriodsTest : public testing::Test {
   }
 
   Recording recording_;
-  Prediction prediction_;
+  SimulatedRecording prediction_;
 };
 
 // Whole numbers of quarter cycles over the stroke are looked at.

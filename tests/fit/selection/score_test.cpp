@@ -25,13 +25,13 @@ std::vector<Score> best_settings(const ScoreTest& test) {
 ScoreTest score(const Job& job) {
   const FitResult fit = estimate(job);
   EXPECT_TRUE(fit.usable) << fit.verdict;
-  return score_test(job, values_of(fit), score_rates(job).front());
+  return score_test(job, values_of(fit), score_gains(job).front());
 }
 
-class ScoreOf : public testing::TestWithParam<Secret> {};
+class ScoreOf : public testing::TestWithParam<HiddenEffect> {};
 
 TEST_P(ScoreOf, TheTrueEffectIsAmongTheTwoBest) {
-  const Secret& secret = GetParam();
+  const HiddenEffect& secret = GetParam();
   const ScoreTest test = score(secret.job());
   ASSERT_TRUE(test.usable);
   const auto list = best_settings(test);
@@ -52,7 +52,7 @@ TEST_P(ScoreOf, TheTrueEffectIsAmongTheTwoBest) {
   EXPECT_NEAR(found, wanted, 0.3 * wanted);
 }
 
-INSTANTIATE_TEST_SUITE_P(EverySlot, ScoreOf, testing::ValuesIn(secrets()),
+INSTANTIATE_TEST_SUITE_P(EverySlot, ScoreOf, testing::ValuesIn(hidden_effects()),
                          [](const auto& one) { return one.param.label(); });
 
 // Of n independent chi-square variables with one degree of freedom the largest is about 2 log n.
@@ -89,7 +89,7 @@ TEST(ScoreTestOf, APeriodicForceFindsItsPeriod) {
 }
 
 TEST(ScoreTestOf, TheScoresDoNotDependOnTheNumberOfThreads) {
-  Job job = secrets().front().job();
+  Job job = hidden_effects().front().job();
   const std::vector<double> values{20.0, 30.0};
   job.options.threads = 1;
   const ScoreTest one = score_test(job, values, 30.0);

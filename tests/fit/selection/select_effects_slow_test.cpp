@@ -12,9 +12,9 @@ using Names = std::set<std::string>;
 bool is_curve(const std::string& name) { return name.starts_with("force_over_"); }
 
 /// Expects that what was accepted are curves, at least one.
-void expect_curves_only(const ClosedLoop& loop) {
-  EXPECT_FALSE(accepted(loop).empty()) << loop.verdict;
-  for (const std::string& name : accepted(loop)) EXPECT_TRUE(is_curve(name)) << name;
+void expect_curves_only(const EffectSelection& selection) {
+  EXPECT_FALSE(accepted(selection).empty()) << selection.verdict;
+  for (const std::string& name : accepted(selection)) EXPECT_TRUE(is_curve(name)) << name;
 }
 
 /// A bump of the force along the stroke, about 0.1 m wide.
@@ -29,31 +29,31 @@ void put_bump_into(Model<double>& model, double size) {
 TEST(CloseLoopOnTheSlide, DrawsACurveOfAForceThatIsInNoCatalogue) {
   Model<double> truth = slide();
   put_bump_into(truth, 15.0);
-  const ClosedLoop loop = close(two_recordings(truth, slide(), {"M", "B_a"}));
-  expect_curves_only(loop);
-  expect_found(loop, "M", 20.0);
+  const EffectSelection selection = close(two_recordings(truth, slide(), {"M", "B_a"}));
+  expect_curves_only(selection);
+  expect_found(selection, "M", 20.0);
 }
 
 TEST(CloseLoopOnTheSlide, AddsNoMoreThanIsAllowed) {
   Model<double> truth = slide();
-  secret_named("coulomb_friction").put_into(truth);
-  secret_named("added_mass").put_into(truth);
+  hidden_effect_named("coulomb_friction").put_into(truth);
+  hidden_effect_named("added_mass").put_into(truth);
   const Job job = two_recordings(truth, slide(), {"B_a"});
-  CloseLoopOptions options;
+  SelectionOptions options;
   options.max_effects = 1;
-  EXPECT_LE(accepted(close_loop(job, estimate(job), options)).size(), 1u);
+  EXPECT_LE(accepted(select_effects(job, estimate(job), options)).size(), 1u);
 }
 
 TEST(CloseLoopOnTheSlide, FindsThreeEffects) {
   Model<double> truth = slide();
   for (const char* name : {"coulomb_friction", "stroke_spring", "drive_lag"})
-    secret_named(name).put_into(truth);
-  const ClosedLoop loop = close(two_recordings(truth, slide(), {"M", "B_a"}));
-  EXPECT_EQ(accepted(loop), (Names{"coulomb_friction", "stroke_spring", "drive_lag"}));
-  EXPECT_TRUE(loop.explained);
-  expect_found(loop, "coulomb_friction.F_c", 5.0);
-  expect_found(loop, "stroke_spring.k_s", 20.0);
-  expect_found(loop, "drive_lag.T_l", 2e-3);
+    hidden_effect_named(name).put_into(truth);
+  const EffectSelection selection = close(two_recordings(truth, slide(), {"M", "B_a"}));
+  EXPECT_EQ(accepted(selection), (Names{"coulomb_friction", "stroke_spring", "drive_lag"}));
+  EXPECT_TRUE(selection.explained);
+  expect_found(selection, "coulomb_friction.F_c", 5.0);
+  expect_found(selection, "stroke_spring.k_s", 20.0);
+  expect_found(selection, "drive_lag.T_l", 2e-3);
 }
 
 /// Velocity, acceleration and tachometer of the paper's axis.
@@ -62,7 +62,7 @@ Job paper_job(const Model<double>& truth, const std::vector<const char*>& free) 
                         {Signal::velocity, Signal::acceleration, Signal::tachometer});
 }
 
-std::vector<Secret> paper_secrets() {
+std::vector<HiddenEffect> paper_secrets() {
   return {
       {"friction", "coulomb_friction", {{"coulomb_friction.F_c", 15.0}}},
       {"arm force", "constant_force", {{"constant_force.F_0", 10.0}}},
@@ -73,19 +73,19 @@ std::vector<Secret> paper_secrets() {
   };
 }
 
-class OnThePapersAxis : public testing::TestWithParam<Secret> {};
+class OnThePapersAxis : public testing::TestWithParam<HiddenEffect> {};
 
 TEST_P(OnThePapersAxis, OneUndeclaredEffectIsAcceptedAlone) {
-  const Secret& secret = GetParam();
+  const HiddenEffect& secret = GetParam();
   Model<double> truth = paper_axis();
   secret.put_into(truth);
-  const ClosedLoop loop = close(paper_job(truth, {"B_a", "k_g", "T_p"}));
-  EXPECT_EQ(accepted(loop), Names{secret.name}) << loop.verdict;
-  EXPECT_TRUE(loop.explained);
-  for (const auto& [name, value] : secret.strengths) expect_found(loop, name, value);
-  expect_found(loop, "B_a", 200.0);
-  expect_found(loop, "k_g", 5e6);
-  expect_found(loop, "T_p", 0.04);
+  const EffectSelection selection = close(paper_job(truth, {"B_a", "k_g", "T_p"}));
+  EXPECT_EQ(accepted(selection), Names{secret.name}) << selection.verdict;
+  EXPECT_TRUE(selection.explained);
+  for (const auto& [name, value] : secret.strengths) expect_found(selection, name, value);
+  expect_found(selection, "B_a", 200.0);
+  expect_found(selection, "k_g", 5e6);
+  expect_found(selection, "T_p", 0.04);
 }
 
 INSTANTIATE_TEST_SUITE_P(EverySlot, OnThePapersAxis, testing::ValuesIn(paper_secrets()),

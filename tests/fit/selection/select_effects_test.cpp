@@ -9,63 +9,64 @@ namespace {
 
 using Names = std::set<std::string>;
 
-class OneUndeclaredEffect : public testing::TestWithParam<Secret> {};
+class OneUndeclaredEffect : public testing::TestWithParam<HiddenEffect> {};
 
 TEST_P(OneUndeclaredEffect, IsAcceptedAlone) {
-  const Secret& secret = GetParam();
-  const ClosedLoop loop = close(secret.job());
-  EXPECT_EQ(accepted(loop), Names{secret.name}) << loop.verdict;
-  EXPECT_EQ(undecided(loop), Names{});
-  EXPECT_TRUE(loop.explained);
-  EXPECT_FALSE(loop.held_out_blocks);
-  ASSERT_EQ(loop.models.size(), 2u);
-  EXPECT_EQ(loop.models[0].added, "");
-  EXPECT_EQ(loop.models[1].added, secret.name);
-  EXPECT_TRUE(loop.result.fit.usable);
-  EXPECT_LT(loop.result.fit.reduced_chi_square, 1.1);
+  const HiddenEffect& secret = GetParam();
+  const EffectSelection selection = close(secret.job());
+  EXPECT_EQ(accepted(selection), Names{secret.name}) << selection.verdict;
+  EXPECT_EQ(undecided(selection), Names{});
+  EXPECT_TRUE(selection.explained);
+  EXPECT_FALSE(selection.held_out_blocks);
+  ASSERT_EQ(selection.models.size(), 2u);
+  EXPECT_EQ(selection.models[0].added, "");
+  EXPECT_EQ(selection.models[1].added, secret.name);
+  EXPECT_TRUE(selection.result.fit.usable);
+  EXPECT_LT(selection.result.fit.reduced_chi_square, 1.1);
   for (const auto& list : {secret.strengths, secret.shapes})
-    for (const auto& [name, value] : list) expect_found(loop, name, value);
+    for (const auto& [name, value] : list) expect_found(selection, name, value);
   Model<double> declared = secret.declared();
   for (const char* name : secret.free)
-    expect_found(loop, name, *members(declared)[find_quantity(name)->index]);
+    expect_found(selection, name, *members(declared)[find_quantity(name)->index]);
 }
 
-INSTANTIATE_TEST_SUITE_P(EverySlot, OneUndeclaredEffect, testing::ValuesIn(secrets(false)),
+INSTANTIATE_TEST_SUITE_P(EverySlot, OneUndeclaredEffect, testing::ValuesIn(hidden_effects(false)),
                          [](const auto& one) { return one.param.label(); });
 
-class AnEffectWithATwin : public testing::TestWithParam<Secret> {};
+class AnEffectWithATwin : public testing::TestWithParam<HiddenEffect> {};
 
 TEST_P(AnEffectWithATwin, IsLeftUndecided) {
-  const Secret& secret = GetParam();
-  const ClosedLoop loop = close(secret.job());
-  EXPECT_EQ(undecided(loop), (Names{secret.name, secret.twin})) << loop.verdict;
-  EXPECT_EQ(accepted(loop), Names{});
-  EXPECT_FALSE(loop.explained);
-  ASSERT_EQ(loop.rivals.size(), 1u);
-  EXPECT_EQ((Names{loop.rivals[0].chosen, loop.rivals[0].rival}),
+  const HiddenEffect& secret = GetParam();
+  const EffectSelection selection = close(secret.job());
+  EXPECT_EQ(undecided(selection), (Names{secret.name, secret.twin})) << selection.verdict;
+  EXPECT_EQ(accepted(selection), Names{});
+  EXPECT_FALSE(selection.explained);
+  ASSERT_EQ(selection.rivals.size(), 1u);
+  EXPECT_EQ((Names{selection.rivals[0].chosen, selection.rivals[0].rival}),
             (Names{secret.name, secret.twin}));
   const MachineLimits limits{-0.5, 0.5, 1.0, 10.0};
-  const Separation advice = what_separates(loop, loop.rivals[0], ControllerSettings(), limits);
-  EXPECT_NE(advice.words.find(secret.name), std::string::npos);
-  EXPECT_NE(advice.words.find(secret.twin), std::string::npos);
-  EXPECT_EQ(advice.signal.has_value(), advice.size >= 0.1) << advice.words;
+  const Discrimination advice =
+      discriminate(selection, selection.rivals[0], ControllerSettings(), limits);
+  EXPECT_NE(advice.description.find(secret.name), std::string::npos);
+  EXPECT_NE(advice.description.find(secret.twin), std::string::npos);
+  EXPECT_EQ(advice.signal.has_value(), advice.size >= 0.1) << advice.description;
   // Neither is added: the result is the model as declared.
-  ASSERT_EQ(loop.models.size(), 1u);
-  EXPECT_EQ(loop.result.job.free.size(), secret.free.size());
+  ASSERT_EQ(selection.models.size(), 1u);
+  EXPECT_EQ(selection.result.job.free.size(), secret.free.size());
 }
 
-INSTANTIATE_TEST_SUITE_P(EverySlot, AnEffectWithATwin, testing::ValuesIn(secrets(true)),
+INSTANTIATE_TEST_SUITE_P(EverySlot, AnEffectWithATwin, testing::ValuesIn(hidden_effects(true)),
                          [](const auto& one) { return one.param.label(); });
 
 TEST(CloseLoop, AddsNothingToAModelThatHasEverything) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const ClosedLoop loop = close(two_recordings(slide(), slide(), {"M", "B_a"}, 6.0,
-                                                 {Signal::velocity, Signal::acceleration}, seed));
-    EXPECT_EQ(accepted(loop), Names{}) << seed;
-    EXPECT_EQ(undecided(loop), Names{}) << seed;
-    EXPECT_TRUE(loop.explained);
-    EXPECT_EQ(loop.models.size(), 1u);
-    EXPECT_EQ(loop.verdict.find("Nothing is missing"), 0u) << loop.verdict;
+    const EffectSelection selection = close(two_recordings(
+        slide(), slide(), {"M", "B_a"}, 6.0, {Signal::velocity, Signal::acceleration}, seed));
+    EXPECT_EQ(accepted(selection), Names{}) << seed;
+    EXPECT_EQ(undecided(selection), Names{}) << seed;
+    EXPECT_TRUE(selection.explained);
+    EXPECT_EQ(selection.models.size(), 1u);
+    EXPECT_EQ(selection.verdict.find("Nothing is missing"), 0u) << selection.verdict;
   }
 }
 
@@ -74,31 +75,31 @@ TEST(CloseLoop, AddsNothingForNoiseThatIsLargerThanStated) {
   Job job = two_recordings(slide(), slide(), {"M", "B_a"});
   for (Recording& r : job.recordings)
     for (Measurement& m : r.measurements) m.sigma *= 0.7;
-  const ClosedLoop loop = close(job);
-  EXPECT_EQ(accepted(loop), Names{}) << loop.verdict;
-  EXPECT_EQ(undecided(loop), Names{});
-  EXPECT_FALSE(loop.explained);
-  EXPECT_FALSE(loop.effects.empty());
-  for (const EffectTrial& trial : loop.effects) EXPECT_FALSE(trial.reason.empty());
+  const EffectSelection selection = close(job);
+  EXPECT_EQ(accepted(selection), Names{}) << selection.verdict;
+  EXPECT_EQ(undecided(selection), Names{});
+  EXPECT_FALSE(selection.explained);
+  EXPECT_FALSE(selection.effects.empty());
+  for (const EffectTrial& trial : selection.effects) EXPECT_FALSE(trial.reason.empty());
 }
 
 TEST(CloseLoop, HoldsOutBlocksWhereThereIsNothingToValidate) {
-  const Secret secret = secret_named("coulomb_friction");
+  const HiddenEffect secret = hidden_effect_named("coulomb_friction");
   Job job = secret.job();
   job.recordings.pop_back();
-  const ClosedLoop loop = close(job);
-  EXPECT_TRUE(loop.held_out_blocks);
-  EXPECT_EQ(accepted(loop), Names{secret.name});
-  EXPECT_TRUE(loop.explained);
+  const EffectSelection selection = close(job);
+  EXPECT_TRUE(selection.held_out_blocks);
+  EXPECT_EQ(accepted(selection), Names{secret.name});
+  EXPECT_TRUE(selection.explained);
   // The blocks are for the judgement only: the result is that of all samples.
-  EXPECT_TRUE(loop.result.job.recordings[0].held_out.empty());
+  EXPECT_TRUE(selection.result.job.recordings[0].held_out.empty());
   Job declared =
       two_recordings(secret.truth(), secret.truth(), {"M", "B_a", "coulomb_friction.F_c"});
   declared.recordings.pop_back();
   const FitResult fit = estimate(declared);
-  ASSERT_EQ(loop.result.fit.parameters.size(), fit.parameters.size());
+  ASSERT_EQ(selection.result.fit.parameters.size(), fit.parameters.size());
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
-    const ParameterResult &a = fit.parameters[i], &b = loop.result.fit.parameters[i];
+    const ParameterResult &a = fit.parameters[i], &b = selection.result.fit.parameters[i];
     EXPECT_NEAR(a.value, b.value, 0.05 * a.uncertainty.standard_error) << a.name;
     EXPECT_NEAR(a.uncertainty.standard_error, b.uncertainty.standard_error,
                 0.01 * a.uncertainty.standard_error);
@@ -107,30 +108,30 @@ TEST(CloseLoop, HoldsOutBlocksWhereThereIsNothingToValidate) {
 
 TEST(CloseLoop, FindsTwoEffects) {
   Model<double> truth = slide();
-  secret_named("coulomb_friction").put_into(truth);
-  secret_named("added_mass").put_into(truth);
-  const ClosedLoop loop = close(two_recordings(truth, slide(), {"B_a"}));
-  EXPECT_EQ(accepted(loop), (Names{"coulomb_friction", "added_mass"})) << loop.verdict;
-  EXPECT_TRUE(loop.explained);
-  ASSERT_EQ(loop.models.size(), 3u);
-  EXPECT_LT(loop.models[1].fit.reduced_chi_square, loop.models[0].fit.reduced_chi_square);
-  EXPECT_LT(loop.models[2].fit.reduced_chi_square, loop.models[1].fit.reduced_chi_square);
-  expect_found(loop, "coulomb_friction.F_c", 5.0);
-  expect_found(loop, "added_mass.dM", 0.5);
-  expect_found(loop, "B_a", 30.0);
+  hidden_effect_named("coulomb_friction").put_into(truth);
+  hidden_effect_named("added_mass").put_into(truth);
+  const EffectSelection selection = close(two_recordings(truth, slide(), {"B_a"}));
+  EXPECT_EQ(accepted(selection), (Names{"coulomb_friction", "added_mass"})) << selection.verdict;
+  EXPECT_TRUE(selection.explained);
+  ASSERT_EQ(selection.models.size(), 3u);
+  EXPECT_LT(selection.models[1].fit.reduced_chi_square, selection.models[0].fit.reduced_chi_square);
+  EXPECT_LT(selection.models[2].fit.reduced_chi_square, selection.models[1].fit.reduced_chi_square);
+  expect_found(selection, "coulomb_friction.F_c", 5.0);
+  expect_found(selection, "added_mass.dM", 0.5);
+  expect_found(selection, "B_a", 30.0);
 }
 
 TEST(CloseLoop, AddsNoMoreThanIsAllowed) {
-  const Job job = secret_named("coulomb_friction").job();
-  CloseLoopOptions options;
+  const Job job = hidden_effect_named("coulomb_friction").job();
+  SelectionOptions options;
   options.max_effects = 0;
-  const ClosedLoop loop = close_loop(job, estimate(job), options);
-  EXPECT_EQ(accepted(loop), Names{});
-  EXPECT_FALSE(loop.explained);
+  const EffectSelection selection = select_effects(job, estimate(job), options);
+  EXPECT_EQ(accepted(selection), Names{});
+  EXPECT_FALSE(selection.explained);
 }
 
 TEST(CloseLoop, KeepsWhatIsAcceptedWhenItIsStopped) {
-  Job job = secret_named("drive_lag").job();
+  Job job = hidden_effect_named("drive_lag").job();
   const FitResult fit = estimate(job);
   StopFlag stop = false;
   job.options.stop = &stop;
@@ -138,24 +139,25 @@ TEST(CloseLoop, KeepsWhatIsAcceptedWhenItIsStopped) {
   for (const bool late : {true, false}) {
     stop = !late;
     int phases = 0;
-    const ClosedLoop loop = close_loop(job, fit, {}, [&](const Progress& p) {
-      if (p.phase == "looking for suspects") ++phases;
+    const EffectSelection selection = select_effects(job, fit, {}, [&](const Progress& p) {
+      if (p.phase == "scoring effects") ++phases;
       if (p.phase == "is drive_lag needed?" || phases > 1) stop = true;
     });
-    EXPECT_EQ(loop.interrupted, stop.load());
-    EXPECT_EQ(accepted(loop), late ? Names{"drive_lag"} : Names{});
-    EXPECT_TRUE(loop.result.fit.usable);
-    EXPECT_EQ(loop.verdict.find("was stopped") != std::string::npos, !late) << loop.verdict;
+    EXPECT_EQ(selection.interrupted, stop.load());
+    EXPECT_EQ(accepted(selection), late ? Names{"drive_lag"} : Names{});
+    EXPECT_TRUE(selection.result.fit.usable);
+    EXPECT_EQ(selection.verdict.find("was stopped") != std::string::npos, !late)
+        << selection.verdict;
   }
 }
 
 TEST(CloseLoop, IsTheSameForAnyNumberOfThreads) {
-  Job job = secret_named("drive_lag").job();
+  Job job = hidden_effect_named("drive_lag").job();
   const FitResult fit = estimate(job);
   job.options.threads = 1;
-  const ClosedLoop one = close_loop(job, fit);
+  const EffectSelection one = select_effects(job, fit);
   job.options.threads = 2;
-  const ClosedLoop two = close_loop(job, fit);
+  const EffectSelection two = select_effects(job, fit);
   EXPECT_EQ(one.verdict, two.verdict);
   EXPECT_EQ(one.rivals.size(), two.rivals.size());
   ASSERT_EQ(one.effects.size(), two.effects.size());
@@ -172,28 +174,28 @@ TEST(CloseLoop, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(CloseLoop, TellsWhatItDoes) {
-  const Job job = secret_named("coulomb_friction").job();
+  const Job job = hidden_effect_named("coulomb_friction").job();
   std::set<std::string> phases;
   std::vector<double> best;
-  close_loop(job, estimate(job), {}, [&](const Progress& p) {
+  select_effects(job, estimate(job), {}, [&](const Progress& p) {
     EXPECT_LE(p.done, p.of);
     best.push_back(p.best);
     phases.insert(p.phase);
   });
-  EXPECT_TRUE(phases.contains("looking for suspects"));
+  EXPECT_TRUE(phases.contains("scoring effects"));
   EXPECT_TRUE(phases.contains("trying coulomb_friction"));
   EXPECT_GT(best.front(), 2.0 * best.back());  // of the model so far
 }
 
 TEST(CloseLoop, NeedsAUsableFit) {
-  const Job job = secret_named("coulomb_friction").job();
+  const Job job = hidden_effect_named("coulomb_friction").job();
   FitResult fit = estimate(job);
   fit.usable = false;
-  const ClosedLoop loop = close_loop(job, fit);
-  EXPECT_TRUE(loop.effects.empty());
-  EXPECT_FALSE(loop.explained);
-  EXPECT_EQ(loop.models.size(), 1u);
-  EXPECT_NE(loop.verdict.find("not closed"), std::string::npos);
+  const EffectSelection selection = select_effects(job, fit);
+  EXPECT_TRUE(selection.effects.empty());
+  EXPECT_FALSE(selection.explained);
+  EXPECT_EQ(selection.models.size(), 1u);
+  EXPECT_NE(selection.verdict.find("not closed"), std::string::npos);
 }
 
 }  // namespace

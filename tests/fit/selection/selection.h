@@ -14,33 +14,33 @@
 
 namespace axisfit {
 
-inline std::set<std::string> names(const ClosedLoop& loop, Decision decision) {
+inline std::set<std::string> names(const EffectSelection& selection, Decision decision) {
   std::set<std::string> list;
-  for (const EffectTrial& trial : loop.effects)
+  for (const EffectTrial& trial : selection.effects)
     if (trial.decision == decision) list.insert(trial.candidate.name);
   return list;
 }
-inline std::set<std::string> accepted(const ClosedLoop& loop) {
-  return names(loop, Decision::accepted);
+inline std::set<std::string> accepted(const EffectSelection& selection) {
+  return names(selection, Decision::accepted);
 }
-inline std::set<std::string> undecided(const ClosedLoop& loop) {
-  return names(loop, Decision::undecided);
+inline std::set<std::string> undecided(const EffectSelection& selection) {
+  return names(selection, Decision::undecided);
 }
 
 /// Fits, closes the loop, and tells the outcome on the way.
-inline ClosedLoop close(const Job& job) {
+inline EffectSelection close(const Job& job) {
   const FitResult fit = estimate(job);
   EXPECT_TRUE(fit.usable) << fit.verdict;
-  ClosedLoop loop = close_loop(job, fit);
-  std::cout << "reduced chi-square " << fit.reduced_chi_square << "; " << loop.verdict << "\n";
-  for (const EffectTrial& t : loop.effects)
+  EffectSelection selection = select_effects(job, fit);
+  std::cout << "reduced chi-square " << fit.reduced_chi_square << "; " << selection.verdict << "\n";
+  for (const EffectTrial& t : selection.effects)
     std::cout << "  " << t.candidate.name << ": " << t.reason << "\n";
-  return loop;
+  return selection;
 }
 
 /// Expects a parameter of the result within three standard errors of the truth, and these small.
-inline void expect_found(const ClosedLoop& loop, const std::string& name, double truth) {
-  const auto& list = loop.result.fit.parameters;
+inline void expect_found(const EffectSelection& selection, const std::string& name, double truth) {
+  const auto& list = selection.result.fit.parameters;
   const auto found = std::ranges::find(list, name, &ParameterResult::name);
   ASSERT_NE(found, list.end()) << name;
   const double error = found->uncertainty.standard_error;
@@ -50,9 +50,9 @@ inline void expect_found(const ClosedLoop& loop, const std::string& name, double
   EXPECT_NEAR(found->value, truth, 0.05 * std::abs(truth)) << name;
 }
 
-inline Secret secret_named(std::string_view name) {
-  const auto list = secrets();
-  return *std::ranges::find(list, name, &Secret::name);
+inline HiddenEffect hidden_effect_named(std::string_view name) {
+  const auto list = hidden_effects();
+  return *std::ranges::find(list, name, &HiddenEffect::name);
 }
 
 }  // namespace axisfit

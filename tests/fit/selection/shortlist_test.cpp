@@ -18,7 +18,7 @@ TEST(Shortlist, HasAllThatGainMoreThanSix) {
   const std::vector<double> values{20.0, 30.0};
   std::set<std::string> expected;
   int little = 0;
-  for (const double rate : score_rates(job)) {
+  for (const double rate : score_gains(job)) {
     const ScoreTest test = score_test(job, values, rate);
     ASSERT_TRUE(test.usable);
     for (const Score& score : test.scores) {
@@ -29,7 +29,7 @@ TEST(Shortlist, HasAllThatGainMoreThanSix) {
   }
   EXPECT_GT(little, 0);
   std::set<std::string> found;
-  for (const Promise& promise : shortlist(job, values, false, 1000).promises) {
+  for (const ShortlistEntry& promise : shortlist(job, values, false, 1000).entries) {
     found.insert(promise.candidate.name);
     EXPECT_GE(promise.score.gain, 6.0) << promise.candidate.name;
   }

@@ -121,7 +121,7 @@ TEST_F(AxisFileTest, EveryShippedAxisReadsAndSurvivesWriting) {
     ASSERT_NO_THROW(diagnostics.throw_if_any());
     ASSERT_TRUE(rig.has_value());
     EXPECT_NE(rig->name, "");
-    EXPECT_EQ(refusal(rig->model), "");
+    EXPECT_EQ(model_error(rig->model), "");
     expect_same(read(format_axis_file(*rig, "")), *rig);
     ++count;
   }
@@ -240,10 +240,9 @@ TEST_F(AxisFileTest, QuantitiesOfAnEffectMayHaveAStandardValue) {
   torque_droop: {c_i: 0 1/A}
   force_over_motor_angle: {}
 )"),
-            "axis.yaml:8:17: key 'f_e' is missing in elastic_mode\n"
-            "axis.yaml:9:17: torque_droop has no part in an axis with drive force_source and "
-            "transmission rigid: remove it\n"
-            "axis.yaml:10:27: force_over_motor_angle has no part in an axis with drive "
+            "axis.yaml:8:17: key 'f_e' is missing in elastic_mode\naxis.yaml:9:17: torque_droop is "
+            "not used by an axis with drive force_source and transmission rigid: remove "
+            "it\naxis.yaml:10:27: force_over_motor_angle is not used by an axis with drive "
             "force_source and transmission rigid: remove it\n");
 }
 
@@ -276,8 +275,8 @@ TEST_F(AxisFileTest, AnyNameAndCommentSurviveWriting) {
 TEST_F(AxisFileTest, JmMayBeZeroOnlyWithoutBacklash) {
   const std::string zero = replaced(kAxis, "800 mg m^2", "0 kg m^2");
   EXPECT_EQ(errors(zero),
-            "axis.yaml:5:3: J_m must be above zero where the gear has backlash: between the teeth "
-            "nothing but J_m carries the motor torque\n");
+            "axis.yaml:5:3: J_m must be above zero with backlash: while the teeth are apart, the "
+            "motor torque acts on J_m alone\n");
   std::string rigid = replaced(zero, "transmission: backlash", "transmission: rigid");
   for (const char* line : {"  H: 10 um\n", "  b_g: 1.5 kN s/m\n", "  k_g: 5 MN/m\n"})
     rigid = replaced(rigid, line, "");
@@ -291,71 +290,70 @@ struct Mistake {
 };
 
 TEST_F(AxisFileTest, EveryMistakeIsNamedWithItsPlace) {
-  for (const auto& [from, to, message] : std::vector<Mistake>{
-           // Keys.
-           {"drive: current_source\n", "", "1:1: key 'drive' is missing in the file"},
-           {"name: test axis", "nmae: test axis", "1:1: unknown key 'nmae'; did you mean 'name'?"},
-           {"  M: 120 kg\n", "", "5:3: key 'M' is missing in parameters"},
-           {"  M: 120 kg\n", "  M: 120 kg\n  m: 1 kg\n",
-            "12:3: unknown key 'm'; did you mean 'M'?"},
-           {"  M: 120 kg\n", "  M: 120 kg\n  M: 1 kg\n",
-            "12:3: duplicate key 'M', first given in line 11"},
-           {"coulomb_friction:", "coulomb_frction:",
-            "23:3: unknown key 'coulomb_frction'; did you mean 'coulomb_friction'?"},
-           {"{F_c: 20 N}", "{}", "23:21: key 'F_c' is missing in coulomb_friction"},
-           {"{F_c: 20 N}", "{F_c: 20 N, F_k: 3 N}",
-            "23:33: unknown key 'F_k'; did you mean 'F_c'?"},
-           {"  y0: 5 cm", "  y6: 5 A",
-            "25:3: unknown key 'y6'; did you mean 'y0'?"},  // no inductance, no current to start
-           {"  velocity: {", "  speed: {",
-            "27:3: unknown key 'speed'; known keys: position, velocity, acceleration, tachometer, "
-            "motor_current, V_c, V_m, drive_force"},
-           {"gain: 101 %", "scale: 101 %",
-            "27:14: unknown key 'scale'; known keys: gain, bias, lag, delay, noise"},
-           {"  period: 4 ms", "  perod: 4 ms", "29:3: unknown key 'perod'; did you mean 'period'?"},
-           // Kinds of values.
-           {"name: test axis", "name:", "1:1: name must be a text, not empty"},
-           {"current_source", "curent_source",
-            "2:8: drive must be one of velocity_loop, current_source, force_source, not "
-            "'curent_source'; did you mean 'current_source'?"},
-           {"transmission: backlash", "transmission: belt",
-            "3:15: transmission must be one of backlash, rigid, not 'belt'"},
-           {"M: 120 kg", "M: heavy",
-            "11:6: M must be a number with a unit, for example '1 kg', not 'heavy'"},
-           {"M: 120 kg", "M: [120 kg]",
-            "11:6: M must be a number with a unit, for example '1 kg', not a list"},
-           {"M: 120 kg",
-            "M:", "11:3: M must be a number with a unit, for example '1 kg', not empty"},
-           {"M: 120 kg", "M: .nan kg",
-            "11:6: M must be a number with a unit, for example '1 kg', not '.nan kg'"},
-           {"{F_c: 20 N}", "20 N",
-            "23:21: coulomb_friction must be a map of keys and values, not '20 N'"},
-           {"{gain: 101 %, noise: 2 mm/s}", "2 mm/s",
-            "27:13: velocity must be a map of keys and values, not '2 mm/s'"},
-           // Units.
-           {"M: 120 kg", "M: 120", "11:6: M needs a unit, for example '120 kg'"},
-           {"M: 120 kg", "M: 120 m",
-            "11:6: M: 'm' does not fit a quantity in 'kg'; write for example 'kg'"},
-           {"K_2: 870", "K_2: 870 V",
-            "16:8: K_2: 'V' does not fit a dimensionless quantity; write a plain number or '%'"},
-           {"noise: 2 mm/s", "noise: 2", "27:34: noise needs a unit, for example '2 m/s'"},
-           {"period: 4 ms", "period: 4", "29:11: period needs a unit, for example '4 s'"},
-           // Ranges.
-           {"M: 120 kg", "M: 0 kg", "11:6: M must lie between 0.001 kg and 1e+05 kg, not 0 kg"},
-           {"H: 10 um", "H: -10 um", "10:6: H must lie between 0 m and 0.1 m, not -10 um"},
-           {"F_c: 20 N", "F_c: -1 N", "23:27: F_c must lie between 0 N and 1e+05 N, not -1 N"},
-           {"noise: 2 mm/s", "noise: -2 mm/s",
-            "27:34: noise must lie between 0 m/s and 1e+06 m/s, not -2 mm/s"},
-           {"period: 4 ms", "period: 0 s",
-            "29:11: period must lie between 1e-05 s and 1 s, not 0 s"},
-           // Parts that the variant lacks.
-           {"  M: 120 kg\n", "  M: 120 kg\n  R: 0.5 ohm\n",
-            "12:6: R has no part in an axis with drive current_source and transmission backlash: "
-            "remove it"},
-           {"  M: 120 kg\n", "  M: 120 kg\n  K_f: 3 N/V\n",
-            "12:8: K_f has no part in an axis with drive current_source and transmission backlash: "
-            "remove it"},
-       }) {
+  for (
+      const auto& [from, to, message] : std::vector<Mistake>{
+          // Keys.
+          {"drive: current_source\n", "", "1:1: key 'drive' is missing in the file"},
+          {"name: test axis", "nmae: test axis", "1:1: unknown key 'nmae'; did you mean 'name'?"},
+          {"  M: 120 kg\n", "", "5:3: key 'M' is missing in parameters"},
+          {"  M: 120 kg\n", "  M: 120 kg\n  m: 1 kg\n", "12:3: unknown key 'm'; did you mean 'M'?"},
+          {"  M: 120 kg\n", "  M: 120 kg\n  M: 1 kg\n",
+           "12:3: duplicate key 'M', first given on line 11"},
+          {"coulomb_friction:", "coulomb_frction:",
+           "23:3: unknown key 'coulomb_frction'; did you mean 'coulomb_friction'?"},
+          {"{F_c: 20 N}", "{}", "23:21: key 'F_c' is missing in coulomb_friction"},
+          {"{F_c: 20 N}", "{F_c: 20 N, F_k: 3 N}", "23:33: unknown key 'F_k'; did you mean 'F_c'?"},
+          {"  y0: 5 cm", "  y6: 5 A",
+           "25:3: unknown key 'y6'; did you mean 'y0'?"},  // no inductance, no current to start
+          {"  velocity: {", "  speed: {",
+           "27:3: unknown key 'speed'; known keys: position, velocity, acceleration, tachometer, "
+           "motor_current, V_c, V_m, drive_force"},
+          {"gain: 101 %", "scale: 101 %",
+           "27:14: unknown key 'scale'; known keys: gain, bias, lag, delay, noise"},
+          {"  period: 4 ms", "  perod: 4 ms", "29:3: unknown key 'perod'; did you mean 'period'?"},
+          // Kinds of values.
+          {"name: test axis", "name:", "1:1: name must be a text, not empty"},
+          {"current_source", "curent_source",
+           "2:8: drive must be one of velocity_loop, current_source, force_source, not "
+           "'curent_source'; did you mean 'current_source'?"},
+          {"transmission: backlash", "transmission: belt",
+           "3:15: transmission must be one of backlash, rigid, not 'belt'"},
+          {"M: 120 kg", "M: heavy",
+           "11:6: M must be a number with a unit, for example '1 kg', not 'heavy'"},
+          {"M: 120 kg", "M: [120 kg]",
+           "11:6: M must be a number with a unit, for example '1 kg', not a list"},
+          {"M: 120 kg",
+           "M:", "11:3: M must be a number with a unit, for example '1 kg', not empty"},
+          {"M: 120 kg", "M: .nan kg",
+           "11:6: M must be a number with a unit, for example '1 kg', not '.nan kg'"},
+          {"{F_c: 20 N}", "20 N",
+           "23:21: coulomb_friction must be a map of keys and values, not '20 N'"},
+          {"{gain: 101 %, noise: 2 mm/s}", "2 mm/s",
+           "27:13: velocity must be a map of keys and values, not '2 mm/s'"},
+          // Units.
+          {"M: 120 kg", "M: 120", "11:6: M needs a unit, for example '120 kg'"},
+          {"M: 120 kg", "M: 120 m",
+           "11:6: M: 'm' cannot be converted to 'kg'; use for example 'kg'"},
+          {"K_2: 870", "K_2: 870 V",
+           "16:8: K_2: 'V' cannot be used for a dimensionless quantity; use a plain number or '%'"},
+          {"noise: 2 mm/s", "noise: 2", "27:34: noise needs a unit, for example '2 m/s'"},
+          {"period: 4 ms", "period: 4", "29:11: period needs a unit, for example '4 s'"},
+          // Ranges.
+          {"M: 120 kg", "M: 0 kg", "11:6: M must lie between 0.001 kg and 1e+05 kg, not 0 kg"},
+          {"H: 10 um", "H: -10 um", "10:6: H must lie between 0 m and 0.1 m, not -10 um"},
+          {"F_c: 20 N", "F_c: -1 N", "23:27: F_c must lie between 0 N and 1e+05 N, not -1 N"},
+          {"noise: 2 mm/s", "noise: -2 mm/s",
+           "27:34: noise must lie between 0 m/s and 1e+06 m/s, not -2 mm/s"},
+          {"period: 4 ms", "period: 0 s",
+           "29:11: period must lie between 1e-05 s and 1 s, not 0 s"},
+          // Parts that the variant lacks.
+          {"  M: 120 kg\n", "  M: 120 kg\n  R: 0.5 ohm\n",
+           "12:6: R is not used by an axis with drive current_source and transmission backlash: "
+           "remove it"},
+          {"  M: 120 kg\n", "  M: 120 kg\n  K_f: 3 N/V\n",
+           "12:8: K_f is not used by an axis with drive current_source and transmission backlash: "
+           "remove it"},
+      }) {
     EXPECT_EQ(errors(replaced(kAxis, from, to)), "axis.yaml:" + std::string(message) + "\n");
   }
 }
@@ -375,15 +373,13 @@ instruments:
 controller: {limit: 0 V}
 )"),
             "axis.yaml:3:1: unknown key 'colour'; known keys: name, drive, transmission, effects, "
-            "parameters, initial, instruments, controller\n"
-            "axis.yaml:5:3: key 'B_a' is missing in parameters\n"
-            "axis.yaml:5:8: K_f: 'N' does not fit a quantity in 'N/V'; write for example 'N/V'\n"
-            "axis.yaml:6:6: M needs a unit, for example '95 kg'\n"
-            "axis.yaml:7:8: r_g has no part in an axis with drive force_source and transmission "
-            "rigid: remove it\n"
-            "axis.yaml:9:25: F_0 must be a number with a unit, for example '1 N', not 'up'\n"
-            "axis.yaml:11:21: noise: 's' does not fit a quantity in 'm'; write for example 'm'\n"
-            "axis.yaml:12:21: limit must lie between 0.001 V and 10000 V, not 0 V\n");
+            "parameters, initial, instruments, controller\naxis.yaml:5:3: key 'B_a' is missing in "
+            "parameters\naxis.yaml:5:8: K_f: 'N' cannot be converted to 'N/V'; use for example "
+            "'N/V'\naxis.yaml:6:6: M needs a unit, for example '95 kg'\naxis.yaml:7:8: r_g is not "
+            "used by an axis with drive force_source and transmission rigid: remove "
+            "it\naxis.yaml:9:25: F_0 must be a number with a unit, for example '1 N', not "
+            "'up'\naxis.yaml:11:21: noise: 's' cannot be converted to 'm'; use for example "
+            "'m'\naxis.yaml:12:21: limit must lie between 0.001 V and 10000 V, not 0 V\n");
 }
 
 TEST_F(AxisFileTest, FilesThatAreNoAxisAreRefused) {

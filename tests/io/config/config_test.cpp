@@ -97,16 +97,13 @@ TEST(Config, ReportsAllErrorsAtOnceWithTheirPlaces) {
     map.finish();
   });
   EXPECT_EQ(all,
-            "job.yaml:2:1: key 'recordings' is missing in the file\n"
-            "job.yaml:3:3: key 'r_g' is missing in axis\n"
-            "job.yaml:3:6: M needs a unit, for example '146 kg'\n"
-            "job.yaml:4:8: B_a: 'kg' does not fit a quantity in 'N s/m'; write for example "
-            "'N s/m'\n"
-            "job.yaml:5:10: drive must be one of velocity_loop, force_source, not 'velocty_loop'; "
-            "did you mean 'velocity_loop'?\n"
-            "job.yaml:6:8: V_L must lie between 0.01 V and 100 V, not 500 V\n"
-            "job.yaml:7:1: unknown key 'recrodings'; did you mean 'recordings'?\n"
-            "job.yaml:8:8: rigid must be true or false, not 'yes'");
+            "job.yaml:2:1: key 'recordings' is missing in the file\njob.yaml:3:3: key 'r_g' is "
+            "missing in axis\njob.yaml:3:6: M needs a unit, for example '146 kg'\njob.yaml:4:8: "
+            "B_a: 'kg' cannot be converted to 'N s/m'; use for example 'N s/m'\njob.yaml:5:10: "
+            "drive must be one of velocity_loop, force_source, not 'velocty_loop'; did you mean "
+            "'velocity_loop'?\njob.yaml:6:8: V_L must lie between 0.01 V and 100 V, not 500 "
+            "V\njob.yaml:7:1: unknown key 'recrodings'; did you mean 'recordings'?\njob.yaml:8:8: "
+            "rigid must be true or false, not 'yes'");
 }
 
 TEST(Config, GivesTheDiagnosticsOfTheException) {
@@ -202,15 +199,15 @@ TEST(ConfigLoad, RefusesWrongUtf8) {
 
 TEST(ConfigLoad, ReportsWhatYamlAcceptsInSilence) {
   EXPECT_EQ(errors("a: 1\nb: {c: 1, c: 2}\n\"a\": 3\n"),
-            "job.yaml:2:11: duplicate key 'c', first given in line 2\n"
-            "job.yaml:3:1: duplicate key 'a', first given in line 1");
+            "job.yaml:2:11: duplicate key 'c', first given on line 2\njob.yaml:3:1: duplicate key "
+            "'a', first given on line 1");
   EXPECT_EQ(errors("a: &a {k: 1}\nb:\n  <<: *a\n"),
             "job.yaml:3:3: merge keys ('<<') are not supported; write the entries out");
   EXPECT_EQ(errors("a: !!int 5\nb: !path x\n"),
             "job.yaml:1:4: tags are not supported: 'tag:yaml.org,2002:int'\n"
             "job.yaml:2:4: tags are not supported: '!path'");
   EXPECT_EQ(errors("? [a]\n: 1\n~: 2\n"),
-            "job.yaml:1:3: a key must be a text\njob.yaml:3:1: a key must be a text");
+            "job.yaml:1:3: a key must be text\njob.yaml:3:1: a key must be text");
   EXPECT_EQ(errors("a: 1\n---\nb: 2\n---\nc: 3\n"),
             "job.yaml:3:1: only one document is allowed; remove the '---' above and what follows "
             "it");
@@ -218,7 +215,7 @@ TEST(ConfigLoad, ReportsWhatYamlAcceptsInSilence) {
 
 TEST(ConfigLoad, DuplicateInASharedNodeIsReportedOnce) {
   EXPECT_EQ(errors("a: &a {c: 1, c: 2}\nb: *a\nd: *a\n"),
-            "job.yaml:1:14: duplicate key 'c', first given in line 1");
+            "job.yaml:1:14: duplicate key 'c', first given on line 1");
 }
 
 TEST(ConfigLoad, AcceptsAliasesButNoBombs) {
@@ -272,7 +269,7 @@ TEST(ConfigNode, ReadsNumbersAndPercentages) {
   EXPECT_EQ(value_of("1000", quantity("V/V")), 1e3);
   EXPECT_EQ(value_of("1 V/mV", quantity("V/V")), 1e3);
   EXPECT_EQ(complaint("5 kg", number()),
-            "x: 'kg' does not fit a dimensionless quantity; write a plain number or '%'");
+            "x: 'kg' cannot be used for a dimensionless quantity; use a plain number or '%'");
 }
 
 TEST(ConfigNode, RefusesWhatIsNoDecimalNumber) {
@@ -295,12 +292,12 @@ TEST(ConfigNode, RefusesWhatIsNoDecimalNumber) {
 TEST(ConfigNode, RefusesMissingAndWrongUnits) {
   EXPECT_EQ(complaint("146", quantity("kg")), "x needs a unit, for example '146 kg'");
   EXPECT_EQ(complaint("0", quantity("N")), "x needs a unit, for example '0 N'");
-  EXPECT_EQ(complaint("146 kgg", quantity("kg")), "x: unknown unit 'kgg'; write for example 'kg'");
+  EXPECT_EQ(complaint("146 kgg", quantity("kg")), "x: unknown unit 'kgg'; use for example 'kg'");
   EXPECT_EQ(complaint("1 m", quantity("kg")),
-            "x: 'm' does not fit a quantity in 'kg'; write for example 'kg'");
-  EXPECT_EQ(complaint("5 2 kg", quantity("kg")), "x: unknown unit '2 kg'; write for example 'kg'");
+            "x: 'm' cannot be converted to 'kg'; use for example 'kg'");
+  EXPECT_EQ(complaint("5 2 kg", quantity("kg")), "x: unknown unit '2 kg'; use for example 'kg'");
   EXPECT_EQ(complaint("\"1 k\\e\\n\"", quantity("kg")),
-            "x: unknown unit 'k?\?'; write for example 'kg'");
+            "x: unknown unit 'k?\?'; use for example 'kg'");
 }
 
 TEST(ConfigNode, NamesTheLimits) {
@@ -411,7 +408,7 @@ TEST(ConfigMap, KeepsTheFirstOfDuplicates) {
                      EXPECT_EQ(map.required("a")->text(), "1");
                      map.finish();
                    }),
-            "job.yaml:2:1: duplicate key 'a', first given in line 1");
+            "job.yaml:2:1: duplicate key 'a', first given on line 1");
 }
 
 TEST(ConfigMap, PlacesEmptyValuesAtTheirKey) {

@@ -159,7 +159,7 @@ TEST_F(JobFileTest, ReadsTheShippedPaperJob) {
   EXPECT_EQ(step.initial_state, InitialState::given);
   EXPECT_TRUE(step.score_initial_samples);
   EXPECT_TRUE(step.overrides.empty());
-  EXPECT_FALSE(step.acceleration_at_rest);
+  EXPECT_FALSE(step.acceleration_at_standstill);
   ASSERT_EQ(step.times.size(), 2501u);
   EXPECT_EQ(step.times.front(), 0.0);
   EXPECT_EQ(step.times[1], 0.001);
@@ -179,7 +179,7 @@ TEST_F(JobFileTest, ReadsTheShippedPaperJob) {
     EXPECT_TRUE(m.fitted);
   }
   // The arm rests at the end.
-  EXPECT_TRUE(step.measurements[0].left_out.empty());
+  EXPECT_TRUE(step.measurements[0].excluded.empty());
   EXPECT_TRUE(step.measurements[1].counts(1800));
   EXPECT_FALSE(step.measurements[1].counts(2400));
 
@@ -197,10 +197,10 @@ TEST_F(JobFileTest, ReadsTheShippedPaperJob) {
     EXPECT_FALSE(p.prior.has_value());
   }
 
-  const FitOptions standard;
-  EXPECT_EQ(job.options.coupling, CouplingMode::continuation);
+  const FitOptions defaults;
+  EXPECT_EQ(job.options.observer, ObserverMode::continuation);
   EXPECT_EQ(job.options.loss, Loss::squares);
-  EXPECT_EQ(job.options.max_iterations, standard.max_iterations);
+  EXPECT_EQ(job.options.max_iterations, defaults.max_iterations);
   EXPECT_EQ(job.options.starts, 1);
   EXPECT_EQ(job.options.seed, 1u);
 }
@@ -293,8 +293,8 @@ TEST_F(JobFileTest, AFitNeedsMoreValuesThanParameters) {
       "  velocity.delay: {}\n  velocity.lag: {}\n  initial.y0: {}\n  initial.y1: {}";
   EXPECT_EQ(errors_of_ten_values(nine), "");
   EXPECT_EQ(errors_of_ten_values(nine + "\n  K_f: {}"),
-            "job.yaml:10:3: 10 values, priors included, do not determine 10 parameters: fit fewer, "
-            "or to more samples");
+            "job.yaml:10:3: 10 values, priors included, cannot determine 10 parameters: free fewer "
+            "parameters or fit more samples");
 }
 
 TEST_F(JobFileTest, LimitsOfTheMachineAreRead) {
@@ -347,7 +347,7 @@ TEST_F(JobFileTest, ADriveForceReplacesTheCommandOfAForceSource) {
   EXPECT_EQ(errors(replaced(replaced(kJob, "mass.yaml", "driven.yaml"),
                             "      command: {column: u, unit: V}\n", "")),
             "job.yaml:6:7: the axis is driven by the command: name its column, or that of the "
-            "position_reference, from which the slave control unit makes it");
+            "position_reference, from which the slave control unit computes it");
 }
 
 TEST_F(JobFileTest, InitialStateFromData) {
@@ -411,17 +411,17 @@ TEST_F(JobFileTest, AccelerationAtRestIsLeftOutUnlessKept) {
                "sigma: 1 mm/s}\n      acceleration: {column: a, unit: m/s^2, sigma: 1 cm/s^2}\n");
   const auto with = [&](const std::string& value) {
     return replaced(text, "  - file: data.csv\n",
-                    "  - file: data.csv\n    acceleration_at_rest: " + value + "\n");
+                    "  - file: data.csv\n    acceleration_at_standstill: " + value + "\n");
   };
-  for (const std::string& left_out : {text, with("leave_out")}) {
-    const Recording recording = read(left_out).job.recordings.front();
+  for (const std::string& excluded : {text, with("exclude")}) {
+    const Recording recording = read(excluded).job.recordings.front();
     EXPECT_TRUE(recording.measurements[0].counts(150));
     EXPECT_TRUE(recording.measurements[1].counts(50));
     EXPECT_FALSE(recording.measurements[1].counts(150));
   }
   EXPECT_TRUE(read(with("keep")).job.recordings.front().measurements[1].counts(150));
   EXPECT_EQ(errors(with("drop")),
-            "job.yaml:4:27: acceleration_at_rest must be one of leave_out, keep, not 'drop'");
+            "job.yaml:4:27: acceleration_at_standstill must be one of exclude, keep, not 'drop'");
 }
 
 TEST_F(JobFileTest, OverridesHoldForTheirRecording) {
@@ -430,10 +430,9 @@ TEST_F(JobFileTest, OverridesHoldForTheirRecording) {
             (Overrides{{index("B_a"), 1000.0}, {index("velocity.bias"), 0.003}}));
   EXPECT_EQ(file.job.model.axis.B_a, 8.0);
   EXPECT_EQ(errors(with_lines("    set: {B_q: 1 kN s/m, K_m: 3 N m/A, F_s: -1 N}\n")),
-            "job.yaml:4:11: there is no quantity 'B_q'; did you mean 'B_a'?\n"
-            "job.yaml:4:26: K_m has no part in this axis: its drive or transmission leaves "
-            "it out\n"
-            "job.yaml:4:45: F_s must lie between 0 N and 1e+05 N, not -1 N");
+            "job.yaml:4:11: unknown quantity 'B_q'; did you mean 'B_a'?\njob.yaml:4:26: K_m is not "
+            "used by this axis, because of its drive or transmission\njob.yaml:4:45: F_s must lie "
+            "between 0 N and 1e+05 N, not -1 N");
 }
 
 TEST_F(JobFileTest, OverridesMayNotMakeAnAxisThatCannotBeSimulated) {
@@ -441,14 +440,14 @@ TEST_F(JobFileTest, OverridesMayNotMakeAnAxisThatCannotBeSimulated) {
   axis = replaced(axis, "J_m: 0 kg m^2", "J_m: 1 kg m^2, H: 0 m, b_g: 1 N s/m, k_g: 1 N/m");
   folder_.write("mass.yaml", axis);
   EXPECT_EQ(errors(with_lines("    set: {J_m: 0 kg m^2}\n")),
-            "job.yaml:4:10: J_m must be above zero where the gear has backlash: between the teeth "
-            "nothing but J_m carries the motor torque");
+            "job.yaml:4:10: J_m must be above zero with backlash: while the teeth are apart, the "
+            "motor torque acts on J_m alone");
 }
 
 TEST_F(JobFileTest, AQuantityIsEitherFittedForAllOrSet) {
   const std::string text = with_lines("    set: {M: 5 kg}\n");
   EXPECT_EQ(errors(text),
-            "job.yaml:10:6: M is fitted for all recordings but set for 'data': remove one, or say "
+            "job.yaml:10:6: M is fitted for all recordings but set for 'data': remove one, or use "
             "per_recording: true");
   const JobFile file = read(replaced(text, "M: {}", "M: {per_recording: true}"));
   ASSERT_EQ(file.job.free.size(), 1u);
@@ -533,8 +532,8 @@ TEST_F(JobFileTest, EffectsOfTheJobAddToThoseOfTheAxis) {
   EXPECT_EQ(file.rig.model.structure.effects.count(), 2u);
   EXPECT_EQ(parameter(file).initial, 3.0);
   EXPECT_EQ(errors_with("M: {}", "constant_force.F_0: {}"),
-            "job.yaml:9:3: constant_force.F_0 needs the effect: add it to the axis or job, as in "
-            "'effects: {constant_force: {F_0: ...}}'");
+            "job.yaml:9:3: constant_force.F_0 belongs to an effect that is not active: add it to "
+            "the axis or job, as in 'effects: {constant_force: {F_0: ...}}'");
   EXPECT_EQ(errors(std::string(kJob) + "effects: {quadratic_darg: {c: 3 N}, constant_force: {}}\n"),
             "job.yaml:10:11: unknown key 'quadratic_darg'; did you mean 'quadratic_drag'?\n"
             "job.yaml:10:53: key 'F_0' is missing in constant_force");
@@ -542,7 +541,7 @@ TEST_F(JobFileTest, EffectsOfTheJobAddToThoseOfTheAxis) {
 
 TEST_F(JobFileTest, ReadsEveryOptionOfTheFit) {
   const JobFile file = read(std::string(kJob) + R"(fit:
-  coupling: {fixed: 5 1/ms}
+  observer: {fixed: 5 1/ms}
   loss: huber
   huber_width: 2.5
   max_iterations: 7
@@ -552,8 +551,8 @@ TEST_F(JobFileTest, ReadsEveryOptionOfTheFit) {
   step: 1 ms
 )");
   const FitOptions& options = file.job.options;
-  EXPECT_EQ(options.coupling, CouplingMode::fixed);
-  EXPECT_DOUBLE_EQ(options.coupling_rate, 5000.0);
+  EXPECT_EQ(options.observer, ObserverMode::fixed);
+  EXPECT_DOUBLE_EQ(options.observer_gain, 5000.0);
   EXPECT_EQ(options.loss, Loss::huber);
   EXPECT_EQ(options.huber_width, 2.5);
   EXPECT_EQ(options.max_iterations, 7);
@@ -561,11 +560,11 @@ TEST_F(JobFileTest, ReadsEveryOptionOfTheFit) {
   EXPECT_EQ(options.seed, 11u);
   EXPECT_EQ(options.spread, 2.0);
   EXPECT_DOUBLE_EQ(options.step, 1e-3);
-  EXPECT_EQ(read(std::string(kJob) + "fit: {coupling: none}\n").job.options.coupling,
-            CouplingMode::none);
-  const JobFile first = read(std::string(kJob) + "fit: {first_coupling: 20 1/s}\n");
-  EXPECT_EQ(first.job.options.coupling, CouplingMode::continuation);
-  EXPECT_DOUBLE_EQ(first.job.options.coupling_rate, 20.0);
+  EXPECT_EQ(read(std::string(kJob) + "fit: {observer: none}\n").job.options.observer,
+            ObserverMode::none);
+  const JobFile first = read(std::string(kJob) + "fit: {initial_observer_gain: 20 1/s}\n");
+  EXPECT_EQ(first.job.options.observer, ObserverMode::continuation);
+  EXPECT_DOUBLE_EQ(first.job.options.observer_gain, 20.0);
 }
 
 TEST_F(JobFileTest, MatAndCsvGiveTheSameJob) {
@@ -596,12 +595,10 @@ TEST_F(JobFileTest, MatFilesMayHoldColumnsThatDoNotFit) {
   data.t_ms[5] = data.t_ms[4];
   data.x = {3.0};
   write_mat(folder_.path("data.mat"), data.columns());
-  EXPECT_EQ(
-      errors(text),
-      "job.yaml:4:11: data.mat: row 6: time 0.016 s does not come after 0.016 s: samples must "
-      "be in the order of time, each once\n"
-      "job.yaml:7:26: data.mat: row 5: 'v' is not finite there: cut the recording or fill the "
-      "gap");
+  EXPECT_EQ(errors(text),
+            "job.yaml:4:11: data.mat: row 6: time 0.016 s does not increase from 0.016 s: samples "
+            "must be in order of time, without repeats\njob.yaml:7:26: data.mat: row 5: 'v' is not "
+            "finite: trim the recording or fill the gap");
   data.t_ms = Data().t_ms;
   write_mat(folder_.path("data.mat"), data.columns());
   EXPECT_EQ(errors(replaced(text, "column: v", "column: x")),
@@ -667,16 +664,15 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
            {"column: t_ms", "column: tms",
             "4:20: no column 'tms' in data.csv; did you mean 't_ms'? It has f, t_ms, u, v, x"},
            {"column: u, ", "", "6:16: key 'column' is missing in command"},
-           {"unit: ms", "unit: m",
-            "4:32: 'm' does not fit a quantity in 's'; write for example 's'"},
+           {"unit: ms", "unit: m", "4:32: 'm' cannot be converted to 's'; use for example 's'"},
            {"unit: m/s", "unit: V",
-            "7:35: 'V' does not fit a quantity in 'm/s'; write for example "
-            "'m/s'"},
+            "7:35: 'V' cannot be converted to 'm/s'; use for example 'm/s'"},
            {", unit: V", "", "6:16: key 'unit' is missing in command"},
            {"unit: V}", "unit: V, sigma: 1 V}", "6:37: unknown key 'sigma'; did you mean 'sign'?"},
            {"unit: V}", "unit: V, sign: 2}", "6:43: sign must be one of 1, -1, not '2'"},
            {"unit: V}", "unit: V, factor: 2 V}",
-            "6:45: factor: 'V' does not fit a dimensionless quantity; write a plain number or '%'"},
+            "6:45: factor: 'V' cannot be used for a dimensionless quantity; use a plain number or "
+            "'%'"},
            {"sigma: 1 mm/s", "sigma: 1", "7:47: sigma needs a unit, for example '1 m/s'"},
            {"sigma: 1 mm/s", "sigma: 0 mm/s",
             "7:47: sigma must be above zero: residuals are divided by it"},
@@ -684,22 +680,21 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
            {"sigma: 1 mm/s", "fit: maybe, sigma: 1 mm/s",
             "7:45: fit must be true or false, not 'maybe'"},
            {"sigma: 1 mm/s", "fit: false, sigma: 1 mm/s",
-            "6:7: nothing to fit: every signal says fit: false; drop that from one, or give the "
+            "6:7: nothing to fit: every signal has fit: false; remove it from one, or give the "
             "recording the role validate"},
            {"      velocity: {column: v, unit: m/s, sigma: 1 mm/s}\n", "",
-            "6:7: nothing to compare with: name at least one of position, velocity, acceleration, "
+            "6:7: no measured signal: name at least one of position, velocity, acceleration, "
             "tachometer, motor_current, V_c, V_m, drive_force"},
            // What is free.
-           {"M: {}", "m: {}", "9:3: there is no quantity 'm'; did you mean 'M'?"},
+           {"M: {}", "m: {}", "9:3: unknown quantity 'm'; did you mean 'M'?"},
            {"M: {}", "coulomb_friction: {}",
-            "9:3: there is no quantity 'coulomb_friction'; did you mean 'coulomb_friction.F_c'?"},
+            "9:3: unknown quantity 'coulomb_friction'; did you mean 'coulomb_friction.F_c'?"},
            {"M: {}", "friction_of_the_arm: {}",
-            "9:3: there is no quantity 'friction_of_the_arm'; the axis has its parameters, "
-            "effect.parameter, signal.gain, bias, lag and delay, and initial.y0 ... initial.y6"},
+            "9:3: unknown quantity 'friction_of_the_arm'; valid names are parameters of the axis, "
+            "EFFECT.PARAMETER, SIGNAL.gain, .bias, .lag and .delay, and initial.y0 ... initial.y6"},
            {"M: {}", "K_m: {}",
-            "9:3: K_m has no part in this axis: its drive or transmission leaves it out"},
-           {"free:\n  M: {}", "free: {}",
-            "8:7: nothing is free: name at least one quantity to fit"},
+            "9:3: K_m is not used by this axis, because of its drive or transmission"},
+           {"free:\n  M: {}", "free: {}", "8:7: no free quantity: name at least one to fit"},
            {"free:\n  M: {}", "free: [M]",
             "8:7: free must be a map of keys and values, not a list"},
            {"M: {}", "M: {intial: 3 kg}", "9:7: unknown key 'intial'; did you mean 'initial'?"},
@@ -713,7 +708,7 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
            {"M: {}", "M: {bounds: 9 kg}",
             "9:15: bounds must be a list of two values: [lower, upper]"},
            {"M: {}", "M: {bounds: [1 kg, 5 m]}",
-            "9:22: entry 2 of bounds: 'm' does not fit a quantity in 'kg'; write for example 'kg'"},
+            "9:22: entry 2 of bounds: 'm' cannot be converted to 'kg'; use for example 'kg'"},
            {"M: {}", "M: {scale: logarithmic}",
             "9:14: scale must be one of log, linear, not 'logarithmic'"},
            {"M: {}", "B_a: {scale: log, bounds: [0 N s/m, 9 N s/m]}",
@@ -722,17 +717,18 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
             "9:22: per_recording must be true or false, not 'each'"},
            // How to fit.
            {"free:\n", "fit: {threads: 2}\nfree:\n",
-            "8:7: unknown key 'threads'; known keys: coupling, first_coupling, loss, huber_width, "
+            "8:7: unknown key 'threads'; known keys: observer, initial_observer_gain, loss, "
+            "huber_width, "
             "max_iterations, starts, seed, spread, step"},
-           {"free:\n", "fit: {coupling: loose}\nfree:\n",
-            "8:17: coupling must be continuation, none, or for example {fixed: 300 1/s}"},
-           {"free:\n", "fit: {coupling:}\nfree:\n",
-            "8:7: coupling must be continuation, none, or for example {fixed: 300 1/s}"},
-           {"free:\n", "fit: {coupling: none, first_coupling: 3 1/s}\nfree:\n",
-            "8:39: first_coupling is where a continuation starts: it needs coupling: continuation"},
-           {"free:\n", "fit: {coupling: {fixd: 3 1/s}}\nfree:\n",
+           {"free:\n", "fit: {observer: loose}\nfree:\n",
+            "8:17: observer must be continuation, none, or a fixed gain such as {fixed: 300 1/s}"},
+           {"free:\n", "fit: {observer:}\nfree:\n",
+            "8:7: observer must be continuation, none, or a fixed gain such as {fixed: 300 1/s}"},
+           {"free:\n", "fit: {observer: none, initial_observer_gain: 3 1/s}\nfree:\n",
+            "8:39: initial_observer_gain needs observer: continuation"},
+           {"free:\n", "fit: {observer: {fixd: 3 1/s}}\nfree:\n",
             "8:18: unknown key 'fixd'; did you mean 'fixed'?"},
-           {"free:\n", "fit: {coupling: {fixed: 3}}\nfree:\n",
+           {"free:\n", "fit: {observer: {fixed: 3}}\nfree:\n",
             "8:25: fixed needs a unit, for example '3 1/s'"},
            {"free:\n", "fit: {loss: hubre}\nfree:\n",
             "8:13: loss must be one of squares, huber, not 'hubre'; did you mean 'huber'?"},
@@ -748,19 +744,19 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
 
 // The signal that holds the simulation to the end is taken to be on time.
 TEST_F(JobFileTest, RefusesALateSignalThatHoldsTheSimulation) {
-  const std::string fixed = std::string(kJob) + "fit: {coupling: {fixed: 300 1/s}}\n";
+  const std::string fixed = std::string(kJob) + "fit: {observer: {fixed: 300 1/s}}\n";
   const std::string message =
       "a fixed coupling holds the simulation to the recorded velocity as if that had no ";
   EXPECT_EQ(errors(replaced(fixed, "M: {}", "velocity.delay: {}")),
             "job.yaml:9:19: " + message +
                 "delay: leave velocity.delay out and fit T_d, which delays the whole motion, or "
-                "use coupling: continuation");
+                "use observer: continuation");
   EXPECT_EQ(
       errors(replaced(fixed, "M: {}", "velocity.lag: {}")),
-      "job.yaml:9:17: " + message + "lag: leave velocity.lag out and use coupling: continuation");
+      "job.yaml:9:17: " + message + "lag: leave velocity.lag out and use observer: continuation");
   EXPECT_EQ(
       errors(replaced(fixed, "    signals:", "    set: {velocity.lag: 1 ms}\n    signals:")),
-      "job.yaml:7:7: " + message + "lag: leave velocity.lag out and use coupling: continuation");
+      "job.yaml:7:7: " + message + "lag: leave velocity.lag out and use observer: continuation");
   EXPECT_NO_THROW(read(replaced(fixed, "M: {}", "position.delay: {}")));
   EXPECT_NO_THROW(read(replaced(kJob, "M: {}", "velocity.delay: {}")));
 }
@@ -782,8 +778,8 @@ TEST_F(JobFileTest, MistakesInARecordingNameItsLine) {
   data.t_ms[7] = data.t_ms[6] - 0.5;
   write_data("data.csv", data.columns());
   EXPECT_EQ(errors(kJob),
-            "job.yaml:4:11: data.csv:9: time 1000000.0055 s does not come after 1000000.006 s: "
-            "samples must be in the order of time, each once");
+            "job.yaml:4:11: data.csv:9: time 1000000.0055 s does not increase from 1000000.006 s: "
+            "samples must be in order of time, without repeats");
 }
 
 TEST_F(JobFileTest, AllMistakesAreNamedAtOnce) {
@@ -805,19 +801,16 @@ free:
 fit: {loss: cubes}
 colour: red
 )"),
-      "job.yaml:4:11: role must be one of fit, validate, not 'train'\n"
-      "job.yaml:5:20: no column 'time' in data.csv; did you mean 't_ms'? It has f, t_ms, u, v, x\n"
-      "job.yaml:8:55: unknown key 'sing'; did you mean 'sign'?\n"
-      "job.yaml:9:5: key 'signals' is missing in entry 2 of recordings\n"
-      "job.yaml:9:11: none.csv: cannot be opened (No such file or directory); check the path "
-      "and the permissions\n"
-      "job.yaml:10:11: there is no quantity 'M_a'; did you mean 'B_a'?\n"
-      "job.yaml:13:18: initial must lie between 0 N s/m and 1e+06 N s/m, not -1 N s/m\n"
-      "job.yaml:14:3: K_t has no part in this axis: its drive or transmission leaves "
-      "it out\n"
-      "job.yaml:15:13: loss must be one of squares, huber, not 'cubes'; did you mean 'huber'?\n"
-      "job.yaml:16:1: unknown key 'colour'; known keys: axis, effects, recordings, free, fit, "
-      "limits");
+      "job.yaml:4:11: role must be one of fit, validate, not 'train'\njob.yaml:5:20: no column "
+      "'time' in data.csv; did you mean 't_ms'? It has f, t_ms, u, v, x\njob.yaml:8:55: unknown "
+      "key 'sing'; did you mean 'sign'?\njob.yaml:9:5: key 'signals' is missing in entry 2 of "
+      "recordings\njob.yaml:9:11: none.csv: cannot be opened (No such file or directory); check "
+      "the path and the permissions\njob.yaml:10:11: unknown quantity 'M_a'; did you mean "
+      "'B_a'?\njob.yaml:13:18: initial must lie between 0 N s/m and 1e+06 N s/m, not -1 N "
+      "s/m\njob.yaml:14:3: K_t is not used by this axis, because of its drive or "
+      "transmission\njob.yaml:15:13: loss must be one of squares, huber, not 'cubes'; did you mean "
+      "'huber'?\njob.yaml:16:1: unknown key 'colour'; known keys: axis, effects, recordings, free, "
+      "fit, limits");
 }
 
 }  // namespace

@@ -26,42 +26,42 @@ using Json = nlohmann::ordered_json;
 TEST(Key, ValuesAreToldInUnitAndRange) {
   for (const auto& [form, text] : std::vector<std::pair<Form, std::string>>{
            {Text{}, "text"},
-           {Flag{}, "`true` or `false`"},
-           {Whole{4, 1000000}, "whole number, 4 .. 1000000"},
-           {Whole{}, "whole number from 0"},
-           {Amount{"s", 1e-5, 0.1}, "s, 1e-5 .. 0.1"},
-           {Amount{"N", -1.5e6, 1.5e6}, "N, +-1.5e6"},
-           {Amount{"N", 0.0, kUnlimited}, "N, >= 0"},
-           {Amount{"1", 10, 1e6}, "number, 10 .. 1e6"},
-           {Amount{"V", -kUnlimited, kUnlimited, "V, +-limit"}, "V, +-limit"},
+           {Boolean{}, "`true` or `false`"},
+           {Integer{4, 1000000}, "whole number, 4 .. 1000000"},
+           {Integer{}, "whole number from 0"},
+           {NumberWithUnit{"s", 1e-5, 0.1}, "s, 1e-5 .. 0.1"},
+           {NumberWithUnit{"N", -1.5e6, 1.5e6}, "N, +-1.5e6"},
+           {NumberWithUnit{"N", 0.0, kUnlimited}, "N, >= 0"},
+           {NumberWithUnit{"1", 10, 1e6}, "number, 10 .. 1e6"},
+           {NumberWithUnit{"V", -kUnlimited, kUnlimited, "V, +-limit"}, "V, +-limit"},
            {Bounds{{"m"}}, "[lower, upper], m"},
            {Choice{{{"a"}, {"b"}, {"c"}}}, "`a`, `b` or `c`"},
-           {Either{{Choice{{{"none"}}}, Map{{Key::required("rate", Amount{"1/s"}, "")}}}},
+           {AnyOf{{Choice{{{"none"}}}, Map{{Key::required("rate", NumberWithUnit{"1/s"}, "")}}}},
             "`none`; or {rate: 1/s}"},
-           {List{{Amount{"V"}}}, "list, each V"},
+           {List{{NumberWithUnit{"V"}}}, "list, each V"},
        })
     EXPECT_EQ(value_text(form), text);
 }
 
 TEST(Key, StandardValuesAreWrittenAsAUserWould) {
-  const auto standard = [](Form form, auto value) {
-    return standard_text(Key::optional("key", std::move(form), value, "meaning"));
+  const auto default_of = [](Form form, auto value) {
+    return default_description(Key::optional("key", std::move(form), value, "meaning"));
   };
-  EXPECT_EQ(standard(Amount{"s"}, 0.5e-3), "0.5 ms");
-  EXPECT_EQ(standard(Amount{"s"}, 0.0), "0 s");
-  EXPECT_EQ(standard(Amount{"m/s"}, 0.002), "2 mm/s");
-  EXPECT_EQ(standard(Amount{"V s/m"}, 10.0), "10 V s/m");
-  EXPECT_EQ(standard(Amount{"1"}, 4000.0), "4000");
-  EXPECT_EQ(standard(Whole{}, 20), "20");
-  EXPECT_EQ(standard(Flag{}, true), "true");
-  EXPECT_EQ(standard(Choice{{{"first"}, {"second"}}}, 1), "second");
-  EXPECT_EQ(standard_text(Key::required("key", Text{}, "meaning")), "required");
+  EXPECT_EQ(default_of(NumberWithUnit{"s"}, 0.5e-3), "0.5 ms");
+  EXPECT_EQ(default_of(NumberWithUnit{"s"}, 0.0), "0 s");
+  EXPECT_EQ(default_of(NumberWithUnit{"m/s"}, 0.002), "2 mm/s");
+  EXPECT_EQ(default_of(NumberWithUnit{"V s/m"}, 10.0), "10 V s/m");
+  EXPECT_EQ(default_of(NumberWithUnit{"1"}, 4000.0), "4000");
+  EXPECT_EQ(default_of(Integer{}, 20), "20");
+  EXPECT_EQ(default_of(Boolean{}, true), "true");
+  EXPECT_EQ(default_of(Choice{{{"first"}, {"second"}}}, 1), "second");
+  EXPECT_EQ(default_description(Key::required("key", Text{}, "meaning")), "required");
 }
 
 TEST(Key, AReaderCannotAskForWhatIsNotDescribed) {
   Diagnostics diagnostics;
   const auto root = ConfigNode::parse("step: 1 ms\n", "job.yaml", diagnostics);
-  const Section keys{Key::required("step", Amount{"s", 0.0, 1.0}, "step")};
+  const Section keys{Key::required("step", NumberWithUnit{"s", 0.0, 1.0}, "step")};
   ConfigMap map(*root, keys);
   double step = 0.0;
   EXPECT_TRUE(map.read("step", step));
@@ -82,9 +82,9 @@ Json example(const Section& keys) {
 
 struct Example {
   Json operator()(const Text&) const { return "data.csv"; }
-  Json operator()(const Flag&) const { return true; }
-  Json operator()(const Whole& whole) const { return whole.lower; }
-  Json operator()(const Amount& amount) const {
+  Json operator()(const Boolean&) const { return true; }
+  Json operator()(const Integer& whole) const { return whole.lower; }
+  Json operator()(const NumberWithUnit& amount) const {
     return std::to_string(std::min(std::max(1.0, amount.lower), amount.upper)) + " " +
            (amount.unit == "1" ? "" : amount.unit);
   }
@@ -94,7 +94,7 @@ struct Example {
   Json operator()(const Choice& choice) const { return choice.options.front().name; }
   Json operator()(const Map& map) const { return example(map.keys); }
   Json operator()(const List& list) const { return Json::array({example(list.of.front())}); }
-  Json operator()(const Either& either) const { return example(either.forms.back()); }
+  Json operator()(const AnyOf& either) const { return example(either.forms.back()); }
 };
 
 Json example(const Form& form) {
@@ -108,7 +108,7 @@ void walk(const Json::json_pointer& at, const Form& form, const FormVisitor& vis
   if (const auto* map = std::get_if<Map>(&form))
     for (const Key& key : map->keys) walk(at / key.name, key.form, visit);
   if (const auto* list = std::get_if<List>(&form)) walk(at / 0, list->of.front(), visit);
-  if (const auto* either = std::get_if<Either>(&form)) walk(at, either->forms.back(), visit);
+  if (const auto* either = std::get_if<AnyOf>(&form)) walk(at, either->forms.back(), visit);
 }
 
 // Descriptions and readers agree: a file with every key that is described has no key that is
@@ -148,7 +148,7 @@ class KeyAgreement : public ::testing::Test {
         wrong[at / "no_such_key"] = 1;
         EXPECT_NE(messages(wrong, read).find("'no_such_key'"), std::string::npos);
         ++maps;
-      } else if (const auto* amount = std::get_if<Amount>(&form)) {
+      } else if (const auto* amount = std::get_if<NumberWithUnit>(&form)) {
         for (const double limit : {amount->lower, amount->upper}) {
           if (std::isinf(limit)) continue;
           const auto text = [&](double value) {
@@ -159,7 +159,7 @@ class KeyAgreement : public ::testing::Test {
           EXPECT_TRUE(refused()) << wrong[at];
           ++limits;
         }
-      } else if (const auto* whole = std::get_if<Whole>(&form)) {
+      } else if (const auto* whole = std::get_if<Integer>(&form)) {
         wrong[at] = whole->lower - 1;
         EXPECT_TRUE(refused()) << wrong[at];
         ++limits;

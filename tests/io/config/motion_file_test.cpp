@@ -104,13 +104,11 @@ TEST_F(MotionFileTest, ARecordedCommandMustBeOneThatTheControllerCanWrite) {
   folder_.write("rec.csv", "t,u\n0,1\n10,5.5\n");
   EXPECT_EQ(
       errors(kRecorded),
-      "motion.yaml:4:10: rec.csv:3: a command of -11 V is beyond the controller's limit of 10 "
-      "V");
+      "motion.yaml:4:10: rec.csv:3: a command of -11 V exceeds the controller's limit of 10 V");
   folder_.write("rec.csv", "t,u\n0,1\n10,2\n5,3\n");
-  EXPECT_EQ(
-      errors(kRecorded),
-      "motion.yaml:3:7: rec.csv:4: time 0.005 s does not come after 0.01 s: samples must be in "
-      "the order of time, each once");
+  EXPECT_EQ(errors(kRecorded),
+            "motion.yaml:3:7: rec.csv:4: time 0.005 s does not increase from 0.01 s: samples must "
+            "be in order of time, without repeats");
   folder_.write("rec.csv", "t,v\n0,1\n");
   EXPECT_EQ(errors(kRecorded), "motion.yaml:4:19: no column 'u' in rec.csv; it has t, v");
   EXPECT_EQ(
@@ -139,10 +137,9 @@ constexpr const char* kMove =
 TEST_F(MotionFileTest, AMoveNeedsASetVelocityInput) {
   EXPECT_EQ(errors(kMove), "");
   rig_ = shipped_axis("emps");
-  EXPECT_EQ(
-      errors(kMove),
-      "motion.yaml:1:7: a move needs the slave control unit, which writes a set velocity; this "
-      "axis is driven by a force source, which has no set-velocity input");
+  EXPECT_EQ(errors(kMove),
+            "motion.yaml:1:7: a move needs a set-velocity input, which the force source of this "
+            "axis does not have");
   EXPECT_EQ(errors("type: step\nlevel: 1 V\nduration: 1 s\n"), "");
 }
 
@@ -187,11 +184,9 @@ TEST_F(MotionFileTest, EveryMistakeIsNamedWithItsPlace) {
       "motion.yaml:2:1: unknown key 'frequency'; known keys: type, duration, amplitude, from, "
       "to, offset\n"
       "motion.yaml:3:12: amplitude needs a unit, for example '1 V'");
-  EXPECT_EQ(
-      errors("type: sine\namplitude: 1 V\nfrequency: 6 rad/s\nduration: 0 s\n"),
-      "motion.yaml:3:12: frequency: 'rad/s' does not fit a quantity in 'Hz'; write for example "
-      "'Hz'\n"
-      "motion.yaml:4:11: duration must lie between 0.001 s and 1e+06 s, not 0 s");
+  EXPECT_EQ(errors("type: sine\namplitude: 1 V\nfrequency: 6 rad/s\nduration: 0 s\n"),
+            "motion.yaml:3:12: frequency: 'rad/s' cannot be converted to 'Hz'; use for example "
+            "'Hz'\nmotion.yaml:4:11: duration must lie between 0.001 s and 1e+06 s, not 0 s");
   EXPECT_EQ(errors("type: levels\nlevels: 3 V\nhold: 1 s\nduration: 1 s\n"),
             "motion.yaml:2:9: levels must be a list, not '3 V'");
   EXPECT_EQ(errors("type: prbs\namplitude: 1 V\nbit: 1 s\nseed: -1\nduration: 1 s\n"),

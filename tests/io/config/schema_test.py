@@ -84,8 +84,8 @@ def example(kind, name):
 RIGHT = [
     ("job", "paper.yaml", "B_a: {initial: 60 N s/m}", "B_a:"),
     ("job", "paper.yaml", "B_a: {initial: 60 N s/m}", "B_a: {initial: 60N s/m, bounds: [.4 N s/m, 1e3 N s/m]}"),
-    ("job", "paper.yaml", "sigma: 2 mm/s", "sigma: rest, factor: 50 %, sign: -1"),
-    ("job", "paper.yaml", "free:", "fit: {coupling: {fixed: 5 1/ms}, step: 1 ms, starts: 2}\nfree:"),
+    ("job", "paper.yaml", "sigma: 2 mm/s", "sigma: standstill, factor: 50 %, sign: -1"),
+    ("job", "paper.yaml", "free:", "fit: {observer: {fixed: 5 1/ms}, step: 1 ms, starts: 2}\nfree:"),
     ("job", "paper.yaml", "free:", "effects: {coulomb_friction: {F_c: 0 N}}\nlimits: {travel: [0 m, +1.2 m]}\nfree:"),
     ("axis", "x.yaml", "K_v: 1000 ", "K_v: 1e3 "),
     ("axis", "x.yaml", "K_v: 1000 ", "K_v: 100000 % "),
@@ -119,7 +119,7 @@ WRONG = [
     ("job", "paper.yaml", "  - name: step", "  - role: fitt"),
     ("job", "paper.yaml", "sigma: 2 mm/s", "sign: 2"),
     ("job", "paper.yaml", "sigma: 2 mm/s", "sigma: guess"),
-    ("job", "paper.yaml", "free:", "fit: {coupling: loose}\nfree:"),
+    ("job", "paper.yaml", "free:", "fit: {observer: loose}\nfree:"),
     ("axis", "x.yaml", "drive: velocity_loop", "drive: velocty_loop"),
     ("motion", "step.yaml", "type: step", "type: stop"),
     # a value of the wrong kind, or beyond the range of a number

@@ -161,10 +161,10 @@ TEST_F(TableTest, TellsTheLineAndTheColumnOfTextThatIsNoNumber) {
             "number in every column");
   EXPECT_EQ(error("time;velocity\n0.5;1\n1;1,5\n"),
             "rec.csv:3: column 'velocity': '1,5' has a decimal comma, but numbers above it have a "
-            "decimal point; write all of them alike");
+            "decimal point; use one of them throughout");
   EXPECT_EQ(error("time;velocity\n0,5;1\n1;1.5\n"),
             "rec.csv:3: column 'velocity': '1.5' has a decimal point, but numbers above it have a "
-            "decimal comma; write all of them alike");
+            "decimal comma; use one of them throughout");
   EXPECT_EQ(error("time\nnan\n"),
             "rec.csv:2: column 'time': 'nan' is not finite; remove the row or cut the recording "
             "there");
@@ -201,7 +201,7 @@ TEST_F(TableTest, TellsWhichColumnARowLacksOrExceeds) {
 
 TEST_F(TableTest, ARowReadsAlikeWhereverItStands) {
   // The first row may be units and is split into fields; below it plain rows are read in one go.
-  const auto outcome = [&](const std::string& row, int line) {
+  const auto simulation_result = [&](const std::string& row, int line) {
     const std::string above = line == 3 ? "a,b\n0,0.5\n" : "a,b\n";
     for (const char* const below : {"\n7,8\n", "\n", ""}) {
       const std::string text = above + row + below;
@@ -218,13 +218,14 @@ TEST_F(TableTest, ARowReadsAlikeWhereverItStands) {
     return std::string("these values");
   };
   for (const char* const row : {"1,-2.5e3", "+1,-2500", " 1 ,\t-2500 ", "\"1\",-2500", "1,-2500\r"})
-    for (const int line : {2, 3}) EXPECT_EQ(outcome(row, line), "these values") << row << line;
+    for (const int line : {2, 3})
+      EXPECT_EQ(simulation_result(row, line), "these values") << row << line;
   for (const char* const row : {"1", "1,2,3", "1,2,", "1,", ",2", "1,inf", "1,nan", "1,2x",
                                 "1e999,2", "1,2\r\r", "0x1,2", "1;2", "\"1,2", "1,2 3"}) {
-    EXPECT_NE(outcome(row, 3), "these values") << row;
+    EXPECT_NE(simulation_result(row, 3), "these values") << row;
     const bool may_be_a_unit = std::string_view(row).find_first_of("in") != std::string_view::npos;
     if (!may_be_a_unit) {
-      EXPECT_EQ(outcome(row, 2), outcome(row, 3)) << row;
+      EXPECT_EQ(simulation_result(row, 2), simulation_result(row, 3)) << row;
     }
   }
 }

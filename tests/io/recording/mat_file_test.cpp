@@ -320,8 +320,8 @@ TEST_F(MatFileTest, NamesTheVariableThatIsCutOff) {
                                   array<double>("q", 1000, 1, Values(1000, 0.1))}));
   write_bytes(bytes().substr(0, bytes().size() - 10));
   EXPECT_EQ(read_error(),
-            "rec.mat: variable 'q': the file is damaged or cut off: it has fewer bytes than this "
-            "variable takes; save or copy it again");
+            "rec.mat: variable 'q': the file is damaged or truncated: it is too short for this "
+            "variable; save or copy it again");
 }
 
 TEST_F(MatFileTest, AFileThatCrashesHdf5IsRefused) {
@@ -347,7 +347,7 @@ TEST_F(MatFileTest, TellsWhatIsWrongWithAFile) {
   EXPECT_THROW(read_mat(directory_.string()), RecordingError);
 
   ASSERT_TRUE(write(kPlain, {}));
-  EXPECT_EQ(read_error(), "rec.mat: holds no variables; it may be cut off or not a MAT-file");
+  EXPECT_EQ(read_error(), "rec.mat: contains no variables; it may be truncated or not a MAT-file");
 }
 
 // The elements of a version 5 file, for what libmatio cannot write. Little-endian like the header

@@ -43,14 +43,14 @@ class JournalFileTest : public ::testing::Test {
   /// Two solutions; the length of the file with the first alone.
   std::size_t write() {
     JournalFile journal(path_);
-    journal.keep(first_, solution(std::numeric_limits<double>::infinity()));
+    journal.store(first_, solution(std::numeric_limits<double>::infinity()));
     const std::size_t length = folder_.read("journal").size();
-    journal.keep(second_, solution(1e-300));
+    journal.store(second_, solution(1e-300));
     EXPECT_EQ(journal.failure(), "");
     EXPECT_FALSE(journal.is_empty());
     return length;
   }
-  std::size_t found() { return JournalFile(path_).earlier(); }
+  std::size_t found() { return JournalFile(path_).recovered(); }
 
   const ProblemKey first_{1, 2}, second_{1, 3};
   TempFolder folder_;
@@ -60,9 +60,9 @@ class JournalFileTest : public ::testing::Test {
 TEST_F(JournalFileTest, GivesBackWhatItWasGivenBitForBit) {
   write();
   JournalFile journal(path_);
-  EXPECT_EQ(journal.earlier(), 2u);
+  EXPECT_EQ(journal.recovered(), 2u);
   EXPECT_FALSE(journal.find(first_)) << "nobody asked to go on";
-  journal.go_on();
+  journal.resume();
   ASSERT_TRUE(journal.find(first_) && journal.find(second_));
   expect_same(*journal.find(first_), solution(std::numeric_limits<double>::infinity()));
   expect_same(*journal.find(second_), solution(1e-300));
@@ -88,10 +88,10 @@ TEST_F(JournalFileTest, WhatWasNotWrittenToItsEndDoesNotCount) {
 TEST_F(JournalFileTest, GoesOnBehindWhatWasNotWrittenToItsEnd) {
   const std::size_t one = write();
   folder_.write("journal", folder_.read("journal").substr(0, one + 20));
-  JournalFile(path_).keep(second_, solution(2.0));
+  JournalFile(path_).store(second_, solution(2.0));
   JournalFile journal(path_);
-  EXPECT_EQ(journal.earlier(), 2u);
-  journal.go_on();
+  EXPECT_EQ(journal.recovered(), 2u);
+  journal.resume();
   expect_same(journal.find(second_).value(), solution(2.0));
 }
 
@@ -121,7 +121,7 @@ TEST_F(JournalFileTest, ForeignFilesAreBegunAnew) {
        {std::string(), std::string("{}\n"), std::string(1000, '\0'), std::string(1000, '\xff')}) {
     folder_.write("journal", text);
     JournalFile journal(path_);
-    EXPECT_EQ(journal.earlier(), 0u);
+    EXPECT_EQ(journal.recovered(), 0u);
     EXPECT_TRUE(journal.is_empty());
   }
 }

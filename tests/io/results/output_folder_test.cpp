@@ -184,8 +184,8 @@ TEST_F(OutputFolderTest, BelongsToOneRunAtATime) {
   {
     OutputFolder first(folder_.path("results"), kNames);
     EXPECT_EQ(error_in("results"),
-              "results not written to results: another run is at work in it; wait until that has "
-              "ended, or name another folder");
+              "results could not be written to results: another run is using this folder; wait "
+              "until it has finished, or choose another folder");
     first.write(kFiles, true);
     EXPECT_EQ(folder_.read("results/result.json"), "{}\n");
   }
@@ -207,17 +207,17 @@ TEST_F(OutputFolderTest, AJournalWithAnythingInItOutlivesTheRun) {
     EXPECT_EQ(folder_.names("a/results"), Names{kJournal});
   }
   EXPECT_EQ(folder_.names(), Names{});
-  OutputFolder(folder_.path("results"), kNames).journal().keep(key, {});
+  OutputFolder(folder_.path("results"), kNames).journal().store(key, {});
   EXPECT_EQ(folder_.names("results"), Names{kJournal});
   {
     OutputFolder folder(folder_.path("results"), kNames);
-    EXPECT_EQ(folder.journal().earlier(), 1u);
+    EXPECT_EQ(folder.journal().recovered(), 1u);
     folder.write(kFiles, false);
     EXPECT_EQ(folder_.names("results"), (Names{kJournal, "result.json", "residuals.csv"}));
   }
   {
     OutputFolder folder(folder_.path("results"), kNames);
-    EXPECT_EQ(folder.journal().earlier(), 1u);
+    EXPECT_EQ(folder.journal().recovered(), 1u);
     folder.write(kFiles, true);
   }
   EXPECT_EQ(folder_.names("results"), (Names{"result.json", "residuals.csv"}));
@@ -233,8 +233,9 @@ TEST_F(OutputFolderTest, WhatOthersPutIntoAFolderStays) {
 
 TEST_F(OutputFolderTest, LeavesNothingBelowARegularFile) {
   folder_.write("file", "mine");
-  EXPECT_EQ(error_in("file"), "results not written to file: Not a directory");
-  EXPECT_EQ(error_in("file/results"), "results not written to file/results: Not a directory");
+  EXPECT_EQ(error_in("file"), "results could not be written to file: Not a directory");
+  EXPECT_EQ(error_in("file/results"),
+            "results could not be written to file/results: Not a directory");
   EXPECT_EQ(folder_.names(), Names{"file"});
   EXPECT_EQ(folder_.read("file"), "mine");
 }
@@ -249,9 +250,10 @@ TEST_F(OutputFolderTest, LeavesNothingWhenTheFolderCannotBeMade) {
 TEST_F(OutputFolderTest, LeavesNothingWhenTheLastFileCannotBeWritten) {
   Files files = kFiles;
   files.emplace_back(kTooLong, "");
-  EXPECT_EQ(error_in("results", files), "results not written to results: File name too long");
+  EXPECT_EQ(error_in("results", files),
+            "results could not be written to results: File name too long");
   EXPECT_EQ(error_in("a/b/results", files),
-            "results not written to a/b/results: File name too long");
+            "results could not be written to a/b/results: File name too long");
   EXPECT_EQ(folder_.names(), Names{});
 }
 
@@ -259,7 +261,8 @@ TEST_F(OutputFolderTest, ChangesNothingWhenTheLastFileCannotBeWritten) {
   Files files = kFiles;
   files.emplace_back(kTooLong, "");
   const auto expect_unchanged = [&] {
-    EXPECT_EQ(error_in("results", files), "results not written to results: File name too long");
+    EXPECT_EQ(error_in("results", files),
+              "results could not be written to results: File name too long");
     EXPECT_EQ(folder_.names(), Names{"results"});
     EXPECT_EQ(folder_.read("results/result.json"), "old");
   };
@@ -276,7 +279,7 @@ TEST_F(OutputFolderTest, WhatCannotBeReplacedIsSaidBeforeTheWork) {
   folder_.write("results/result.json", "old");
   EXPECT_EQ(folder_.without_path(
                 error_of([&] { const OutputFolder folder(folder_.path("results"), kNames); })),
-            "results not written to results: Is a directory");
+            "results could not be written to results: Is a directory");
   EXPECT_EQ(folder_.names(), Names{"results"});
   EXPECT_EQ(folder_.names("results"), (Names{"result.json", "residuals.csv"}));
   EXPECT_EQ(folder_.read("results/result.json"), "old");
@@ -284,13 +287,13 @@ TEST_F(OutputFolderTest, WhatCannotBeReplacedIsSaidBeforeTheWork) {
 
 TEST_F(OutputFolderTest, AfterAFailureTheJournalIsThereToGoOnFrom) {
   OutputFolder folder(folder_.path("results"), kNames);
-  folder.journal().keep({1, 2}, {});
+  folder.journal().store({1, 2}, {});
   EXPECT_EQ(
       folder_.without_path(error_of([&] {
         folder.write({{kTooLong, ""}}, true);
       })),
-      "results not written to results: File name too long\nWhat was found is kept there: once "
-      "that is mended, the same command with --resume ends soon.");
+      "results could not be written to results: File name too long\nThe solutions found so far are "
+      "kept there: once this is fixed, the same command with --resume finishes quickly.");
   EXPECT_EQ(folder_.names("results"), Names{kJournal});
 }
 
@@ -350,8 +353,8 @@ TEST_F(OutputFolderTest, LeavesNothingOfAFileThatCannotBeWritten) {
 TEST_F(OutputFolderTest, DoesNotReplaceWhatIsNoFile) {
   std::filesystem::create_directory(folder_.path("folder"));
   ASSERT_EQ(::mkfifo(folder_.path("pipe").c_str(), 0600), 0);
-  EXPECT_EQ(error_at("folder"), "folder not written: it is there and not a file");
-  EXPECT_EQ(error_at("pipe"), "pipe not written: it is there and not a file");
+  EXPECT_EQ(error_at("folder"), "folder not written: it exists and is not a file");
+  EXPECT_EQ(error_at("pipe"), "pipe not written: it exists and is not a file");
   EXPECT_TRUE(std::filesystem::is_fifo(folder_.path("pipe")));
   EXPECT_EQ(folder_.names(), (Names{"folder", "pipe"}));
 }

@@ -174,7 +174,7 @@ TEST(Chart, StepsHoldTheirValueUntilTheNextSample) {
                     .title = "command",
                     .x = {"x"},
                     .y = {"y"},
-                    .series = {{"command", "measured", x, y, Drawn::steps}}};
+                    .series = {{"command", "measured", x, y, LineStyle::steps}}};
   const std::vector<Move> moves = moves_of(figure(chart, columns).text());
   // Level to the next sample, then upright; the frame is 298 wide and y points down.
   ASSERT_EQ(moves.size(), 7u);
@@ -222,7 +222,7 @@ TEST(Chart, DrawsDotsAsLinesWithoutLength) {
   ChartColumns columns;
   for (const std::size_t samples : {100u, 1000u}) {
     Chart chart = sine(columns, samples);
-    chart.series[0].drawn = Drawn::dots;
+    chart.series[0].drawn = LineStyle::dots;
     const std::string text = figure(chart, columns).text();
     const std::string begin = samples == 100 ? "<path class=\"series measured dots few\" d=\"m"
                                              : "<path class=\"series measured dots\" d=\"m";

@@ -14,12 +14,13 @@
 namespace axisfit {
 namespace {
 
-std::string page_of(const std::string& job, const Wishes& wishes = {}) {
+std::string page_of(const std::string& job, const RunOptions& run_options = {}) {
   const TempFolder folder;
   write_recordings(folder);
   write_rubbing_mass(folder);
-  const Outcome outcome = find_outcome(read_job_file(folder.write("job.yaml", job)).job, wishes);
-  return report_page(outcome, {"fit-params job.yaml", "job.yaml", job, "x.yaml", "name: <b>x</b>"});
+  const RunResult run_result = run(read_job_file(folder.write("job.yaml", job)).job, run_options);
+  return report_page(run_result,
+                     {"fit-params job.yaml", "job.yaml", job, "x.yaml", "name: <b>x</b>"});
 }
 
 /// What a group of the pattern matches in the elements of a page, each once.
@@ -49,14 +50,14 @@ TEST(ReportPage, HasItsSectionsAndEveryIdOnce) {
 }
 
 TEST(ReportPage, TellsTheStoryOfTheLoop) {
-  const std::string page = page_of(rubbing_job(), {.close_loop = true});
+  const std::string page = page_of(rubbing_job(), {.select_effects = true});
   const auto ids = all_of(page, " id=\"([^\"]*)\"");
   EXPECT_TRUE(ids.contains("loop"));
   EXPECT_TRUE(ids.contains("before-after-1") || ids.contains("before-after-2"));
   EXPECT_NE(page.find("Round 1"), std::string::npos);
   EXPECT_NE(page.find("<span class=\"badge accepted\">accepted</span>"), std::string::npos);
   EXPECT_NE(page.find("With coulomb_friction: reduced chi-square"), std::string::npos);
-  EXPECT_NE(page.find("supplied by what was added"), std::string::npos);
+  EXPECT_NE(page.find("explained by the added effects"), std::string::npos);
 }
 
 TEST(ReportPage, DrawsProfilesWhereTheyWereComputed) {
@@ -85,7 +86,7 @@ TEST(ReportPage, LooksNowhereElse) {
 }
 
 TEST(ReportPage, OfAFitThatFailedSaysSo) {
-  std::string job = fit_job("{max_iterations: 1, coupling: none}");
+  std::string job = fit_job("{max_iterations: 1, observer: none}");
   const std::string page = page_of(job);
   EXPECT_NE(page.find("class=\"verdict "), std::string::npos);
   EXPECT_EQ(page.find("class=\"verdict good\""), std::string::npos);

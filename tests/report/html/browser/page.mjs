@@ -65,7 +65,7 @@ export function pageData({samples = SAMPLES, recordings = ["step", HOSTILE[1]]} 
       {kind: "separation", text: "teeth part", at: crossings(false)},
     ];
     const phases = [0, 1, 2, 3].flatMap((k) => [
-      {from: 1.25 * k + 0.8, to: 1.25 * k + 1.25, kind: "rest", text: "at rest"},
+      {from: 1.25 * k + 0.8, to: 1.25 * k + 1.25, kind: "standstill", text: "at rest"},
       {from: 1.25 * k + 0.02, to: 1.25 * k + 0.06, kind: "limit", text: "V_c at its limit"},
     ]);
     const common = {kind: "lines", x: {label: "time", unit: "s"}, time: true, recording, phases};
@@ -125,7 +125,7 @@ export function pageData({samples = SAMPLES, recordings = ["step", HOSTILE[1]]} 
     y: {label: "correlation", unit: ""},
     series: [{label: "residual", role: "residual", style: "steps", x: lags,
               y: add(Array.from({length: 200}, (_, i) => (i ? 0.008 * normal() : 1)), 1e-4)}],
-    bands: [{from: -0.02, to: 0.02, text: "95 % of white noise"}],
+    bands: [{from: -0.02, to: 0.02, text: "95 % band of white noise"}],
   });
   const frequencies = Array.from({length: 500}, (_, i) => i + 1);
   charts.push({
@@ -177,7 +177,7 @@ function picture(chart) {
   const below = [0, 1, 2, 3, 4].map(
       (v) => `<text class="tick" x="${60 + 160 * v}" y="240" text-anchor="middle">${v}</text>`);
   return `<svg viewBox="0 0 720 270" role="img" aria-label="${escaped(chart.title)}">
-<rect class="phase rest" x="300" y="20" width="90" height="200"/>
+<rect class="phase standstill" x="300" y="20" width="90" height="200"/>
 <path class="event contact" d="M120 20V220"/>
 ${grid.join("")}${below.join("")}<path class="axis" d="M60 220H700"/>
 <text class="label" x="380" y="262" text-anchor="middle">${escaped(chart.x.label)}</text>
