@@ -84,7 +84,8 @@ struct Arguments {
   std::string axis;
   bool init = false;
   bool check = false;
-  RunOptions run_options;
+  RunOptions options;
+  std::optional<double> time_limit;  ///< s
   bool resume = false;
   bool json = false;
   bool quiet = false;
@@ -221,15 +222,14 @@ void begin_line(const Arguments& arguments, std::optional<ProgressLine>& line) {
   line.emplace(!arguments.quiet && is_terminal(STDERR_FILENO));
 }
 
-/// The folder of the results with the journal of the run in it, which becomes the job's.
-std::unique_ptr<OutputFolder> open_folder(const Arguments& arguments, Job& job,
+/// The folder of the results, with the journal of the run in it.
+std::unique_ptr<OutputFolder> open_folder(const Arguments& arguments,
                                           std::optional<ProgressLine>& line) {
   if (arguments.output.empty()) return nullptr;
   auto folder = std::make_unique<OutputFolder>(
       arguments.output,
       std::vector<std::string>{kResultFile, kAxisFile, kResidualsFile, kReportFile, kMotionFile});
   JournalFile& journal = folder->journal();
-  job.options.journal = &journal;
   const std::string found = fmt::format("{} solved least-squares problem{}", journal.recovered(),
                                         journal.recovered() == 1 ? "" : "s");
   std::string note;
@@ -300,11 +300,12 @@ int run_command(const Arguments& arguments) {
   if (arguments.starts) options.starts = *arguments.starts;
   if (arguments.seed) options.seed = *arguments.seed;
   if (arguments.check) return check(arguments, file.job, line);
-  const std::unique_ptr<OutputFolder> folder = open_folder(arguments, file.job, line);
+  const std::unique_ptr<OutputFolder> folder = open_folder(arguments, line);
 
-  RunResult run_result = run(file.job, arguments.run_options,
-                             [&](const Progress& progress) { line->update(progress); });
-  run_result.time_limit_reached = run_result.interrupted && time_limit_reached;
+  const RunContext context{&stop_flag, folder ? &folder->journal() : nullptr,
+                           [&](const Progress& progress) { line->update(progress); }};
+  RunResult run_result = run(file.job, arguments.options, context);
+  if (run_result.interrupted && time_limit_reached) run_result.time_limit = arguments.time_limit;
   const std::string json = result_json(run_result).dump(2) + "\n";
   line.reset();
 
@@ -331,7 +332,7 @@ int main(int argc, char** argv) {
   app.add_option("JOB.yaml", arguments.files,
                  "job file (docs/job-file.md); with --init, recordings (CSV or MATLAB)")
       ->required();
-  auto* close = app.add_flag("--close-loop", arguments.run_options.select_effects,
+  auto* close = app.add_flag("--close-loop", arguments.options.select_effects,
                              "after the fit, add effects that the model lacks, each validated on "
                              "data that were not fitted");
   std::string profiles;
@@ -339,7 +340,7 @@ int main(int argc, char** argv) {
       app.add_flag("--profile{all}", profiles,
                    "likelihood profiles of all parameters, or of some: --profile=NAME,NAME");
   auto* experiment =
-      app.add_flag("--suggest-experiment", arguments.run_options.experiment,
+      app.add_flag("--suggest-experiment", arguments.options.suggest_experiment,
                    "suggest the motion to record next; written to next-motion.yaml in --output");
   auto* check = app.add_flag("--check", arguments.check,
                              "do not fit; report what the recordings contain, which free "
@@ -384,7 +385,7 @@ int main(int argc, char** argv) {
   app.add_option("--starts", arguments.starts,
                  "number of starts, the first from the initial values; default: as in the job")
       ->check(CLI::Range(1, 1000000));
-  app.add_option("--time-limit", arguments.run_options.time_limit,
+  app.add_option("--time-limit", arguments.time_limit,
                  "stop after this many seconds and keep what is finished, as Ctrl-C does")
       ->check(CLI::Range(0.001, 1e8))
       ->excludes(init)
@@ -393,11 +394,10 @@ int main(int argc, char** argv) {
   return run_program(app, argc, argv, [&] {
     arguments.command = command_line_of(argc, argv);
     for (std::istringstream names(profiles); std::getline(names, profiles, ',');)
-      arguments.run_options.profiles.push_back(profiles);
-    arguments.run_options.stop = &stop_flag;
+      arguments.options.profiles.push_back(profiles);
     stop_flag = arguments.init || arguments.check;  // there is nothing to keep
     stop_on_signals();
-    if (arguments.run_options.time_limit) stop_after(*arguments.run_options.time_limit);
+    if (arguments.time_limit) stop_after(*arguments.time_limit);
     try {
       return run_command(arguments);
     } catch (const Interrupted&) {

@@ -1,4 +1,4 @@
-// What long work tells of itself while it runs.
+// What long work reports while it runs.
 #pragma once
 
 #include <functional>

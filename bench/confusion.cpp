@@ -23,6 +23,8 @@
 #include "base/random.h"
 #include "bench/simulated.h"
 #include "fit/data/standstill.h"
+#include "fit/estimation/residual.h"
+#include "fit/estimation/solve.h"
 #include "fit/selection/select_effects.h"
 #include "io/config/axis_file.h"
 

@@ -63,72 +63,63 @@ std::vector<std::size_t> parameters_to_profile(const Job& job,
 }
 
 /// All that follows the first fit.
-void run_requested_analyses(RunResult& run_result, const ProgressReport& progress) {
-  const auto report_progress = [&](const std::string& phase, int done = 0, int of = 0) {
-    if (progress) progress({phase, done, of, run_result.fit().reduced_chi_square});
+void run_requested_analyses(RunResult& result, const RunContext& context) {
+  const RunOptions& options = result.options;
+  const auto report_progress = [&](const std::string& phase) {
+    if (context.progress) context.progress({phase, 0, 0, result.fit().reduced_chi_square});
   };
-  if (run_result.run_options.select_effects && run_result.first.usable)
-    run_result.selection = select_effects(run_result.baseline, run_result.first, {}, progress);
-  if (run_result.selection && run_result.selection->interrupted) throw Interrupted();
-  if (run_result.selection && has_noise_from(run_result.baseline, NoiseSource::fit) &&
-      !run_result.selection->effects.empty())
-    run_result.selection->result.fit =
-        estimate_with_noise(run_result.selection->result.job, progress);
-  if (run_result.fit().usable) {
+  if (options.select_effects && result.first.usable)
+    result.selection = select_effects(result.baseline, result.first, {}, context);
+  if (result.selection && result.selection->interrupted) throw Interrupted();
+  if (result.selection && has_noise_from(result.baseline, NoiseSource::fit) &&
+      !result.selection->effects.empty())
+    result.selection->result.fit = estimate_with_noise(result.selection->result.job, context);
+  if (result.fit().usable) {
     report_progress("analysing the residual");
-    run_result.diagnosis = diagnose(run_result.job(), run_result.fit());
+    result.diagnosis = diagnose(result.job(), result.fit(), context.quiet());
   }
-  if (run_result.fit().usable && !run_result.run_options.profiles.empty())
-    run_result.profiles =
-        profiles(run_result.job(), run_result.fit(),
-                 parameters_to_profile(run_result.job(), run_result.run_options.profiles),
-                 [&](int done, int of) { report_progress("profiles", done, of); });
-  const ControllerSettings& controller = run_result.baseline.controller;
-  if (run_result.selection)
-    for (const UndecidedPair& rivals : run_result.selection->rivals) {
-      report_progress("discriminating between " + rivals.chosen + " and " + rivals.rival + "");
-      run_result.discriminations.push_back(
-          discriminate(*run_result.selection, rivals, controller, run_result.baseline.limits));
+  if (result.fit().usable && !options.profiles.empty())
+    result.profiles = profiles(result.job(), result.fit(),
+                               parameters_to_profile(result.job(), options.profiles), context);
+  if (result.selection)
+    for (const UndecidedPair& rivals : result.selection->rivals) {
+      report_progress("discriminating between " + rivals.chosen + " and " + rivals.rival);
+      result.discriminations.push_back(discriminate(*result.selection, rivals, context.quiet()));
     }
-  if (run_result.run_options.experiment)
-    run_result.suggestion = suggest_experiment(
-        run_result.job(), run_result.fit(), controller, run_result.baseline.limits,
-        [&](int done, int of) { report_progress("trying motions", done, of); });
+  if (options.suggest_experiment)
+    result.suggestion = suggest_experiment(result.job(), result.fit(), context);
 }
 
 }  // namespace
 
-RunResult run(Job job, const RunOptions& run_options, const ProgressReport& progress) {
+RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   const auto begin = std::chrono::steady_clock::now();
-  RunResult run_result;
-  run_result.baseline = std::move(job);
-  run_result.run_options = run_options;
-  run_result.baseline.options.stop = run_options.stop;
-  parameters_to_profile(run_result.baseline, run_options.profiles);
-  run_result.first = estimate_with_noise(run_result.baseline, progress);
-  run_result.interrupted = run_result.first.interrupted;
-  run_result.checks = check_recordings(run_result.baseline);
+  RunResult result;
+  result.baseline = std::move(job);
+  result.options = options;
+  parameters_to_profile(result.baseline, options.profiles);
+  result.first = estimate_with_noise(result.baseline, context);
+  result.interrupted = result.first.interrupted;
+  result.checks = check_recordings(result.baseline);
   try {
-    if (!run_result.interrupted) run_requested_analyses(run_result, progress);
+    if (!result.interrupted) run_requested_analyses(result, context);
   } catch (const Interrupted&) {
-    run_result.interrupted = true;
+    result.interrupted = true;
   }
-  if (run_result.selection)
-    for (const SelectionStep& model : run_result.selection->models) {
+  if (result.selection)
+    for (const SelectionStep& model : result.selection->models) {
       ModelScore score{score_signals(model.job, model.fit), {}};
       for (std::size_t r = 0; r < model.job.recordings.size(); ++r)
         score.forces.push_back(missing_force(model.job, model.fit, r));
-      run_result.scores.push_back(std::move(score));
+      result.scores.push_back(std::move(score));
     }
   const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - begin;
-  run_result.wall_time = wall_time.count();
-  return run_result;
+  result.wall_time = wall_time.count();
+  return result;
 }
 
-std::string stop_reason(const RunResult& run_result) {
-  return run_result.time_limit_reached ? fmt::format(" by the time limit of {:g} s",
-                                                     run_result.run_options.time_limit.value())
-                                       : "";
+std::string stop_reason(const RunResult& result) {
+  return result.time_limit ? fmt::format(" by the time limit of {:g} s", *result.time_limit) : "";
 }
 
 bool has_noise_from(const Job& job, NoiseSource source) {
@@ -137,18 +128,18 @@ bool has_noise_from(const Job& job, NoiseSource source) {
   });
 }
 
-const Experiment* next_experiment(const RunResult& run_result) {
-  if (!run_result.run_options.experiment) return nullptr;
-  for (const Discrimination& s : run_result.discriminations)
+const Experiment* next_experiment(const RunResult& result) {
+  if (!result.options.suggest_experiment) return nullptr;
+  for (const Discrimination& s : result.discriminations)
     if (s.experiment) return &*s.experiment;
-  return run_result.suggestion ? &run_result.suggestion->experiment : nullptr;
+  return result.suggestion ? &result.suggestion->experiment : nullptr;
 }
 
-std::string overall_verdict(const RunResult& run_result) {
-  const FitResult& fit = run_result.fit();
-  if (!run_result.selection) return fit.verdict;
+std::string overall_verdict(const RunResult& result) {
+  const FitResult& fit = result.fit();
+  if (!result.selection) return fit.verdict;
   // Both judge the same model by the same residual.
-  return (fit.usable ? "Usable fit." : fit.verdict) + " " + run_result.selection->verdict;
+  return (fit.usable ? "Usable fit." : fit.verdict) + " " + result.selection->verdict;
 }
 
 std::optional<ExcludedSamples> excluded_samples(const Measurement& measurement) {
@@ -193,9 +184,9 @@ const char* role_name(const Recording& recording, const SignalError& signal) {
   return signal.fitted ? "fit" : "compare";
 }
 
-const FreeParameter& as_specified(const RunResult& run_result, std::size_t parameter) {
-  const std::vector<FreeParameter>& declared = run_result.baseline.free;
-  return parameter < declared.size() ? declared[parameter] : run_result.job().free[parameter];
+const FreeParameter& as_specified(const RunResult& result, std::size_t parameter) {
+  const std::vector<FreeParameter>& declared = result.baseline.free;
+  return parameter < declared.size() ? declared[parameter] : result.job().free[parameter];
 }
 
 }  // namespace axisfit

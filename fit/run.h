@@ -40,19 +40,17 @@ struct ModelScore {
   std::vector<MissingForce> forces;  ///< of every recording
 };
 
-/// What is asked for beyond a fit.
+/// What to do beyond the fit.
 struct RunOptions {
-  bool select_effects = false;
+  bool select_effects = false;          ///< add the effects that the model lacks
   std::vector<std::string> profiles{};  ///< of these parameters; "all": of all
-  bool experiment = false;              ///< suggest the next one
-  const StopFlag* stop = nullptr;       ///< ends early, with what is finished
-  std::optional<double> time_limit{};   ///< s, after which something sets it
+  bool suggest_experiment = false;      ///< suggest the motion to record next
 };
 
 struct RunResult {
-  Job baseline;  ///< as declared
-  RunOptions run_options;
-  FitResult first;                     ///< fit of the declared job
+  Job baseline;  ///< the job as given, with the noise if that was estimated
+  RunOptions options;
+  FitResult first;                     ///< fit of the baseline model
   std::vector<RecordingCheck> checks;  ///< of each recording
   /// None unless it was asked for and the first fit is usable.
   std::optional<EffectSelection> selection;
@@ -62,7 +60,7 @@ struct RunResult {
   std::vector<Discrimination> discriminations;  ///< of the loop's undecided effects, pair by pair
   std::optional<Suggestion> suggestion;         ///< of the next experiment, where it was asked for
   bool interrupted = false;                     ///< not all that was asked for was finished
-  bool time_limit_reached = false;              ///< because of the time limit
+  std::optional<double> time_limit{};           ///< s, if a time limit was what interrupted it
   double wall_time = 0.0;                       ///< s
 
   /// The final model's: the result of the loop, or else the declared one.
@@ -75,18 +73,19 @@ bool has_noise_from(const Job& job, NoiseSource source);
 
 /// The experiment to make next, where it was asked for and there is one: that which tells undecided
 /// effects apart, or else that which determines the parameters.
-const Experiment* next_experiment(const RunResult& run_result);
+const Experiment* next_experiment(const RunResult& result);
 
 /// Whether the fit can be used, and what a closed loop says of it.
-std::string overall_verdict(const RunResult& run_result);
+std::string overall_verdict(const RunResult& result);
 
 /// " by the time limit of 60 s", or nothing: to follow "stopped".
-std::string stop_reason(const RunResult& run_result);
+std::string stop_reason(const RunResult& result);
 
-/// Fits the job, looks for what it lacks and, where asked, adds that. Throws std::runtime_error
-/// when a wish names a parameter that is not fitted, and Interrupted when it is stopped before one
-/// start of the fit is finished.
-RunResult run(Job job, const RunOptions& run_options, const ProgressReport& progress = {});
+/// Fits the job, analyses its residual and does what the options ask for: all that fit-params does
+/// between reading its files and writing its results. Throws std::runtime_error if the options name
+/// a parameter that is not free, and Interrupted if it is stopped before one start of the fit has
+/// finished; stopped later, it returns what is finished.
+RunResult run(Job job, const RunOptions& options = {}, const RunContext& context = {});
 
 /// Samples of a signal that do not count, since the arm rests (fit/data/standstill.h).
 struct ExcludedSamples {
@@ -110,6 +109,6 @@ const char* role_name(const Recording& recording, const SignalError& signal);
 
 /// A free parameter of the final model with the user's initial value, which the loop does not keep;
 /// of an added effect, with the one it was started from.
-const FreeParameter& as_specified(const RunResult& run_result, std::size_t parameter);
+const FreeParameter& as_specified(const RunResult& result, std::size_t parameter);
 
 }  // namespace axisfit

@@ -385,7 +385,7 @@ Json result_json(const RunResult& run_result) {
             {"status", text(fit.status)},
             {"usable", fit.usable},
             {"interrupted", run_result.interrupted},
-            {"time_limit_reached", run_result.time_limit_reached},
+            {"time_limit_reached", run_result.time_limit.has_value()},
             {"verdict", fit.verdict},
             {"message", fit.message},
             {"axis", run_result.baseline.axis},
@@ -399,7 +399,7 @@ Json result_json(const RunResult& run_result) {
   if (!run_result.profiles.empty())
     json["profile"] =
         list(run_result.profiles, [&](const Profile& p) { return profile_json(p, fit); });
-  if (run_result.run_options.experiment)
+  if (run_result.options.suggest_experiment)
     json["next_experiment"] =
         run_result.suggestion ? suggestion_json(*run_result.suggestion, fit) : Json(nullptr);
   if (run_result.selection) json.update(selection_json(run_result));

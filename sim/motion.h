@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/command.h"
-#include "sim/controller.h"
+#include "sim/controller_settings.h"
 
 namespace axisfit {
 

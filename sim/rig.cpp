@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "base/random.h"
+#include "sim/controller.h"
 #include "sim/recorder.h"
 #include "sim/simulate.h"
 

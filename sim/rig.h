@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/column.h"
-#include "sim/controller.h"
+#include "sim/controller_settings.h"
 #include "sim/model.h"
 #include "sim/motion.h"
 

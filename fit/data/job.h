@@ -8,14 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "base/interrupt.h"
 #include "sim/command.h"
-#include "sim/controller.h"
+#include "sim/controller_settings.h"
 #include "sim/model.h"
 
 namespace axisfit {
-
-class Journal;
 
 enum class Role {
   fit,       ///< its residuals are minimised
@@ -119,10 +116,8 @@ struct FitOptions {
   int starts = 1;            ///< the first from the initial values, the others drawn around them
   double spread = 5.0;       ///< starts are drawn within this factor, either way
   std::uint64_t seed = 1;
-  int threads = 0;                 ///< 0: as many as the machine has
-  double step = 0.5e-3;            ///< s, of the integrator
-  const StopFlag* stop = nullptr;  ///< must outlive all that is done with the job; null: none
-  Journal* journal = nullptr;      ///< of solutions, likewise
+  int threads = 0;       ///< 0: as many as the machine has
+  double step = 0.5e-3;  ///< s, of the integrator
 };
 
 /// What the machine may be asked for. What is not given is taken to be what the recordings covered,

@@ -51,9 +51,9 @@ double noise_of(const Job& job, Signal signal, const std::vector<double>& values
 }  // namespace
 
 Discrimination discriminate(const EffectSelection& selection, const UndecidedPair& rivals,
-                            const ControllerSettings& controller, const MachineLimits& limits) {
+                            const RunContext& context) {
   const Job& job = selection.result.job;
-  const MachineLimits within = complete_limits(limits, job, selection.result.fit, controller);
+  const MachineLimits within = complete_limits(job, selection.result.fit);
   std::vector<Signal> signals;
   for (const SignalInfo& signal : kSignalTable)
     if (has_signal(signal.signal, job.model.structure)) signals.push_back(signal.signal);
@@ -66,12 +66,12 @@ Discrimination discriminate(const EffectSelection& selection, const UndecidedPai
       candidate_motions(job.model.structure, within, times.back());
   for (const Experiment& experiment : candidates)
     trials.push_back({experiment.description, nullptr, &experiment,
-                      commands_of(experiment, rivals.with_chosen, controller, times), times});
+                      commands_of(experiment, rivals.with_chosen, job.controller, times), times});
 
   const Crew crew(job.options.threads);
   std::vector<Discrimination> found(trials.size());
   parallel_for(trials.size(), [&](std::size_t i) {
-    if (is_set(job.options.stop)) throw Interrupted();
+    context.check_stop();
     const Trial& trial = trials[i];
     const SimulatedSignals a = simulated(rivals.with_chosen, trial, signals, within),
                            b = simulated(rivals.with_rival, trial, signals, within);

@@ -20,6 +20,6 @@ struct Discrimination {
 /// noise of a signal, or, where it has none, in thousandths of its range. The models are taken as
 /// fitted: that their parameters may be fitted anew makes the difference smaller.
 Discrimination discriminate(const EffectSelection& selection, const UndecidedPair& rivals,
-                            const ControllerSettings& controller, const MachineLimits& limits);
+                            const RunContext& context = {});
 
 }  // namespace axisfit

@@ -8,7 +8,10 @@
 #include <mutex>
 
 #include "base/parallel.h"
+#include "fit/estimation/residual.h"
+#include "fit/estimation/solve.h"
 #include "fit/residuals/series.h"
+#include "sim/controller.h"
 #include "sim/sampling.h"
 
 namespace axisfit {
@@ -57,9 +60,8 @@ bool is_feasible(const MachineLimits& limits, const SimulatedRecording& simulati
 /// What each experiment would show; not finite where it does not keep to the limits.
 std::vector<Linearization> sensitivities_of(const std::vector<Experiment>& candidates,
                                             const Job& next, const FitResult& fit,
-                                            const ControllerSettings& controller,
                                             const MachineLimits& limits,
-                                            const std::function<void(int done, int of)>& progress) {
+                                            const RunContext& context) {
   const std::size_t added = next.recordings.size() - 1;
   const Model<double> model = fitted_model(next, fit);
   const ParameterSpace space(next);
@@ -69,10 +71,10 @@ std::vector<Linearization> sensitivities_of(const std::vector<Experiment>& candi
   std::mutex mutex;
   int done = 0;
   parallel_for(candidates.size(), [&](std::size_t i) {
-    if (is_set(next.options.stop)) throw Interrupted();
+    context.check_stop();
     Job trial = next;
     Recording& recording = trial.recordings[added];
-    recording.command = commands_of(candidates[i], model, controller, recording.times);
+    recording.command = commands_of(candidates[i], model, next.controller, recording.times);
     const SimulatedRecording simulation = simulate_recording(trial, space, added, u.data(), {});
     if (is_feasible(limits, simulation)) {
       for (std::size_t m = 0; m < recording.measurements.size(); ++m)
@@ -81,7 +83,9 @@ std::vector<Linearization> sensitivities_of(const std::vector<Experiment>& candi
       sensitivities[i].residuals.setZero();  // of rounding, which has a colour
     }
     const std::lock_guard lock(mutex);
-    if (progress) progress(++done, static_cast<int>(candidates.size()));
+    if (context.progress)
+      context.progress(
+          {"trying motions", ++done, static_cast<int>(candidates.size()), fit.reduced_chi_square});
   });
   return sensitivities;
 }
@@ -128,8 +132,8 @@ Eigen::MatrixXd normal_of(const Job& job, const Linearization& at,
 
 }  // namespace
 
-MachineLimits complete_limits(MachineLimits limits, const Job& job, const FitResult& fit,
-                              const ControllerSettings& controller) {
+MachineLimits complete_limits(const Job& job, const FitResult& fit) {
+  MachineLimits limits = job.limits;
   double lowest = INFINITY, highest = -INFINITY, speed = 0.0, force = 0.0;
   for (const RecordingResult& r : fit.recordings)
     for (const Sample& s : r.free_running.samples) {
@@ -144,8 +148,8 @@ MachineLimits complete_limits(MachineLimits limits, const Job& job, const FitRes
   if (!limits.voltage)
     limits.voltage = job.model.structure.drive == Drive::force_source
                          ? force / fitted_model(job, fit).axis.K_f
-                         : controller.limit;
-  limits.voltage = std::min(*limits.voltage, controller.limit);
+                         : job.controller.limit;
+  limits.voltage = std::min(*limits.voltage, job.controller.limit);
   return limits;
 }
 
@@ -218,18 +222,17 @@ std::vector<double> next_sampling_times(const Job& job) {
   return times;
 }
 
-std::optional<Suggestion> suggest_experiment(
-    const Job& job, const FitResult& fit, const ControllerSettings& controller,
-    const MachineLimits& limits, const std::function<void(int done, int of)>& progress) {
+std::optional<Suggestion> suggest_experiment(const Job& job, const FitResult& fit,
+                                             const RunContext& context) {
   if (!fit.usable || job.free.empty()) return std::nullopt;
   Suggestion suggestion;
-  suggestion.limits = complete_limits(limits, job, fit, controller);
+  suggestion.limits = complete_limits(job, fit);
   const std::vector<ResidualSeries> residuals = residual_series(job, fit);
   const Job next = with_next(job, residuals);
   const std::vector<Experiment> candidates = candidate_motions(
       job.model.structure, suggestion.limits, next.recordings.back().times.back());
   const std::vector<Linearization> sensitivities =
-      sensitivities_of(candidates, next, fit, controller, suggestion.limits, progress);
+      sensitivities_of(candidates, next, fit, suggestion.limits, context);
 
   const auto worst_of = [&](const Eigen::VectorXd& errors) {
     std::pair<std::size_t, double> worst{0, -1.0};

@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "fit/estimation/estimate.h"
-#include "sim/controller.h"
+#include "sim/controller_settings.h"
 #include "sim/motion.h"
 
 namespace axisfit {
 
-/// Limits all of which are given.
-MachineLimits complete_limits(MachineLimits limits, const Job& job, const FitResult& fit,
-                              const ControllerSettings& controller);
+/// The job's limits, completed: all of them are given.
+MachineLimits complete_limits(const Job& job, const FitResult& fit);
 
 /// Whether a place (m) and a speed (m/s) of the arm are within complete limits.
 bool is_within(const MachineLimits& limits, double position, double velocity);
@@ -60,8 +59,7 @@ struct Suggestion {
 /// the first one that was fitted, starts where that started, from rest, and leaves residuals of the
 /// size and colour that the fit has left; that the estimates are right; and that the model is
 /// linear over their errors. None when the fit is not usable or no motion keeps to the limits.
-std::optional<Suggestion> suggest_experiment(
-    const Job& job, const FitResult& fit, const ControllerSettings& controller,
-    const MachineLimits& limits, const std::function<void(int done, int of)>& progress = {});
+std::optional<Suggestion> suggest_experiment(const Job& job, const FitResult& fit,
+                                             const RunContext& context = {});
 
 }  // namespace axisfit

@@ -42,8 +42,8 @@ Eigen::VectorXd perturbed(const ParameterSpace& space, Eigen::VectorXd u, int at
 class Continuation {
  public:
   Continuation(const Job& job, const ParameterSpace& space,
-               const std::function<void(const Stage&)>& progress)
-      : job_(job), space_(space), progress_(progress) {}
+               const std::function<void(const Stage&)>& progress, const RunContext& context)
+      : job_(job), space_(space), progress_(progress), context_(context) {}
 
   /// Solves at one rate; `final` with the full accuracy.
   SolveResult solve_stage(const Eigen::VectorXd& start, double rate, bool final) {
@@ -55,7 +55,7 @@ class Continuation {
       options.function_tolerance = 1e-4;
       options.penalize_distance_from_start = true;
     }
-    SolveResult solved = solve(job_, space_, start, rate, options);
+    SolveResult solved = solve(job_, space_, start, rate, options, context_);
     iterations_ += solved.iterations;
     stages_.push_back({rate, solved.reduced_cost, solved.iterations, solved.usable});
     return solved;
@@ -132,6 +132,7 @@ class Continuation {
   const Job& job_;
   const ParameterSpace& space_;
   const std::function<void(const Stage&)>& progress_;
+  const RunContext& context_;
   std::vector<VisitedMinimum> visited_;  ///< minima on the way, of all paths
   std::vector<Stage> stages_;
   int iterations_ = 0;
@@ -163,8 +164,9 @@ bool is_ignored(const QuantityEntry& entry, ObserverMode observer) {
 
 ContinuationResult run_continuation(const Job& job, const ParameterSpace& space,
                                     const Eigen::VectorXd& start,
-                                    const std::function<void(const Stage&)>& progress) {
-  Continuation continuation(job, space, progress);
+                                    const std::function<void(const Stage&)>& progress,
+                                    const RunContext& context) {
+  Continuation continuation(job, space, progress, context);
   ContinuationResult result;
   if (job.options.observer != ObserverMode::continuation || !can_track(job)) {
     result.last = continuation.solve_stage(start, final_observer_gain(job), true);

@@ -10,16 +10,9 @@
 #include <functional>
 
 #include "fit/estimation/solve.h"
+#include "fit/estimation/stage.h"
 
 namespace axisfit {
-
-/// One solved stage of the continuation.
-struct Stage {
-  double observer_gain = 0.0;  ///< 1/s, zero at the end
-  double reduced_cost = 0.0;   ///< 2 cost / number of residuals
-  int iterations = 0;
-  bool accepted = true;  ///< false: the step in rate was too long, a shorter one followed
-};
 
 struct ContinuationResult {
   SolveResult last;  ///< the best end of an attempt; `iterations` is the sum over all stages
@@ -40,6 +33,7 @@ bool is_ignored(const QuantityEntry& entry, ObserverMode observer);
 /// Fits from u, through all stages of job.options.observer. `progress` is told of every stage.
 ContinuationResult run_continuation(const Job& job, const ParameterSpace& space,
                                     const Eigen::VectorXd& u,
-                                    const std::function<void(const Stage&)>& progress = {});
+                                    const std::function<void(const Stage&)>& progress = {},
+                                    const RunContext& context = {});
 
 }  // namespace axisfit

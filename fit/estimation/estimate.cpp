@@ -10,6 +10,8 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "fit/estimation/continuation.h"
+#include "fit/estimation/residual.h"
 
 namespace axisfit {
 namespace {
@@ -30,22 +32,25 @@ Progress progress_of(const Stage& stage) {
 
 /// All starts, spread over threads; every one is independent of the others.
 std::vector<StartRun> run_starts(const Job& job, const ParameterSpace& space,
-                                 const ProgressReport& progress) {
+                                 const RunContext& context) {
   const int starts = std::max(1, job.options.starts);
   std::vector<StartRun> trials(static_cast<std::size_t>(starts));
   std::mutex mutex;
   Progress all{.phase = "starts", .of = starts};
+  const ProgressReport& progress = context.progress;
   if (progress && starts > 1) progress(all);
   parallel_for(trials.size(), [&](std::size_t i) {
     StartRun& trial = trials[i];
-    trial.interrupted = is_set(job.options.stop);
+    trial.interrupted = is_set(context.stop);
     if (trial.interrupted) return;  // a million starts would take their time to throw
     trial.from = draw_start(job, static_cast<int>(i));
     try {
-      trial.result =
-          run_continuation(job, space, space.internal(trial.from), [&](const Stage& stage) {
+      trial.result = run_continuation(
+          job, space, space.internal(trial.from),
+          [&](const Stage& stage) {
             if (progress && starts == 1) progress(progress_of(stage));
-          });
+          },
+          context);
     } catch (const Interrupted&) {
       trial.interrupted = true;
       return;
@@ -197,10 +202,10 @@ std::vector<double> draw_start(const Job& job, int start) {
   return values;
 }
 
-FitResult estimate(const Job& job, const ProgressReport& progress) {
+FitResult estimate(const Job& job, const RunContext& context) {
   const Crew crew(job.options.threads);
   const ParameterSpace space(job);
-  std::vector<StartRun> trials = run_starts(job, space, progress);
+  std::vector<StartRun> trials = run_starts(job, space, context);
   const bool interrupted =
       std::erase_if(trials, [](const StartRun& t) { return t.interrupted; }) > 0;
   if (trials.empty()) throw Interrupted();
@@ -246,8 +251,8 @@ FitResult estimate(const Job& job, const ProgressReport& progress) {
   return result;
 }
 
-FitResult estimate_with_noise(Job& job, const ProgressReport& progress) {
-  FitResult result = estimate(job, progress);
+FitResult estimate_with_noise(Job& job, const RunContext& context) {
+  FitResult result = estimate(job, context);
   Job again = job;
   again.options.starts = 1;
   // It is at the minimum already, and follows it.
@@ -283,7 +288,7 @@ FitResult estimate_with_noise(Job& job, const ProgressReport& progress) {
     for (std::size_t i = 0; i < again.free.size(); ++i) again.free[i].initial = values[i];
     FitResult next;
     try {
-      next = estimate(again, progress);
+      next = estimate(again, context);
     } catch (const Interrupted&) {
       result.interrupted = true;
       return result;  // of the job as it was given

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
-#include "fit/estimation/continuation.h"
+#include "fit/data/simulated_recording.h"
 #include "fit/estimation/identifiability.h"
-#include "fit/estimation/residual.h"
+#include "fit/estimation/run_context.h"
+#include "fit/estimation/stage.h"
 #include "fit/estimation/uncertainty.h"
 
 namespace axisfit {
@@ -98,16 +98,16 @@ std::vector<double> draw_start(const Job& job, int start);
 /// The values of the free parameters.
 std::vector<double> values_of(const FitResult& result);
 
-/// Fits a job. The result depends on the job alone, not on the number of threads. When the job's
-/// stop flag is set, it is that of the starts that were finished; Interrupted where there is none.
-FitResult estimate(const Job& job, const ProgressReport& progress = {});
+/// Fits a job. The result depends on the job alone, not on the number of threads. When the stop
+/// flag is set, it is that of the starts that were finished; Interrupted where there is none.
+FitResult estimate(const Job& job, const RunContext& context = {});
 
 /// Fits a job, and where the noise of a measurement is to be estimated together with the
 /// parameters, goes on in turn: sigma in the job becomes the size of the residual, degrees of
 /// freedom counted, and the job is fitted again with it, until both stay. That is the maximum of
 /// the likelihood of independent normal noise. A signal has one sigma in all recordings in which it
 /// is to be estimated.
-FitResult estimate_with_noise(Job& job, const ProgressReport& progress = {});
+FitResult estimate_with_noise(Job& job, const RunContext& context = {});
 
 /// The model with the estimates in place of the free quantities that all recordings share.
 Model<double> fitted_model(const Job& job, const FitResult& result);

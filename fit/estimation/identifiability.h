@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "fit/estimation/least_squares.h"
+#include "fit/estimation/linearization.h"
+#include "fit/estimation/parameters.h"
 
 namespace axisfit {
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "base/interrupt.h"
+#include "fit/estimation/linearization.h"
 #include "fit/estimation/parameters.h"
 
 namespace axisfit {
@@ -40,20 +42,6 @@ struct SolveResult {
 /// costs side by side; the result does not depend on it.
 SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u,
                      const SolveOptions& options);
-
-/// Where the residuals of one series stand: one measurement of one recording.
-struct SeriesRows {
-  std::size_t recording = 0, measurement = 0;
-  Eigen::Index first = 0, count = 0;
-};
-
-/// Residuals at u, those of the priors last, and their Jacobian with respect to u.
-struct Linearization {
-  bool finite = false;
-  std::vector<SeriesRows> series;  ///< all rows but those of the priors
-  Eigen::VectorXd residuals;
-  Eigen::MatrixXd jacobian;
-};
 
 /// Of the costs, which a crew evaluates side by side, and the space's priors. All rows are one
 /// series.

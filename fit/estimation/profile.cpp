@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "base/parallel.h"
+#include "fit/estimation/solve.h"
 
 namespace axisfit {
 namespace {
@@ -18,8 +19,10 @@ struct Side {
 /// Walks from the estimate to one side of one parameter.
 class Walk {
  public:
-  Walk(const Job& job, const FitResult& fit, std::size_t parameter, double direction)
-      : job_(job),
+  Walk(const Job& job, const FitResult& fit, std::size_t parameter, double direction,
+       const RunContext& context)
+      : context_(context),
+        job_(job),
         space_(job),
         fit_(fit),
         parameter_(parameter),
@@ -83,7 +86,7 @@ class Walk {
     options.fixed = {parameter_};
     Eigen::VectorXd start = latest_.value_or(u_);
     start[index_] = u;
-    const SolveResult solved = solve(job_, space_, start, fit_.observer_gain, options);
+    const SolveResult solved = solve(job_, space_, start, fit_.observer_gain, options, context_);
     if (!solved.usable) {
       failed_ = true;
       return INFINITY;
@@ -104,6 +107,7 @@ class Walk {
     return std::move(side_);
   }
 
+  const RunContext& context_;
   const Job& job_;
   const ParameterSpace space_;
   const FitResult& fit_;
@@ -121,16 +125,17 @@ class Walk {
 }  // namespace
 
 std::vector<Profile> profiles(const Job& job, const FitResult& fit,
-                              std::span<const std::size_t> parameters,
-                              const std::function<void(int done, int of)>& progress) {
+                              std::span<const std::size_t> parameters, const RunContext& context) {
   const Crew crew(job.options.threads);
   std::vector<Side> sides(2 * parameters.size());
   std::mutex mutex;
   int done = 0;
   parallel_for(sides.size(), [&](std::size_t i) {
-    sides[i] = Walk(job, fit, parameters[i / 2], i % 2 == 0 ? -1.0 : 1.0).run();
+    sides[i] = Walk(job, fit, parameters[i / 2], i % 2 == 0 ? -1.0 : 1.0, context).run();
     const std::lock_guard lock(mutex);
-    if (progress) progress(++done, static_cast<int>(sides.size()));
+    if (context.progress)
+      context.progress(
+          {"profiles", ++done, static_cast<int>(sides.size()), fit.reduced_chi_square});
   });
   const ParameterSpace space(job);
   std::vector<Profile> list;

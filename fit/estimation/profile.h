@@ -43,6 +43,6 @@ struct Profile {
 /// spread over the job's threads. `progress` is told how many of how many sides are done.
 std::vector<Profile> profiles(const Job& job, const FitResult& fit,
                               std::span<const std::size_t> parameters,
-                              const std::function<void(int done, int of)>& progress = {});
+                              const RunContext& context = {});
 
 }  // namespace axisfit

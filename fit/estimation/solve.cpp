@@ -19,10 +19,10 @@ Costs recording_costs(const Job& job, const ParameterSpace& space, double observ
 }  // namespace
 
 SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
-                  double observer_gain, SolveOptions options) {
-  options.stop = job.options.stop;
-  if (is_set(options.stop)) throw Interrupted();
-  Journal* const journal = job.options.journal;
+                  double observer_gain, SolveOptions options, const RunContext& context) {
+  context.check_stop();
+  options.stop = context.stop;
+  Journal* const journal = context.journal;
   const ProblemKey key =
       journal != nullptr ? problem_key(job, u, observer_gain, options) : ProblemKey{};
   if (journal != nullptr) {
@@ -32,7 +32,7 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
   }
   SolveResult result =
       minimize(space, recording_costs(job, space, observer_gain, options.stop), u, options);
-  if (is_set(options.stop)) throw Interrupted();
+  context.check_stop();
   if (journal != nullptr) journal->store(key, result);
   return result;
 }

@@ -2,15 +2,16 @@
 #pragma once
 
 #include "fit/estimation/least_squares.h"
+#include "fit/estimation/run_context.h"
 
 namespace axisfit {
 
 /// Minimises over all `fit` recordings, from u, within the bounds, with the observer gain
 /// (observer_for each recording). The same for any number of threads, so that a solution which the
-/// job's journal knows is taken from there, and others are put into it. Throws Interrupted when the
-/// job's stop flag is set.
+/// journal knows is taken from there, and others are put into it. Throws Interrupted when the stop
+/// flag is set.
 SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
-                  double observer_gain, SolveOptions options);
+                  double observer_gain, SolveOptions options, const RunContext& context = {});
 
 /// Residuals of all fit recordings and then of the priors at u, and their Jacobian with respect to
 /// u.

@@ -2,10 +2,10 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
 
+#include "base/distributions.h"
 #include "fit/residuals/autocovariance.h"
 
 namespace axisfit {
@@ -106,7 +106,7 @@ Eigen::MatrixXd sandwich_middle(const Linearization& at, const Autocovariances& 
 }  // namespace
 
 double student_95(double degrees_of_freedom) {
-  return quantile(boost::math::students_t(std::max(1.0, degrees_of_freedom)), 0.975);
+  return student_quantile(0.975, std::max(1.0, degrees_of_freedom));
 }
 
 Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,

@@ -1,13 +1,13 @@
 #include "fit/residuals/dependence.h"
 
 #include <algorithm>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <numbers>
 #include <numeric>
 
+#include "base/distributions.h"
 #include "fit/data/noise.h"
 #include "fit/residuals/outliers.h"
 
@@ -105,8 +105,8 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
       if (!(degrees_of_freedom > 3.0 && mean_square(residual) > 0.0)) continue;
       const double residual_variance = mean_square(residual) * n / degrees_of_freedom;
       const double groups = static_cast<double>(ranges.size() - 1);
-      const boost::math::fisher_f_distribution<> by_chance(groups, degrees_of_freedom);
-      const double p = cdf(complement(by_chance, between / groups / residual_variance));
+      const double p =
+          fisher_upper_tail(between / groups / residual_variance, groups, degrees_of_freedom);
       if (p < kSignificant)
         test.dependences.push_back({regressor.name, between / (n * test.reduced_chi_square), p});
     }

@@ -1,10 +1,10 @@
 #include "fit/residuals/drift.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <numeric>
 #include <vector>
 
+#include "base/distributions.h"
 #include "fit/residuals/autocovariance.h"
 #include "fit/residuals/series.h"
 
@@ -66,9 +66,8 @@ Drift drift(std::span<const double> times, std::span<const double> values) {
   if (!(degrees_of_freedom >= 1.0)) return result;
   result.standard_error = std::sqrt(meat * independent / degrees_of_freedom) / square;
   if (!(result.standard_error > 0.0)) return result;
-  const boost::math::students_t by_chance(degrees_of_freedom);
-  result.p_value =
-      2.0 * cdf(complement(by_chance, std::abs(result.per_second) / result.standard_error));
+  result.p_value = 2.0 * student_upper_tail(std::abs(result.per_second) / result.standard_error,
+                                            degrees_of_freedom);
   return result;
 }
 

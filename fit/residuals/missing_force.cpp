@@ -5,6 +5,7 @@
 #include <complex>
 #include <numbers>
 
+#include "fit/estimation/residual.h"
 #include "sim/sampling.h"
 
 namespace axisfit {

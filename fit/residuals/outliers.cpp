@@ -1,9 +1,9 @@
 #include "fit/residuals/outliers.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+
+#include "base/distributions.h"
 
 namespace axisfit {
 namespace {
@@ -22,7 +22,7 @@ constexpr double kShare = 0.8;
 
 /// The magnitude that this share of standard normal values stays below.
 double normal_magnitude() {
-  static const double value = quantile(boost::math::normal(), 0.5 + 0.5 * kShare);
+  static const double value = normal_quantile(0.5 + 0.5 * kShare);
   return value;
 }
 
@@ -60,8 +60,8 @@ double threshold(std::size_t deviations) {
   const double n = static_cast<double>(deviations);
   const double q = normal_magnitude();
   const double degrees_of_freedom =
-      n * 2.0 * std::pow(q * pdf(boost::math::normal(), q), 2) / (kShare * (1.0 - kShare));
-  return quantile(complement(boost::math::students_t(degrees_of_freedom), 0.5 * kFalseAlarms / n));
+      n * 2.0 * std::pow(q * normal_density(q), 2) / (kShare * (1.0 - kShare));
+  return student_upper_quantile(0.5 * kFalseAlarms / n, degrees_of_freedom);
 }
 
 /// Whether a sample departs from `level` and returns, within a burst, and next to nothing around

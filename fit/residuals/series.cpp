@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "fit/estimation/solve.h"
+
 namespace axisfit {
 
 std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& result) {

@@ -4,9 +4,10 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <numeric>
+
+#include "base/distributions.h"
 
 namespace axisfit {
 namespace {
@@ -80,8 +81,7 @@ Determination determination(const Job& job, const FitResult& result, const Candi
       d.undetermined = p.name;
   }
   constexpr double kByChance = 3e-4;
-  const boost::math::chi_squared_distribution<> by_chance(static_cast<double>(strengths));
-  d.required = quantile(complement(by_chance, kByChance));
+  d.required = chi_square_upper_quantile(kByChance, static_cast<double>(strengths));
 
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values_of(result));

@@ -6,7 +6,7 @@
 
 namespace axisfit {
 
-Diagnosis diagnose(const Job& job, const FitResult& result) {
+Diagnosis diagnose(const Job& job, const FitResult& result, const RunContext& context) {
   Diagnosis diagnosis;
   diagnosis.tests = test_residuals(job, result);
   diagnosis.explained =
@@ -14,7 +14,8 @@ Diagnosis diagnose(const Job& job, const FitResult& result) {
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     diagnosis.forces.push_back(missing_force(job, result, r));
   if (diagnosis.explained || !result.usable) return diagnosis;
-  const ScoreTest test = score_test(job, values_of(result), score_gains(job).front());
+  const ScoreTest test =
+      score_test(job, values_of(result), score_gains(job).front(), false, context);
   constexpr std::size_t kSuspects = 5;
   constexpr double kMinFraction = 0.02;
   for (const Score& score : test.scores) {

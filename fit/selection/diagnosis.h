@@ -24,6 +24,6 @@ struct Diagnosis {
 };
 
 /// Looks at a usable fit. The suspects take one score test of the catalogue.
-Diagnosis diagnose(const Job& job, const FitResult& result);
+Diagnosis diagnose(const Job& job, const FitResult& result, const RunContext& context = {});
 
 }  // namespace axisfit

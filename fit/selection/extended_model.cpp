@@ -6,7 +6,7 @@
 
 namespace axisfit {
 
-FitResult refit(const Job& job) {
+FitResult refit(const Job& job, const RunContext& context) {
   Job quick = job;
   quick.options.starts = 1;
   quick.options.attempts = 1;
@@ -16,23 +16,23 @@ FitResult refit(const Job& job) {
   quick.options.step = 2.0 * job.options.step;
   if (job.options.observer == ObserverMode::continuation)
     quick.options.observer_gain = score_gains(job).front();
-  return estimate(quick);
+  return estimate(quick, context.quiet());
 }
 
-FitResult refit_from(Job job, const std::vector<double>& values) {
+FitResult refit_from(Job job, const std::vector<double>& values, const RunContext& context) {
   for (std::size_t i = 0; i < job.free.size(); ++i)
     job.free[i].initial = std::clamp(values[i], job.free[i].lower, job.free[i].upper);
-  return refit(job);
+  return refit(job, context);
 }
 
 ExtendedModel fit_extended_model(const Job& job, const Candidate& candidate,
                                  const std::vector<double>& values,
                                  const std::vector<double>& strengths,
-                                 const std::vector<double>& shapes) {
+                                 const std::vector<double>& shapes, const RunContext& context) {
   ExtendedModel e;
   e.candidate = candidate;
   e.job = with_candidate(job, candidate, values, strengths, shapes);
-  e.fit = refit(e.job);
+  e.fit = refit(e.job, context);
   e.residuals = residual_series(e.job, e.fit);
   return e;
 }

@@ -19,16 +19,16 @@ struct ExtendedModel {
 };
 
 /// Fits from close by, content with less than a final fit: one start, one continuation.
-FitResult refit(const Job& job);
+FitResult refit(const Job& job, const RunContext& context = {});
 
 /// The same from these values of the free parameters.
-FitResult refit_from(Job job, const std::vector<double>& values);
+FitResult refit_from(Job job, const std::vector<double>& values, const RunContext& context = {});
 
 /// Adds a candidate, started from these strengths and shapes, and refits.
 ExtendedModel fit_extended_model(const Job& job, const Candidate& candidate,
                                  const std::vector<double>& values,
                                  const std::vector<double>& strengths,
-                                 const std::vector<double>& shapes);
+                                 const std::vector<double>& shapes, const RunContext& context = {});
 
 /// What a candidate's quantities are in a fitted model that has it.
 struct CandidateValues {

@@ -43,7 +43,7 @@ Eigen::MatrixXd basis_of(const Eigen::MatrixXd& a) {
 }
 
 Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u, double rate,
-                 const Linearization& base, const Eigen::MatrixXd& basis) {
+                 const Linearization& base, const Eigen::MatrixXd& basis, const StopFlag* stop) {
   Scales s{INFINITY, -INFINITY, 0.0, INFINITY, -INFINITY, INFINITY, -INFINITY, 0.0, {}, {}};
   Eigen::Index row = 0;
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
@@ -66,7 +66,7 @@ Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::Vecto
       auto& periods = of_drive ? s.drive_periods : s.periods;
       for (const double period :
            periods_in(recording, simulation, observer, base.residuals.segment(row, rows),
-                      basis.middleRows(row, rows), kPeriods, of_drive, job.options.stop))
+                      basis.middleRows(row, rows), kPeriods, of_drive, stop))
         periods.push_back(period);
     }
     row += rows;
@@ -77,14 +77,15 @@ Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::Vecto
 
 }  // namespace
 
-ScoreTest score_test(const Job& job, const std::vector<double>& values, double rate, bool curves) {
+ScoreTest score_test(const Job& job, const std::vector<double>& values, double rate, bool curves,
+                     const RunContext& context) {
   const Crew crew(job.options.threads);
   ScoreTest test;
   const ParameterSpace space(job);
   SolveOptions options;
   options.max_iterations = 15;
   options.function_tolerance = 1e-6;
-  const SolveResult tracking = solve(job, space, space.internal(values), rate, options);
+  const SolveResult tracking = solve(job, space, space.internal(values), rate, options, context);
   if (!tracking.usable) return test;
   const std::vector<double> tracking_values = space.values(tracking.u);
   const Linearization base = linearize(job, space, tracking.u, rate);
@@ -94,7 +95,8 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   test.sum_of_squares = residual.squaredNorm();
   test.usable = std::isfinite(test.sum_of_squares);  // squares may overflow
   if (!test.usable) return test;
-  test.candidates = catalogue(job, scales_of(job, space, tracking.u, rate, base, basis));
+  test.candidates =
+      catalogue(job, scales_of(job, space, tracking.u, rate, base, basis, context.stop));
   std::erase_if(test.candidates, [&](const Candidate& c) { return c.is_curve != curves; });
   for (std::size_t c = 0; c < test.candidates.size(); ++c)
     for (const auto& setting : test.candidates[c].settings)
@@ -103,7 +105,7 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> base_solver(base.jacobian);
   const Job fixed = fixed_at(job, tracking_values);
   parallel_for(test.scores.size(), [&](std::size_t i) {
-    if (is_set(job.options.stop)) throw Interrupted();
+    context.check_stop();
     Score& score = test.scores[i];
     const Candidate& candidate = test.candidates[score.candidate];
     score.strengths.assign(candidate.strengths.size(), 0.0);

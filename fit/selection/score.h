@@ -37,7 +37,7 @@ struct ScoreTest {
 /// Scores all named effects of the catalogue, or all curves, from a fit with the given values of
 /// the free parameters. `observer_gain` as in observer_for().
 ScoreTest score_test(const Job& job, const std::vector<double>& values, double observer_gain,
-                     bool curves = false);
+                     bool curves = false, const RunContext& context = {});
 
 /// The observer gains (1/s) at which a job's residual is scored.
 std::vector<double> score_gains(const Job& job);

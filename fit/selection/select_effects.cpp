@@ -25,8 +25,8 @@ constexpr double kIndistinguishable = 9.2;
 class EffectSelector {
  public:
   EffectSelector(const Job& job, const FitResult& first, const SelectionOptions& options,
-                 const ProgressReport& progress)
-      : options_(options), first_(first), progress_(progress) {
+                 const RunContext& context)
+      : options_(options), first_(first), context_(context) {
     result_.models.push_back({"", job, first});
     if (std::ranges::none_of(job.recordings,
                              [](const Recording& r) { return r.role == Role::validate; })) {
@@ -127,7 +127,7 @@ class EffectSelector {
     SelectionStep& tracking = result_.models.front();
     tracking.job.options.observer = ObserverMode::fixed;
     tracking.job.options.observer_gain = score_gains(declared.job).front();
-    tracking.fit = refit_from(tracking.job, values_of(declared.fit));
+    tracking.fit = refit_from(tracking.job, values_of(declared.fit), context_);
     // What else is missing counts as noise here: judged strictly when it is known.
     constexpr double kProvisionalChance = 0.05;
     while (current().fit.usable && has_room() && !explained() && round(false, kProvisionalChance)) {
@@ -162,18 +162,18 @@ class EffectSelector {
   }
 
   void report_progress(const std::string& phase, int done = 0, int of = 0) {
-    if (progress_) progress_({phase, done, of, current().fit.reduced_chi_square});
+    if (context_.progress) context_.progress({phase, done, of, current().fit.reduced_chi_square});
   }
 
   /// Every second of ten stretches of each recording is left to be judged only.
-  static void hold_out_blocks(SelectionStep& model) {
+  void hold_out_blocks(SelectionStep& model) {
     constexpr std::size_t kBlocks = 10;
     for (Recording& r : model.job.recordings) {
       r.held_out.assign(r.times.size(), false);
       for (std::size_t i = 0; i < r.times.size(); ++i)
         r.held_out[i] = i * kBlocks / r.times.size() % 2 == 1;
     }
-    model.fit = refit_from(model.job, values_of(model.fit));
+    model.fit = refit_from(model.job, values_of(model.fit), context_);
   }
 
   bool explained() {
@@ -198,7 +198,7 @@ class EffectSelector {
     ++round_;
     report_progress("scoring effects");
     const Shortlist list =
-        shortlist(current().job, values_of(current().fit), curves, options_.shortlist);
+        shortlist(current().job, values_of(current().fit), curves, options_.shortlist, context_);
     const std::vector<ShortlistEntry>& entries = list.entries;
     tried_ = list.tried;
     const auto before = residual_series(current().job, current().fit);
@@ -219,7 +219,7 @@ class EffectSelector {
       }
       ExtendedModel& e = extended_models[i];
       e = fit_extended_model(current().job, p.candidate, p.score.values, p.score.strengths,
-                             p.score.shapes);
+                             p.score.shapes, context_);
       e.score = p.score.gain;
       judge(e, before, chance);
       const std::lock_guard lock(mutex);
@@ -320,7 +320,7 @@ class EffectSelector {
       values.clear();
       for (const FreeParameter& p : model.job.free) values.push_back(p.initial);
     }
-    model.fit = refit_from(model.job, values);
+    model.fit = refit_from(model.job, values, context_);
     return model;
   }
 
@@ -362,8 +362,9 @@ class EffectSelector {
     for (std::size_t a = 0; a + 1 < accepted_.size(); ++a) {
       const Candidate& candidate = accepted_[a].candidate;
       const CandidateValues own = candidate_values(last.job, last.fit, candidate);
-      ExtendedModel e = fit_extended_model(models.back().job, candidate,
-                                           values_of(models.back().fit), own.strengths, own.shapes);
+      ExtendedModel e =
+          fit_extended_model(models.back().job, candidate, values_of(models.back().fit),
+                             own.strengths, own.shapes, context_);
       models.push_back({candidate.name, std::move(e.job), std::move(e.fit)});
     }
     if (!accepted_.empty()) {
@@ -418,7 +419,7 @@ class EffectSelector {
       parallel_for(list.size(), [&](std::size_t i) {
         const Rival& rival = accepted.rivals[i];
         list[i] = fit_extended_model(reduced.job, rival.candidate, values_of(reduced.fit),
-                                     rival.values.strengths, rival.values.shapes);
+                                     rival.values.strengths, rival.values.shapes, context_);
       });
       for (std::size_t i = 0; i < list.size(); ++i) {
         ExtendedModel& e = list[i];
@@ -461,7 +462,7 @@ class EffectSelector {
 
   const SelectionOptions options_;
   const FitResult& first_;
-  const ProgressReport& progress_;
+  const RunContext& context_;
   EffectSelection result_;
   SearchState last_valid_;    ///< the latest state that can be a result
   bool provisional_ = false;  ///< what is accepted has yet to prove better than that
@@ -490,7 +491,7 @@ void EffectSelector::finish() {
     if (near.options.observer == ObserverMode::continuation)
       near.options.observer_gain = score_gains(near).back();
     try {
-      FitResult exact = estimate(near);
+      FitResult exact = estimate(near, context_.quiet());
       if (exact.usable) last.fit = std::move(exact);
     } catch (const Interrupted&) {
       result_.interrupted = true;
@@ -533,9 +534,9 @@ std::string EffectSelector::verdict() const {
 }  // namespace
 
 EffectSelection select_effects(const Job& job, const FitResult& first,
-                               const SelectionOptions& options, const ProgressReport& progress) {
+                               const SelectionOptions& options, const RunContext& context) {
   const Crew crew(job.options.threads);
-  return EffectSelector(job, first, options, progress).run();
+  return EffectSelector(job, first, options, context).run();
 }
 
 }  // namespace axisfit

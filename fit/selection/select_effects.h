@@ -61,10 +61,10 @@ struct EffectSelection {
   std::vector<UndecidedPair> rivals;  ///< the effects that stay undecided
 };
 
-/// `first` is the fit of the job as declared. When the job's stop flag is set, the effects accepted
+/// `first` is the fit of the job as declared. When the stop flag is set, the effects accepted
 /// so far are the result.
 EffectSelection select_effects(const Job& job, const FitResult& first,
                                const SelectionOptions& options = {},
-                               const ProgressReport& progress = {});
+                               const RunContext& context = {});
 
 }  // namespace axisfit

@@ -35,8 +35,8 @@ std::vector<ShortlistEntry> best_of(const ScoreTest& test, std::size_t length) {
 }
 
 /// Fits each while it is held at `rate`, and keeps those that may yet turn out the best.
-std::vector<ShortlistEntry> screened(const Job& job, std::vector<ShortlistEntry> list,
-                                     double rate) {
+std::vector<ShortlistEntry> screened(const Job& job, std::vector<ShortlistEntry> list, double rate,
+                                     const RunContext& context) {
   constexpr std::size_t kKept = 3;
   constexpr double kMaxCostRatio =
       1.05;  // of the best cost: the free run will not make up for more
@@ -57,7 +57,8 @@ std::vector<ShortlistEntry> screened(const Job& job, std::vector<ShortlistEntry>
     options.max_iterations = 8;
     options.function_tolerance = 1e-4;
     options.penalize_distance_from_start = true;
-    const SolveResult solved = solve(extended, space, space.internal(start), rate, options);
+    const SolveResult solved =
+        solve(extended, space, space.internal(start), rate, options, context);
     if (solved.usable) runs[i] = {solved.cost, space.values(solved.u)};
   });
   std::vector<std::size_t> order(list.size());
@@ -79,14 +80,16 @@ std::vector<ShortlistEntry> screened(const Job& job, std::vector<ShortlistEntry>
 
 }  // namespace
 
-Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curves, int length) {
+Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curves, int length,
+                    const RunContext& context) {
   // What a slow hold shows may be hidden under a firm one: each has its own best.
   const std::vector<double> rates = score_gains(job);
   std::vector<Shortlist> of_rate(rates.size());
   parallel_for(rates.size(), [&](std::size_t i) {
-    const ScoreTest test = score_test(job, values, rates[i], curves);
+    const ScoreTest test = score_test(job, values, rates[i], curves, context);
     of_rate[i].tried = test.scores.size();
-    of_rate[i].entries = screened(job, best_of(test, static_cast<std::size_t>(length)), rates[i]);
+    of_rate[i].entries =
+        screened(job, best_of(test, static_cast<std::size_t>(length)), rates[i], context);
   });
   Shortlist result;
   for (Shortlist& list : of_rate) {

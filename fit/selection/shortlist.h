@@ -23,6 +23,7 @@ struct Shortlist {
 /// the given values of the free parameters; those of the catalogue or, with `curves`, those without
 /// a name. Those of a rate are then fitted with the simulation still held at it, which is quick:
 /// what is far behind there is dropped, and the others start from there. A crew shares the work.
-Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curves, int length);
+Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curves, int length,
+                    const RunContext& context = {});
 
 }  // namespace axisfit

@@ -15,6 +15,7 @@
 #include "io/config/axis_file.h"
 #include "io/recording/csv.h"
 #include "io/recording/recording_file.h"
+#include "sim/controller.h"
 
 namespace axisfit {
 namespace {

@@ -267,7 +267,7 @@ class Page {
       all += html("<h3>Likelihood profiles</h3>{}",
                   figures(each(run_result_.profiles,
                                [&](const Profile& p) { return charts_.profile(p); })));
-    if (run_result_.run_options.experiment)
+    if (run_result_.options.suggest_experiment)
       all += html("<h3>Next experiment</h3><pre>{}</pre>", suggestion_text(run_result_));
     return all;
   }

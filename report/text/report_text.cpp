@@ -193,7 +193,7 @@ std::string report_text(const RunResult& run_result) {
                           : "the fit",
                run_result.selection ? ", with the effects accepted so far" : ""));
   }
-  if (run_result.run_options.experiment) text += "\n" + suggestion_text(run_result);
+  if (run_result.options.suggest_experiment) text += "\n" + suggestion_text(run_result);
   return text;
 }
 

@@ -9,6 +9,8 @@
 
 #include "base/random.h"
 #include "fit/estimation/estimate.h"
+#include "fit/estimation/residual.h"
+#include "fit/estimation/solve.h"
 #include "sim/rig.h"
 #include "tests/sim/axes.h"
 

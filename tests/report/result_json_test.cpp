@@ -523,9 +523,9 @@ TEST(ResultTest, StrongCorrelationsOfEitherSignAreNamed) {
 
 TEST(ResultTest, TheNextExperimentPredictsWhatIsKnownAfterIt) {
   RunResult run_result = Found(rubbing_job()).run_result;
-  run_result.run_options.experiment = true;
+  run_result.options.suggest_experiment = true;
   Suggestion& s = run_result.suggestion.emplace();
-  s.experiment = {.motion = StepMotion{}, .duration = 2.0, .words = "a step of 3 V"};
+  s.experiment = {.motion = StepMotion{}, .duration = 2.0, .description = "a step of 3 V"};
   s.limits = {.lowest = -1.0, .highest = 1.0, .speed = 0.5, .voltage = 10.0};
   const auto known = [](double value, double error) {
     return ParameterUncertainty{.determined = true,
@@ -563,9 +563,8 @@ TEST(ResultTest, TheTimeOfAFitIsSaidToItsFirstDigit) {
 
 TEST(ResultTest, ErrorsOfAHeldSimulationStandBesideTheFreeRunningOnes) {
   RunResult run_result;
-  run_result.file = rubbing_file();
   EffectSelection& selection = run_result.selection.emplace();
-  selection.result.job = run_result.file.job;
+  selection.result.job = rubbing_file().job;
   selection.models.resize(1);
   SignalScore score{{.fitted = true}, SignalErrors{.rmse = 0.5}, SignalErrors{0.25, 3.0, 1.5}};
   run_result.scores = {{.signals = {score}, .forces = {{}, {}}}};
@@ -575,7 +574,7 @@ TEST(ResultTest, ErrorsOfAHeldSimulationStandBesideTheFreeRunningOnes) {
                         "0.5 m/s "),
             std::string::npos)
       << told();
-  run_result.scores[0].signals[0].held.reset();
+  run_result.scores[0].signals[0].tracking.reset();
   EXPECT_NE(told().find("Errors of the free-running simulation, before and after rmse of range "
                         "red. chi2 fitted, fit: velocity declared 0.5 m/s 0 % 0 Missing force"),
             std::string::npos)

@@ -1,4 +1,4 @@
-// Draws a chart as the SVG of apps/chart.cpp is drawn, by the same classes of report.css, at the
+// Draws a chart as the SVG of report/html/chart.cpp is drawn, by the same classes of report.css, at the
 // size and over the ranges that it has on the screen. Its unit is a CSS pixel, from the upper left
 // corner of the frame.
 

@@ -11,32 +11,33 @@ namespace {
 
 /// A free mass that a constant force of 40 N moved by 0.25 m in 0.5 s, seen by its velocity; and
 /// two models of it that the readings of one sensor tell apart.
-class SeparationTest : public testing::Test {
+class DiscriminationTest : public testing::Test {
  protected:
-  SeparationTest() {
+  DiscriminationTest() {
     model_ = driven_mass(20.0);
     model_.axis.K_f = 40.0;
-    Job& job = loop_.result.job;
+    Job& job = selection_.result.job;
     job.model = model_;
     job.options.threads = 1;
     job.recordings = {recorded(model_, StepMotion{1.0, 0.0}, 0.5, 1, {Signal::velocity})};
-    loop_.result.fit = result_at_start(job);
+    selection_.result.fit = result_at_start(job);
   }
-  Discrimination advice(Signal signal, double bias, const MachineLimits& limits) const {
+  Discrimination advice(Signal signal, double bias, const MachineLimits& limits) {
     UndecidedPair rivals{"this", "that", model_, model_};
     rivals.with_rival.instruments[index_of(signal)].bias = bias;
-    return discriminate(loop_, rivals, ControllerSettings(), limits);
+    selection_.result.job.limits = limits;
+    return discriminate(selection_, rivals);
   }
 
   /// No motion keeps to these: only those that were recorded are left.
   static constexpr MachineLimits kNone{0.0, 0.0, 1e-9, 1.0};
 
   Model<double> model_;
-  EffectSelection loop_;
+  EffectSelection selection_;
 };
 
 // Without a known noise it is a thousandth of the range, here 0.25 mm.
-TEST_F(SeparationTest, IsTheDifferenceInUnitsOfTheNoise) {
+TEST_F(DiscriminationTest, IsTheDifferenceInUnitsOfTheNoise) {
   const Discrimination found = advice(Signal::position, -1e-3, kNone);
   ASSERT_TRUE(found.signal);
   EXPECT_EQ(*found.signal, Signal::position);
@@ -47,7 +48,7 @@ TEST_F(SeparationTest, IsTheDifferenceInUnitsOfTheNoise) {
             "during the motion of fit: by 4 times its noise.");
 }
 
-TEST_F(SeparationTest, IsNotSoughtInWhatWasRecorded) {
+TEST_F(DiscriminationTest, IsNotSoughtInWhatWasRecorded) {
   const Discrimination none = advice(Signal::velocity, 0.1, kNone);
   EXPECT_FALSE(none.signal);
   EXPECT_EQ(none.size, 0.0);
@@ -61,7 +62,7 @@ TEST_F(SeparationTest, IsNotSoughtInWhatWasRecorded) {
       << other.description;
 }
 
-TEST_F(SeparationTest, OfLessThanATenthOfTheNoiseIsNone) {
+TEST_F(DiscriminationTest, OfLessThanATenthOfTheNoiseIsNone) {
   EXPECT_FALSE(advice(Signal::position, 0.09 * 2.5e-4, kNone).signal);
   EXPECT_TRUE(advice(Signal::position, 0.11 * 2.5e-4, kNone).signal);
 }

@@ -49,9 +49,10 @@ constexpr MachineLimits kLimits{-0.2, 0.6, 0.8, 10.0};
 
 TEST(SuggestExperiment, IsFollowedWithTheSuccessPredicted) {
   Job job = slow_job(5);
+  job.limits = kLimits;
   const FitResult before = estimate(job);
   ASSERT_TRUE(before.usable);
-  const auto suggestion = suggest_experiment(job, before, ControllerSettings(), kLimits);
+  const auto suggestion = suggest_experiment(job, before);
   ASSERT_TRUE(suggestion);
   const auto relative = [&](const Uncertainty& u, std::size_t i) {
     return u.parameters[i].standard_error / before.parameters[i].value;
@@ -81,7 +82,7 @@ TEST(SuggestExperiment, IsFollowedWithTheSuccessPredicted) {
 TEST(SuggestExperiment, KeepsToWhatTheRecordingsCovered) {
   const Job job = slow_job(7);
   const FitResult fit = estimate(job);
-  const auto suggestion = suggest_experiment(job, fit, ControllerSettings(), {});
+  const auto suggestion = suggest_experiment(job, fit);
   ASSERT_TRUE(suggestion);
   EXPECT_GT(suggestion->tried, 200);
   EXPECT_LT(suggestion->feasible, suggestion->tried);
@@ -92,19 +93,21 @@ TEST(SuggestExperiment, KeepsToWhatTheRecordingsCovered) {
 }
 
 TEST(SuggestExperiment, HasNoneWhereNothingIsAllowed) {
-  const Job job = slow_job(7);
-  EXPECT_FALSE(suggest_experiment(job, estimate(job), ControllerSettings(), {0.0, 0.0, 1e-9, 1.0}));
+  Job job = slow_job(7);
+  job.limits = {0.0, 0.0, 1e-9, 1.0};
+  EXPECT_FALSE(suggest_experiment(job, estimate(job)));
 }
 
 // Residuals are expected to be of the size that the fit has left: who states a third of the true
 // noise is not promised more than who states it as it is.
 TEST(SuggestExperiment, PromisesNoMoreWhereTheNoiseIsUnderstated) {
   Job job = slow_job(5);
-  const auto expected = suggest_experiment(job, estimate(job), ControllerSettings(), kLimits);
+  job.limits = kLimits;
+  const auto expected = suggest_experiment(job, estimate(job));
   for (Measurement& m : job.recordings[0].measurements) m.sigma /= 3.0;
   const FitResult hopeful = estimate(job);
   EXPECT_NEAR(hopeful.reduced_chi_square, 9.0, 0.5);
-  const auto found = suggest_experiment(job, hopeful, ControllerSettings(), kLimits);
+  const auto found = suggest_experiment(job, hopeful);
   ASSERT_TRUE(expected && found);
   for (std::size_t i = 0; i < 2; ++i) {
     const double now = expected->now.parameters[i].standard_error;

@@ -38,7 +38,7 @@ Job slide_in_few_samples() {
 double sum_of_squares(const Job& job, const FitResult& result, std::size_t recording,
                       std::size_t first = 0) {
   const Measurement& m = job.recordings[recording].measurements[0];
-  const std::vector<double>& simulated = result.recordings[recording].prediction.simulated[0];
+  const std::vector<double>& simulated = result.recordings[recording].free_running.simulated[0];
   double sum = 0.0;
   for (std::size_t i = first; i < m.values.size(); ++i)
     sum += std::pow((m.values[i] - simulated[i]) / m.sigma, 2);
@@ -225,12 +225,11 @@ TEST(Estimate, KeepsTheStartsThatWereFinishedWhenItIsStopped) {
   job.options.starts = 3;
   job.options.threads = 1;
   StopFlag stop = false;
-  job.options.stop = &stop;
-  const FitResult result = estimate(job, [&](const Progress& p) { stop = p.done == 1; });
+  const FitResult result =
+      estimate(job, {&stop, nullptr, [&](const Progress& p) { stop = p.done == 1; }});
   EXPECT_TRUE(result.usable);
   EXPECT_TRUE(result.interrupted);
   EXPECT_EQ(result.starts.size(), 1u);
-  job.options.stop = nullptr;
   job.options.starts = 1;
   const FitResult first = estimate(job);
   EXPECT_FALSE(first.interrupted);
@@ -238,8 +237,7 @@ TEST(Estimate, KeepsTheStartsThatWereFinishedWhenItIsStopped) {
     EXPECT_EQ(result.parameters[i].value, first.parameters[i].value);
 
   stop = true;
-  job.options.stop = &stop;
-  EXPECT_THROW(estimate(job), Interrupted);
+  EXPECT_THROW(estimate(job, {&stop}), Interrupted);
 }
 
 /// A slide whose instruments are of unknown quality: the first guesses of their noise are far off.

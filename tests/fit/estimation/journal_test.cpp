@@ -67,13 +67,12 @@ TEST(JournalTest, AFitThatIsBegunAgainSolvesNothingAgain) {
   Job j = job();
   j.options.starts = 3;
   const FitResult without = estimate(j);
-  j.options.journal = &journal;
-  const FitResult first = estimate(j);
+  const FitResult first = estimate(j, {nullptr, &journal});
   const int solved = journal.kept;
   EXPECT_GT(solved, 3);
   EXPECT_EQ(journal.found, 0);
   j.options.threads = 2;
-  const FitResult again = estimate(j);
+  const FitResult again = estimate(j, {nullptr, &journal});
   EXPECT_EQ(journal.kept, solved);
   EXPECT_EQ(journal.found, solved);
   EXPECT_EQ(digits(first), digits(without));
@@ -88,14 +87,12 @@ TEST(JournalTest, ASearchForEffectsThatIsBegunAgainEndsTheSame) {
   EXPECT_EQ(wanted.models.back().added, "coulomb_friction");
   for (const int stop_after : {2, 11}) {
     MemoryJournal journal;
-    Job j = plain;
-    j.options.journal = &journal;
-    j.options.stop = &journal.stop;
+    const RunContext context{&journal.stop, &journal};
     journal.stop_after = stop_after;
-    EXPECT_TRUE(select_effects(j, fit).interrupted);
+    EXPECT_TRUE(select_effects(plain, fit, {}, context).interrupted);
     journal.stop = false;
     const int kept = journal.kept;
-    const EffectSelection again = select_effects(j, fit);
+    const EffectSelection again = select_effects(plain, fit, {}, context);
     EXPECT_GE(journal.found, kept);
     EXPECT_EQ(again.verdict, wanted.verdict);
     EXPECT_EQ(digits(again.result.fit), digits(wanted.result.fit));
@@ -111,10 +108,9 @@ TEST(JournalTest, ASolutionOfAnotherSizeIsNotTaken) {
       return forged;
     }
   } forged;
-  Job j = job();
+  const Job j = job();
   const FitResult without = estimate(j);
-  j.options.journal = &forged;
-  EXPECT_EQ(digits(estimate(j)), digits(without));
+  EXPECT_EQ(digits(estimate(j, {nullptr, &forged})), digits(without));
 }
 
 TEST(JournalTest, TheKeyDependsOnAllThatTheSolutionFollowsFrom) {

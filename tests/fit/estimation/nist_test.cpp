@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "fit/estimation/least_squares.h"
 #include "fit/estimation/uncertainty.h"
 #include "fit/residuals/autocovariance.h"
 

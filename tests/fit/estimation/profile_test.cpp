@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "fit/estimation/solve.h"
 #include "tests/fit/example.h"
 
 namespace axisfit {

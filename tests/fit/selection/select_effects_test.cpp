@@ -37,16 +37,16 @@ class AnEffectWithATwin : public testing::TestWithParam<HiddenEffect> {};
 
 TEST_P(AnEffectWithATwin, IsLeftUndecided) {
   const HiddenEffect& secret = GetParam();
-  const EffectSelection selection = close(secret.job());
+  Job job = secret.job();
+  job.limits = {-0.5, 0.5, 1.0, 10.0};
+  const EffectSelection selection = close(job);
   EXPECT_EQ(undecided(selection), (Names{secret.name, secret.twin})) << selection.verdict;
   EXPECT_EQ(accepted(selection), Names{});
   EXPECT_FALSE(selection.explained);
   ASSERT_EQ(selection.rivals.size(), 1u);
   EXPECT_EQ((Names{selection.rivals[0].chosen, selection.rivals[0].rival}),
             (Names{secret.name, secret.twin}));
-  const MachineLimits limits{-0.5, 0.5, 1.0, 10.0};
-  const Discrimination advice =
-      discriminate(selection, selection.rivals[0], ControllerSettings(), limits);
+  const Discrimination advice = discriminate(selection, selection.rivals[0]);
   EXPECT_NE(advice.description.find(secret.name), std::string::npos);
   EXPECT_NE(advice.description.find(secret.twin), std::string::npos);
   EXPECT_EQ(advice.signal.has_value(), advice.size >= 0.1) << advice.description;
@@ -131,18 +131,19 @@ TEST(CloseLoop, AddsNoMoreThanIsAllowed) {
 }
 
 TEST(CloseLoop, KeepsWhatIsAcceptedWhenItIsStopped) {
-  Job job = hidden_effect_named("drive_lag").job();
+  const Job job = hidden_effect_named("drive_lag").job();
   const FitResult fit = estimate(job);
   StopFlag stop = false;
-  job.options.stop = &stop;
   // After the first effect, or else at once.
   for (const bool late : {true, false}) {
     stop = !late;
     int phases = 0;
-    const EffectSelection selection = select_effects(job, fit, {}, [&](const Progress& p) {
-      if (p.phase == "scoring effects") ++phases;
-      if (p.phase == "is drive_lag needed?" || phases > 1) stop = true;
-    });
+    const EffectSelection selection =
+        select_effects(job, fit, {}, {&stop, nullptr, [&](const Progress& p) {
+                                        if (p.phase == "scoring effects") ++phases;
+                                        if (p.phase == "is drive_lag necessary?" || phases > 1)
+                                          stop = true;
+                                      }});
     EXPECT_EQ(selection.interrupted, stop.load());
     EXPECT_EQ(accepted(selection), late ? Names{"drive_lag"} : Names{});
     EXPECT_TRUE(selection.result.fit.usable);
@@ -177,11 +178,11 @@ TEST(CloseLoop, TellsWhatItDoes) {
   const Job job = hidden_effect_named("coulomb_friction").job();
   std::set<std::string> phases;
   std::vector<double> best;
-  select_effects(job, estimate(job), {}, [&](const Progress& p) {
-    EXPECT_LE(p.done, p.of);
-    best.push_back(p.best);
-    phases.insert(p.phase);
-  });
+  select_effects(job, estimate(job), {}, {nullptr, nullptr, [&](const Progress& p) {
+                                            EXPECT_LE(p.done, p.of);
+                                            best.push_back(p.best);
+                                            phases.insert(p.phase);
+                                          }});
   EXPECT_TRUE(phases.contains("scoring effects"));
   EXPECT_TRUE(phases.contains("trying coulomb_friction"));
   EXPECT_GT(best.front(), 2.0 * best.back());  // of the model so far

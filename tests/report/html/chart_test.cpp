@@ -222,7 +222,7 @@ TEST(Chart, DrawsDotsAsLinesWithoutLength) {
   ChartColumns columns;
   for (const std::size_t samples : {100u, 1000u}) {
     Chart chart = sine(columns, samples);
-    chart.series[0].drawn = LineStyle::dots;
+    chart.series[0].style = LineStyle::dots;
     const std::string text = figure(chart, columns).text();
     const std::string begin = samples == 100 ? "<path class=\"series measured dots few\" d=\"m"
                                              : "<path class=\"series measured dots\" d=\"m";
