@@ -98,15 +98,6 @@ inline Motion validate_motion(double volts = 6.0) {
 }
 
 /// Frees a quantity on a logarithmic scale from `initial`.
-inline FreeParameter free_parameter(const char* name, double initial) {
-  FreeParameter p;
-  p.quantity = find_quantity(name)->index;
-  p.initial = initial;
-  p.lower = initial / 100.0;
-  p.upper = initial * 100.0;
-  return p;
-}
-
 /// A job with one recording to fit and one to validate of `truth`, by somebody who takes it for
 /// `declared`. The free parameters start at the values of the latter.
 inline Job two_recordings(const Model<double>& truth, const Model<double>& declared,
