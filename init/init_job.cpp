@@ -202,7 +202,7 @@ class Initialiser {
     structure_.transmission = loop ? Transmission::backlash : Transmission::rigid;
   }
 
-  bool force_source() const { return structure_.drive == Drive::force_source; }
+  bool force_source() const { return capabilities(structure_).is_force_driven; }
 
   bool has_measured(const Source& source) const {
     return std::ranges::any_of(source.guess.columns, [&](const GuessedColumn& c) {

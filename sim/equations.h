@@ -30,10 +30,11 @@ enum class Terms {
 
 /// What of the model is in play: the same for all scalar types of one simulation.
 struct ActiveTerms {
+  Capabilities has;
   EffectSet effects;
   slots::Needs needs;
-  bool backlash, static_friction, directions, spring, asymmetric, slope, load, driven_load, elastic,
-      lagging, lag_active;
+  bool static_friction, directions, spring, asymmetric, slope, load, driven_load, elastic, lagging,
+      lag_active;
 };
 
 template <class T>
@@ -62,7 +63,7 @@ class Equations {
   bool signs_matter() const { return is_.asymmetric || is_.slope || is_.load; }
   /// What a drive lag of zero adds to the dead time of a force source: nothing, but its derivative.
   T lag_of_switching() const {
-    const bool adds = is_.lag_active && m_.structure.drive == Drive::force_source;
+    const bool adds = is_.lag_active && is_.has.is_force_driven;
     return adds ? slots_.drive_lag : T(0.0);
   }
   /// Number of states in use, from the first on.
@@ -98,14 +99,8 @@ class Equations {
 
   /// Motor current, A.
   T current(const Mode& mode, const State<T>& y, const Input<T>& input) const {
-    switch (m_.structure.drive) {
-      case Drive::velocity_loop:
-        return y[6];
-      case Drive::current_source:
-        return m_.axis.K_i * power_stage_input(mode, y, input);
-      case Drive::force_source:
-        break;
-    }
+    if (is_.has.has_voltage_loop) return y[6];
+    if (is_.has.is_electric) return m_.axis.K_i * power_stage_input(mode, y, input);
     return T(0.0);
   }
 
@@ -114,9 +109,8 @@ class Equations {
 
   /// Force at the rack of the motor's current alone, N on the arm side.
   T current_force(const Mode& mode, const State<T>& y, const Input<T>& input) const {
-    return m_.structure.drive == Drive::force_source
-               ? m_.axis.K_f * (is_.lagging ? y[7] : command(input))
-               : m_.axis.K_m * current(mode, y, input) / m_.axis.r_g;
+    return is_.has.is_force_driven ? m_.axis.K_f * (is_.lagging ? y[7] : command(input))
+                                   : m_.axis.K_m * current(mode, y, input) / m_.axis.r_g;
   }
 
   /// Motor torque as a force at the rack, N on the arm side.
@@ -145,7 +139,7 @@ class Equations {
     if (is_.spring) force -= slots_.stiffness * y[0];
     if (is_.asymmetric) force -= double(mode.sliding) * slots_.viscous_asymmetry * y[1];
     if (is_.elastic) force += slots_.elastic_mass * elastic_rate(y);
-    if (is_.backlash)
+    if (is_.has.has_backlash)
       force += gear_force(mode, y);
     else
       force +=
@@ -159,7 +153,7 @@ class Equations {
   T moving_mass() const {
     T mass = m_.axis.M + slots_.added_mass;
     if (is_.elastic) mass -= slots_.elastic_mass;
-    return is_.backlash ? mass : mass + m_.axis.J_m / (m_.axis.r_g * m_.axis.r_g);
+    return is_.has.has_backlash ? mass : mass + m_.axis.J_m / (m_.axis.r_g * m_.axis.r_g);
   }
 
   /// y1' of the model itself, without observer, m/s^2: what an accelerometer reads.
@@ -193,7 +187,7 @@ class Equations {
       d[0] += position_correction;
       if (mode.sliding != 0) d[1] += observer_acceleration(y, input.target);
     }
-    if (is_.backlash) {
+    if (is_.has.has_backlash) {
       const T torque = p.r_g * drive_force(mode, y, input, terms);
       d[2] = y[3] + position_correction / p.r_g;
       d[3] = (torque - p.B_m * y[3] - p.r_g * gear_force(mode, y)) / p.J_m +
@@ -202,11 +196,11 @@ class Equations {
       d[2] = d[0] / p.r_g;
       d[3] = d[1] / p.r_g;
     }
-    if (m_.structure.drive != Drive::force_source) {
+    if (is_.has.is_electric) {
       d[4] = y[5];
       d[5] = preamplifier_curvature(y, input);
     }
-    if (m_.structure.drive == Drive::velocity_loop)
+    if (is_.has.has_voltage_loop)
       d[6] = (motor_voltage(mode, y, input) - p.R * y[6] - p.K_e * y[3]) / p.L;
     if (is_.lagging) d[7] = (undelayed_input(mode, y, input) - y[7]) / slots_.drive_lag;
     if (is_.elastic) {
@@ -227,11 +221,11 @@ class Equations {
       arm = slots::arm_force(m_.effects, is_.effects, at);
       if (is_.needs.friction_curve)
         arm -= double(mode.sliding) * slots::friction_curve(m_.effects, is_.effects, at);
-      if (!is_.backlash) arm += motor;
+      if (!is_.has.has_backlash) arm += motor;
       d[1] = arm / moving_mass();
       if (is_.elastic) d[9] = -d[1];
     }
-    d[3] = is_.backlash ? p.r_g * motor / p.J_m : d[1] / p.r_g;
+    d[3] = is_.has.has_backlash ? p.r_g * motor / p.J_m : d[1] / p.r_g;
     return d;
   }
 
@@ -249,12 +243,12 @@ class Equations {
       if (side != -1) visit(positive, side == 0 ? limit - x : x - limit, scale);
       if (side != 1) visit(negative, side == 0 ? x + limit : -limit - x, scale);
     };
-    if (is_.backlash)  // x is a small difference of positions
+    if (is_.has.has_backlash)  // x is a small difference of positions
       between(contact_positive, contact_negative, mode.contact, gear_position(y), p.H,
               1e-3 + std::abs(value_of(y[0])));
-    if (m_.structure.drive != Drive::force_source)
+    if (is_.has.is_electric)
       between(v_c_positive, v_c_negative, mode.v_c, preamplifier(y), p.V_L, value_of(p.V_L));
-    if (m_.structure.drive == Drive::velocity_loop)
+    if (is_.has.has_voltage_loop)
       between(v_m_positive, v_m_negative, mode.v_m, motor_demand(mode, y, input), p.V_s,
               value_of(p.V_s) + value_of(p.K_v) * value_of(p.V_L) * 1e-3);
     if (is_.driven_load) {
@@ -318,7 +312,7 @@ class Equations {
           input.memory = {y[0],
                           slots::hysteresis(m_.effects, is_.effects, instant(mode, y, input))};
         y[1] = T(0.0);
-        if (!is_.backlash) y[3] = T(0.0);
+        if (!is_.has.has_backlash) y[3] = T(0.0);
         mode.sliding = 0;
         break;
     }
@@ -337,7 +331,7 @@ class Equations {
 
   /// The mode after the command was switched. What a force source drives with jumps then.
   Mode switched(Mode mode, const State<T>& y, const Input<T>& input) const {
-    if (is_.driven_load && m_.structure.drive == Drive::force_source && !is_.lagging)
+    if (is_.driven_load && is_.has.is_force_driven && !is_.lagging)
       mode.load = sign_of_load(mode, y, input);
     return settle(mode, y, input);
   }
@@ -349,10 +343,9 @@ class Equations {
       return static_cast<std::int8_t>(value > limit ? 1 : value < -limit ? -1 : 0);
     };
     Mode mode;
-    if (is_.backlash) mode.contact = side(value_of(gear_position(y)), value_of(p.H));
-    if (m_.structure.drive != Drive::force_source)
-      mode.v_c = side(value_of(preamplifier(y)), value_of(p.V_L));
-    if (m_.structure.drive == Drive::velocity_loop)
+    if (is_.has.has_backlash) mode.contact = side(value_of(gear_position(y)), value_of(p.H));
+    if (is_.has.is_electric) mode.v_c = side(value_of(preamplifier(y)), value_of(p.V_L));
+    if (is_.has.has_voltage_loop)
       mode.v_m = side(value_of(motor_demand(mode, y, input)), value_of(p.V_s));
     if (is_.driven_load) mode.load = sign_of_load(mode, y, input);
     const double speed = value_of(y[1]);
@@ -374,22 +367,21 @@ class Equations {
  private:
   /// What the power stage would follow without lag, V.
   T undelayed_input(const Mode& mode, const State<T>& y, const Input<T>& input) const {
-    return m_.structure.drive == Drive::force_source ? command(input)
-                                                     : preamplifier_voltage(mode, y);
+    return is_.has.is_force_driven ? command(input) : preamplifier_voltage(mode, y);
   }
 
   static ActiveTerms active_terms_of(const Model<T>& model, const EffectSet& effects) {
     const Slots<T> slots = slots::affine(model.effects, effects);
     ActiveTerms is{};
+    is.has = capabilities(model.structure);
     is.effects = effects;
     is.needs = slots::needs(effects);
-    is.backlash = model.structure.transmission == Transmission::backlash;
     is.static_friction = is_active(model.axis.F_s);
     is.spring = is_active(slots.stiffness);
     is.asymmetric = is_active(slots.viscous_asymmetry);
     is.slope = is_active(slots.friction_slope);
     is.load = is_active(slots.load_friction);
-    is.driven_load = is.load && !is.backlash;
+    is.driven_load = is.load && !is.has.has_backlash;
     is.directions = is.static_friction || is.asymmetric || is.slope || is.load ||
                     is_active(slots.friction_level) || is_active(slots.friction_asymmetry) ||
                     is.needs.friction_curve || is.needs.hysteresis;
@@ -430,8 +422,8 @@ class Equations {
   /// Force that the transmission carries, N: of the teeth on the side of their contact, or of the
   /// motor where there are none.
   T load(const Mode& mode, const State<T>& y, const Input<T>& input) const {
-    return is_.backlash ? double(mode.contact) * gear_force(mode, y)
-                        : double(mode.load) * current_force(mode, y, input);
+    return is_.has.has_backlash ? double(mode.contact) * gear_force(mode, y)
+                                : double(mode.load) * current_force(mode, y, input);
   }
 
   std::int8_t sign_of_load(const Mode& mode, const State<T>& y, const Input<T>& input) const {

@@ -22,26 +22,29 @@ const QuantityEntry* find_quantity(std::string_view name) {
   return found == list.end() ? nullptr : &*found;
 }
 
-bool is_used(const QuantityEntry& entry, const Structure& structure) {
-  const bool electric = structure.drive != Drive::force_source;
-  const bool backlash = structure.transmission == Transmission::backlash;
-  const auto effect = effect_named(entry.group);
-  if (effect && !structure.effects[*effect]) return false;
-  switch (entry.quantity.used_by) {
+bool is_used(UsedBy used_by, const Structure& structure) {
+  const Capabilities& has = capabilities(structure);
+  switch (used_by) {
     case UsedBy::every_axis:
       return true;
     case UsedBy::velocity_loop:
-      return structure.drive == Drive::velocity_loop;
+      return has.has_voltage_loop;
     case UsedBy::electric_drive:
-      return electric;
+      return has.is_electric;
     case UsedBy::force_source:
-      return !electric;
+      return has.is_force_driven;
     case UsedBy::backlash:
-      return backlash;
+      return has.has_backlash;
     case UsedBy::motor:
-      return electric || backlash;
+      return has.has_motor;
   }
   return true;
+}
+
+bool is_used(const QuantityEntry& entry, const Structure& structure) {
+  const auto effect = effect_named(entry.group);
+  if (effect && !structure.effects[*effect]) return false;
+  return is_used(entry.quantity.used_by, structure);
 }
 
 bool has_signal(Signal signal, const Structure& structure) {
@@ -54,17 +57,25 @@ bool has_signal(Signal signal, const Structure& structure) {
     case Signal::motor_current:
     case Signal::preamplifier_voltage:
     case Signal::drive_force:
-      return structure.drive != Drive::force_source;
+      return capabilities(structure).is_electric;
     case Signal::motor_voltage:
-      return structure.drive == Drive::velocity_loop;
+      return capabilities(structure).has_voltage_loop;
   }
   return false;
 }
 
+void normalize(Model<double>& model) {
+  const std::vector<double*> member = members(model);
+  for (const QuantityEntry& entry : quantity_list()) {
+    const bool of_axis = entry.group.empty() || entry.group == "initial";
+    if (of_axis && !is_used(entry, model.structure))
+      *member[entry.index] = entry.name == "r_g" ? 1.0 : 0.0;
+  }
+}
+
 std::string model_error(const Model<double>& model) {
   const Axis<double>& a = model.axis;
-  const bool backlash = model.structure.transmission == Transmission::backlash;
-  if (backlash && a.J_m <= 0.0)
+  if (capabilities(model.structure).has_backlash && a.J_m <= 0.0)
     return "J_m must be above zero with backlash: while the teeth are apart, the motor torque acts "
            "on J_m alone";
   return {};

@@ -21,6 +21,28 @@ struct Structure {
   EffectSet effects;
 };
 
+/// What an axis has by its drive and its transmission.
+struct Capabilities {
+  bool is_electric;       ///< set-velocity input, preamplifier, tachometer and motor current
+  bool has_voltage_loop;  ///< armature circuit, with V_m and its limit
+  bool is_force_driven;   ///< the command is the force K_f U, and may be recorded in newtons
+  bool has_backlash;      ///< gear of finite stiffness: motor and arm move each for itself
+  bool has_motor;         ///< a motor angle and a pinion, so that J_m, B_m and r_g count
+};
+
+/// By drive and transmission.
+inline constexpr Capabilities kCapabilities[3][2]{
+    // electric, voltage loop, force driven, backlash, motor
+    {{true, true, false, true, true}, {true, true, false, false, true}},     // velocity_loop
+    {{true, false, false, true, true}, {true, false, false, false, true}},   // current_source
+    {{false, false, true, true, true}, {false, false, true, false, false}},  // force_source
+};
+
+constexpr const Capabilities& capabilities(const Structure& structure) {
+  return kCapabilities[static_cast<std::size_t>(structure.drive)]
+                      [static_cast<std::size_t>(structure.transmission)];
+}
+
 template <class T>
 struct Model {
   Structure structure;
@@ -116,11 +138,19 @@ std::vector<T*> members(Model<T>& model) {
   return pointers;
 }
 
+/// Whether an axis of this structure has what such quantities belong to.
+bool is_used(UsedBy used_by, const Structure& structure);
+
 /// Whether a model of this structure makes use of the quantity.
 bool is_used(const QuantityEntry& entry, const Structure& structure);
 
 /// Whether an axis of this structure has the signal at all: a force source has no tachometer.
 bool has_signal(Signal signal, const Structure& structure);
+
+/// Sets the parameters of the axis and the initial values that its structure does not use to those
+/// with which the equations leave them out: r_g to 1, all others to 0. Effects and instruments
+/// stay.
+void normalize(Model<double>& model);
 
 /// Why a model of this structure cannot be simulated; empty when it can.
 std::string model_error(const Model<double>& model);

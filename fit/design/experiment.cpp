@@ -146,7 +146,7 @@ MachineLimits complete_limits(const Job& job, const FitResult& fit) {
   if (!limits.highest) limits.highest = highest;
   if (!limits.speed) limits.speed = speed;
   if (!limits.voltage)
-    limits.voltage = job.model.structure.drive == Drive::force_source
+    limits.voltage = capabilities(job.model.structure).is_force_driven
                          ? force / fitted_model(job, fit).axis.K_f
                          : job.controller.limit;
   limits.voltage = std::min(*limits.voltage, job.controller.limit);
@@ -190,7 +190,7 @@ std::vector<Experiment> candidate_motions(const Structure& structure, const Mach
             fmt::format("a pseudo-random binary sequence of +-{:.3g} V with a bit period of {:g} s",
                         std::abs(u), bit));
     }
-  if (structure.drive == Drive::force_source) return candidates;  // no set-velocity input
+  if (!capabilities(structure).is_electric) return candidates;  // no set-velocity input
   for (const double part : {0.9, 0.5, 0.2, -0.9, -0.5, -0.2})
     for (const double share : {0.9, 0.5, 0.2}) {
       const MoveMotion move{part * (*limits.highest - *limits.lowest), share * *limits.speed,

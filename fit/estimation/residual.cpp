@@ -20,7 +20,7 @@ SimulationResult run(const Job& job, const Recording& recording, const Model<T>&
   options.stop = stop;
   // The velocity of a force source turns where its command switches, at samples: there its chords
   // are the curve.
-  const bool curved_velocity = model.structure.drive != Drive::force_source;
+  const bool curved_velocity = !capabilities(model.structure).is_force_driven;
   const auto series = [&](Signal signal) {
     const Measurement* m = observer.active() ? recording.find(signal) : nullptr;
     if (m == nullptr) return std::vector<double>{};
@@ -80,9 +80,8 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
         simulation.samples.push_back(
             {axis.input().command, y[0], y[1], y[2],
              equations.current(axis.mode(), y, axis.input()), drive,
-             model.structure.transmission == Transmission::rigid
-                 ? drive
-                 : equations.gear_force(axis.mode(), y),
+             capabilities(model.structure).has_backlash ? equations.gear_force(axis.mode(), y)
+                                                        : drive,
              observer.active() ? equations.observer_force(y, Target{measured(Signal::velocity),
                                                                     measured(Signal::position)})
                                : 0.0});

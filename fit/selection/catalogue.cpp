@@ -184,7 +184,7 @@ std::vector<Candidate> catalogue(const Job& job, const Scales& scales) {
     const auto effect = effect_named(entry.name);
     if (entry.strengths[0] == "F_s2" && !job.model.structure.effects[*effect]) continue;
     // The offset of a force source is a constant force by another name: no recording decides.
-    if (entry.name == "command_offset" && job.model.structure.drive == Drive::force_source)
+    if (entry.name == "command_offset" && capabilities(job.model.structure).is_force_driven)
       continue;
     add_if_absent(std::move(candidate));
   }

@@ -73,8 +73,6 @@ void read_parameters(const ConfigNode& node, Model<double>& model) {
       if (const auto given = map.optional(quantity.symbol))
         given->error(fmt::format("{} is not used by an axis with {}: remove it", quantity.symbol,
                                  describe(model.structure)));
-      // Values with which the equations leave the part out.
-      value = entry.quantity.symbol == "r_g" ? 1.0 : 0.0;
       continue;
     }
     value = std::isnan(quantity.default_value) ? quantity.upper : quantity.default_value;
@@ -231,10 +229,10 @@ std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
     if (parameters) read_parameters(*parameters, rig.model);
     if (initial) read_initial(*initial, rig.model);
   }
+  normalize(rig.model);
   if (const auto instruments = map.optional("instruments")) read_instruments(*instruments, rig);
   // Without a pinion there is no telling how far a count is, unless it is said.
-  if (!is_used(*find_quantity("r_g"), rig.model.structure))
-    rig.controller.counts_per_revolution = 0.0;
+  if (!capabilities(rig.model.structure).has_motor) rig.controller.counts_per_revolution = 0.0;
   if (const auto controller = map.optional("controller"))
     read_controller(*controller, rig.controller);
   map.finish();

@@ -188,7 +188,7 @@ class RecordingReader {
   std::optional<Values> read_input(const RecordingFile& data, const ConfigNode& signals_node,
                                    ConfigMap& signals, const std::optional<Values>& times,
                                    Recording& recording) {
-    const bool force_source = rig_.model.structure.drive == Drive::force_source;
+    const bool force_source = capabilities(rig_.model.structure).is_force_driven;
     const auto command = signals.optional("command");
     const auto force = force_source ? signals.optional("drive_force") : std::nullopt;
     const auto reference = force_source ? std::nullopt : signals.optional("position_reference");
@@ -251,7 +251,7 @@ class RecordingReader {
     std::size_t named = 0;
     for (const SignalInfo& signal : kSignalTable) {
       const bool is_input =
-          signal.signal == Signal::drive_force && structure.drive == Drive::force_source;
+          signal.signal == Signal::drive_force && capabilities(structure).is_force_driven;
       const auto given = is_input ? std::nullopt : signals.optional(signal.name);
       if (!given) continue;
       ++named;

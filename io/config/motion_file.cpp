@@ -135,7 +135,7 @@ class MotionReader {
       map_.read("speed", motion.speed);
       map_.read("acceleration", motion.acceleration);
       file.motion = motion;
-      if (rig_.model.structure.drive == Drive::force_source)
+      if (!capabilities(rig_.model.structure).is_electric)
         type->error(
             "a move needs a set-velocity input, which the force source of this axis does not have");
       else if (rig_.model.axis.T_d >= rig_.controller.period)

@@ -86,13 +86,13 @@ std::string rate_warning(const RateCheck& rate) {
 /// Speed per volt that a velocity loop settles at; zero where there is none.
 double command_gain(const Model<double>& model) {
   const auto& a = model.axis;
-  if (model.structure.drive == Drive::force_source || !(a.K_2 * a.K_t > 0.0)) return 0.0;
+  if (!capabilities(model.structure).is_electric || !(a.K_2 * a.K_t > 0.0)) return 0.0;
   return a.K_1 * a.r_g / (a.K_2 * a.K_t);
 }
 
 bool drives_by_force(const Recording& recording, const Model<double>& model) {
   static const std::size_t kGain = find_quantity("K_f")->index;
-  return model.structure.drive == Drive::force_source &&
+  return capabilities(model.structure).is_force_driven &&
          std::ranges::any_of(recording.overrides, [](const auto& o) { return o.first == kGain; });
 }
 

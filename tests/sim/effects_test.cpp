@@ -108,8 +108,7 @@ Experiment to_and_fro(const Variant& variant, bool with_friction) {
   m.structure.transmission = variant.transmission;
   if (variant.drive == Drive::force_source) {
     m.axis.K_f = 40.0;
-    m.axis.r_g = 1.0;
-    m.axis.J_m = m.axis.B_m = 0.0;
+    normalize(m);
     experiment.command = {{0.0, 0.2, 0.75}, {8.0, -7.0, 0.0}};
   } else {
     experiment.command = {{0.0, 0.25, 0.6}, {4.0, -3.0, 0.0}};

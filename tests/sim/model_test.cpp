@@ -182,8 +182,7 @@ TEST(IsUsed, WhatIsNotUsedHasNoInfluence) {
     for (const Transmission transmission : {Transmission::backlash, Transmission::rigid}) {
       Model<double> model = paper_axis();
       model.structure = {drive, transmission, {}};
-      if (drive == Drive::force_source && transmission == Transmission::rigid)
-        model.axis.J_m = model.axis.B_m = 0.0;  // as refused or defaulted by whoever reads the axis
+      normalize(model);
       const auto before = run(model, step_command(), times);
       for (const QuantityEntry& entry : quantity_list()) {
         if (is_used(entry, model.structure) || entry.group == "initial") continue;
@@ -200,6 +199,34 @@ TEST(IsUsed, WhatIsNotUsedHasNoInfluence) {
                 << entry.name << " y" << i;
       }
     }
+}
+
+TEST(Normalize, LeavesOutWhatTheStructureDoesNotUse) {
+  Model<double> model = paper_axis();
+  model.structure = {Drive::force_source, Transmission::rigid, {}};
+  model.initial.fill(0.3);
+  model.instruments[0].gain = 1.1;
+  std::get<ConstantForce<double>>(model.effects).F_0 = 5.0;
+  normalize(model);
+  const Axis<double>& a = model.axis;
+  EXPECT_EQ(a.r_g, 1.0);
+  for (const double left_out : {a.J_m, a.B_m, a.H, a.k_g, a.K_m, a.V_L, a.R})
+    EXPECT_EQ(left_out, 0.0);
+  EXPECT_EQ(a.M, 146.0);
+  EXPECT_EQ(a.K_f, 1.0);
+  EXPECT_EQ(model.initial, (std::array<double, kPaperStates>{0.3, 0.3}));
+  EXPECT_EQ(model.instruments[0].gain, 1.1);
+  EXPECT_EQ(std::get<ConstantForce<double>>(model.effects).F_0, 5.0);
+}
+
+TEST(Normalize, KeepsWhatTheStructureUses) {
+  Model<double> model = paper_axis();
+  normalize(model);
+  Model<double> wanted = paper_axis();
+  wanted.axis.K_f = 0.0;
+  const auto member = members(model), expected = members(wanted);
+  for (const QuantityEntry& entry : quantity_list())
+    EXPECT_EQ(*member[entry.index], *expected[entry.index]) << entry.name;
 }
 
 TEST(Refusal, OfAGearWithoutMotorInertia) {
