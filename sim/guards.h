@@ -26,6 +26,8 @@ struct GuardValues {
   };
   std::array<Node, kGuards> nodes;
   std::size_t count = 0;
+
+  void push_back(const Node& node) { nodes[guard_place(count++)] = node; }
 };
 
 /// All guards of a mode without smooth forces, and their rates.
@@ -40,7 +42,8 @@ class LinearGuards {
       : states_used_(equations.states()), has_observer_(equations.observer().active()) {
     const auto read = [&](const State<double>& y, const Input<double>& input, Form& form) {
       count_ = 0;
-      equations.visit_guards(mode, y, input, [&](Guard, double g, double) { form[count_++] = g; });
+      equations.visit_guards(mode, y, input,
+                             [&](Guard, double g, double) { form[guard_place(count_++)] = g; });
     };
     for (std::size_t c = 0; c < kInputs; ++c)
       read(State<double>{}, large_input<double>(c), inputs_[c]);

@@ -240,7 +240,7 @@ class Integrator {
   GuardValues guard_values(const View<double>& view, const State<double>& y) const {
     GuardValues seen;
     visit_guards_and_rates(view, y, [&](Guard, double g, double rate, double scale) {
-      seen.nodes[seen.count++] = {g, rate, 1e-12 * scale};
+      seen.push_back({g, rate, 1e-12 * scale});
     });
     return seen;
   }
@@ -262,8 +262,9 @@ class Integrator {
     const State<S> f = view.equations.rate(mode_, y, view.input);
     std::array<std::pair<S, S>, kGuards> values;
     std::size_t n = 0;
-    view.equations.visit_guards(mode_, y, view.input,
-                                [&](Guard, const S& g, double) { values[n++].first = g; });
+    view.equations.visit_guards(mode_, y, view.input, [&](Guard, const S& g, double) {
+      values[guard_place(n++)].first = g;
+    });
     // Else a short one does, to a few digits: enough for a search, and for the slope of an event.
     const double ahead = mode_.sliding == 0 && equations_.has_smooth_forces() ? 1e-7 : 1.0;  // s
     State<S> y_ahead = y;
@@ -283,11 +284,11 @@ class Integrator {
   const Model<double> plain_model_;
   const Equations<T> equations_;
   const Equations<double> plain_;
-  const double step_;      // s, at level 0
-  const int bounded_;      // level of the longest stretch because of the observer
-  double switched_ = 0.0;  // s, time of the latest switch
-  std::map<int, System> systems_;
-  std::map<int, Flow> flows_;
+  const double step_;               // s, at level 0
+  const int bounded_;               // level of the longest stretch because of the observer
+  double switched_ = 0.0;           // s, time of the latest switch
+  std::map<Mode, System> systems_;  // by one mode of those that share it
+  std::map<Mode, Flow> flows_;
 
   State<T> y_{};
   Mode mode_;
@@ -318,10 +319,14 @@ typename Integrator<T>::System& Integrator<T>::system_of(const Mode& mode,
                                                          const PerInput<State<double>>& plain_b) {
   // The sign of a limit changes constants, not the matrix; those of contact, motion and load change
   // it where friction depends on them.
-  const int contact = mode.contact == 0 ? 0 : equations_.signs_matter() ? mode.contact : 1;
-  const int sliding = mode.sliding == 0 ? 0 : equations_.signs_matter() ? mode.sliding : 1;
-  const int key = (mode.v_c != 0) | (mode.v_m != 0) << 1 | (contact + 1) << 2 | (sliding + 1) << 4 |
-                  (mode.load + 1) << 6;
+  Mode key = mode;
+  key.doublet = false;
+  key.v_c = mode.v_c != 0;
+  key.v_m = mode.v_m != 0;
+  if (!equations_.signs_matter()) {
+    key.contact = mode.contact != 0;
+    key.sliding = mode.sliding != 0;
+  }
   if (const auto found = systems_.find(key); found != systems_.end()) return found->second;
   const Matrix<T> a = system_matrix(equations_, mode);
   // Below the shortest length smooth forces are frozen, and events are not told apart: even where
@@ -346,9 +351,7 @@ typename Integrator<T>::System& Integrator<T>::system_of(const Mode& mode,
 
 template <class T>
 typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
-  const int key = (mode.contact + 1) | (mode.v_c + 1) << 2 | (mode.v_m + 1) << 4 |
-                  (mode.sliding + 1) << 6 | (mode.load + 1) << 8 | mode.doublet << 10;
-  if (const auto found = flows_.find(key); found != flows_.end()) return found->second;
+  if (const auto found = flows_.find(mode); found != flows_.end()) return found->second;
   const PerInput<State<T>> exact = input_matrix(equations_, mode);
   const PerInput<State<double>> plain = input_matrix(plain_, mode);
   System& system = system_of(mode, exact, plain);
@@ -357,7 +360,7 @@ typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
   Matrix<T> driven{};
   for (std::size_t c = 0; c < kInputs; ++c)
     for (std::size_t i = 0; i < kStates; ++i) driven[i][c] = exact[c][i];
-  return flows_.emplace(key, Flow{system, SparseMatrix<T>(driven), guards, {}}).first->second;
+  return flows_.emplace(mode, Flow{system, SparseMatrix<T>(driven), guards, {}}).first->second;
 }
 
 template <class T>

@@ -1,8 +1,10 @@
 // The discrete modes of the axis. Within one mode the paper's equations are linear.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 
 namespace axisfit {
 
@@ -16,7 +18,7 @@ struct Mode {
                             ///< transmission is in proportion to it
   bool doublet = false;     ///< whether |y1| < w, where F_s acts, (6)
 
-  bool operator==(const Mode&) const = default;
+  auto operator<=>(const Mode&) const = default;
 };
 
 /// From `time` (s) on the axis is in `mode`.
@@ -25,8 +27,15 @@ struct ModeChange {
   Mode mode;
 };
 
-/// The most guards that one mode has.
-inline constexpr std::size_t kGuards = 8;
+/// The most guards that one mode has: two of the contact (or one of the load), of V_c, of V_m and
+/// of dry friction.
+inline constexpr std::size_t kGuards = 2 + 2 + 2 + 2;
+
+/// n as a place in an array of kGuards. Throws std::length_error beyond its end.
+constexpr std::size_t guard_place(std::size_t n) {
+  if (n >= kGuards) throw std::length_error("a mode has more guards than kGuards");
+  return n;
+}
 
 /// The surfaces on which the mode changes. A guard is positive inside the mode.
 enum class Guard : std::uint8_t {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "tests/sim/axes.h"
@@ -14,7 +15,7 @@ GuardValues by_equations(const Equations<double>& equations, const Mode& mode,
                          const State<double>& y, Input<double> input, const Target& slope) {
   GuardValues seen;
   equations.visit_guards(mode, y, input, [&](Guard, double g, double scale) {
-    seen.nodes[seen.count++] = {g, 0.0, scale};
+    seen.push_back({g, 0.0, scale});
   });
   State<double> ahead = y;
   const State<double> f = equations.rate(mode, y, input);
@@ -98,6 +99,36 @@ TEST(GuardForms, FollowTheGuardsOfAnArmAtRestThatIsHeldToATarget) {
       mode.sliding = 0;
       expect_followed(model, observer, mode, random);
     }
+}
+
+TEST(Guards, HaveRoomForThoseOfEveryMode) {
+  std::size_t most = 0;
+  for (const Drive drive : {Drive::velocity_loop, Drive::current_source, Drive::force_source})
+    for (const Transmission transmission : {Transmission::backlash, Transmission::rigid}) {
+      Model<double> model = paper_axis();
+      model.structure = {drive, transmission, {}};
+      model.axis.F_s = 5.0;
+      add_effect<LoadFriction>(model).mu = 0.1;
+      add_effect<StribeckFriction>(model) = {10.0, 0.05};
+      const Equations<double> equations(model);
+      for (int m = 0; m < 3 * 3 * 3 * 3 * 2; ++m) {
+        const auto side = [&](int divisor) {
+          return static_cast<std::int8_t>(m / divisor % 3 - 1);
+        };
+        const Mode mode{side(1), side(3), side(9), side(27), 1, m >= 81};
+        std::size_t count = 0;
+        equations.visit_guards(mode, initial_state(model), {},
+                               [&](Guard, double, double) { ++count; });
+        most = std::max(most, count);
+      }
+    }
+  EXPECT_EQ(most, kGuards);
+}
+
+TEST(GuardValues, TakeNoMoreThanThereIsRoomFor) {
+  GuardValues seen;
+  for (std::size_t i = 0; i < kGuards; ++i) seen.push_back({});
+  EXPECT_THROW(seen.push_back({}), std::length_error);
 }
 
 TEST(GuardCourse, SeesADipBetweenInstants) {
