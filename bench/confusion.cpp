@@ -55,16 +55,38 @@ struct Secret {
   double most = INFINITY;
 };
 
+/// All effects but the curves, dead time and instruments, and at last a curve, which stands for an
+/// effect outside of the catalogue.
 const std::vector<std::string>& secret_names() {
-  static const std::vector<std::string> names{
-      "coulomb_friction",  "directional_friction", "stribeck_friction",  "position_friction",
-      "load_friction",     "dahl_friction",        "constant_force",     "quadratic_drag",
-      "stroke_spring",     "periodic_force",       "added_mass",         "elastic_mode",
-      "cogging_torque",    "torque_ripple",        "torque_droop",       "torque_fade",
-      "drive_lag",         "command_offset",       "dead_time",          "acceleration.bias",
-      "acceleration.gain", "acceleration.lag",     "velocity.gain",      "velocity.lag",
-      "velocity.delay",    "tachometer.gain",      "force_over_position"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const ActsOn place : kPlacesToAct)
+      for (const EffectInfo& effect : kEffectTable)
+        if (effect.acts_on == place && !effect.name.starts_with("force_over_"))
+          list.emplace_back(effect.name);
+    for (const char* other : {"dead_time", "acceleration.bias", "acceleration.gain",
+                              "acceleration.lag", "velocity.gain", "velocity.lag", "velocity.delay",
+                              "tachometer.gain", "force_over_position"})
+      list.emplace_back(other);
+    return list;
+  }();
   return names;
+}
+
+/// An effect of which nothing else is known: at about its typical strength and shape.
+Secret typical_secret(const EffectInfo& effect, Draw& draw) {
+  Secret secret{std::string(effect.name), {}, {}, 1.0};
+  for (const QuantityEntry& entry : quantity_list()) {
+    if (entry.group != effect.name) continue;
+    const double value = entry.quantity.typical;
+    const std::string symbol(entry.quantity.symbol);
+    if (entry.quantity.shape)
+      secret.shapes.emplace_back(symbol, value * draw.factor(2));
+    else
+      secret.strengths.emplace_back(symbol,
+                                    entry.quantity.lower < 0.0 ? draw.sign() * value : value);
+  }
+  return secret;
 }
 
 /// `low` and `high`: the stroke that both motions pass, m.
@@ -102,6 +124,7 @@ Secret draw_secret(const std::string& name, double low, double high, Draw& draw)
             {{"from", low}, {"to", high}},
             20};
   }
+  if (const auto effect = effect_named(name)) return typical_secret(kEffectTable[*effect], draw);
   // Instruments: "signal.part".
   if (name.ends_with(".bias")) return {name, {{name, s}}, {}, 0.02};
   if (name.ends_with(".gain")) return {name, {{name, s}}, {}, 0.01, 0.5};

@@ -19,7 +19,7 @@ struct Input {
   T command{0.0};  ///< U, V
   TargetOf<T> target;
   T time{0.0};  ///< s, of the recording
-  Memory<T> memory;
+  RestMemory<T> memory;
 };
 
 /// Which terms of the right-hand side to include.
@@ -145,7 +145,7 @@ class Equations {
       force +=
           drive_force(mode, y, input, terms) - m_.axis.B_m * y[1] / (m_.axis.r_g * m_.axis.r_g);
     if (is_.needs.arm_force && terms == Terms::all)
-      force += slots::arm_force(m_.effects, is_.effects, instant(mode, y, input));
+      force += slots::arm_force(m_.effects, is_.effects, instant(mode, y, input), input.memory);
     return force;
   }
 
@@ -218,9 +218,10 @@ class Equations {
     if (is_.needs.motor_torque) motor = motor_torque(mode, y, input) / p.r_g;
     if (mode.sliding != 0) {
       const Instant<T> at = instant(mode, y, input);
-      arm = slots::arm_force(m_.effects, is_.effects, at);
+      arm = slots::arm_force(m_.effects, is_.effects, at, input.memory);
       if (is_.needs.friction_curve)
-        arm -= double(mode.sliding) * slots::friction_curve(m_.effects, is_.effects, at);
+        arm -=
+            double(mode.sliding) * slots::friction_curve(m_.effects, is_.effects, at, input.memory);
       if (!is_.has.has_backlash) arm += motor;
       d[1] = arm / moving_mass();
       if (is_.elastic) d[9] = -d[1];
@@ -309,8 +310,8 @@ class Equations {
         break;
       case Guard::stop:
         if (is_.needs.hysteresis)
-          input.memory = {y[0],
-                          slots::hysteresis(m_.effects, is_.effects, instant(mode, y, input))};
+          input.memory =
+              slots::memory_of(m_.effects, is_.effects, instant(mode, y, input), input.memory);
         y[1] = T(0.0);
         if (!is_.has.has_backlash) y[3] = T(0.0);
         mode.sliding = 0;
@@ -361,7 +362,7 @@ class Equations {
   /// Completes a state and an input at the start: a lag has passed, a hysteresis is relaxed.
   void begin(State<T>& y, Input<T>& input) const {
     if (is_.lagging) y[7] = undelayed_input(mode_at(y, input), y, input);
-    input.memory = {y[0], T(0.0)};
+    input.memory = {y[0], {}};
   }
 
  private:
@@ -411,12 +412,11 @@ class Equations {
             mode.sliding,
             y[2],
             current(mode, y, input),
-            m_.axis.r_g * current_force(mode, y, input),
-            input.memory};
+            m_.axis.r_g * current_force(mode, y, input)};
   }
 
   T motor_torque(const Mode& mode, const State<T>& y, const Input<T>& input) const {
-    return slots::motor_torque(m_.effects, is_.effects, instant(mode, y, input));
+    return slots::motor_torque(m_.effects, is_.effects, instant(mode, y, input), input.memory);
   }
 
   /// Force that the transmission carries, N: of the teeth on the side of their contact, or of the
@@ -439,7 +439,8 @@ class Equations {
     if (is_.slope) level += slots_.friction_slope * y[0];
     if (is_.load) level += slots_.load_friction * load(mode, y, input);
     if (is_.needs.friction_curve && terms == Terms::all)
-      level += slots::friction_curve(m_.effects, is_.effects, instant(mode, y, input));
+      level +=
+          slots::friction_curve(m_.effects, is_.effects, instant(mode, y, input), input.memory);
     return level;
   }
 

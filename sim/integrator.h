@@ -162,7 +162,7 @@ class Integrator {
     plain_input_ = {value_of(input_.command),
                     {value_of(input_.target.velocity), value_of(input_.target.position)},
                     value_of(input_.time),
-                    {value_of(input_.memory.position), value_of(input_.memory.hysteresis)}};
+                    value_of(input_.memory)};
   }
   /// Level of the longest step that is at most 1 / ratio of level 0.
   static int level_of(double ratio, int most = 60) {

@@ -32,6 +32,14 @@ struct Quantity {
   /// Of an effect: gives it its shape (a period, a speed scale), not its strength. An effect whose
   /// strengths are all zero is as good as absent, whatever its shape.
   bool shape = false;
+  /// Of an effect: a value that an ordinary motion shows, in `unit`; for tests and benchmarks.
+  double typical = std::numeric_limits<double>::quiet_NaN();
+
+  constexpr Quantity typically(double value) const {
+    Quantity copy = *this;
+    copy.typical = value;
+    return copy;
+  }
 };
 
 /// "effect.symbol", or the symbol alone for the axis itself.

@@ -32,8 +32,6 @@ std::string_view excitation_needed(std::string_view quantity) {
       "the pinion to change flanks: commands of both signs, or strong braking";
   constexpr std::string_view kRinging =
       "the gear to ring: an abrupt command, recorded by an accelerometer or fast velocity sensor";
-  constexpr std::string_view kBothWays = "motion in both directions at several speeds";
-  constexpr std::string_view kAcceleration = "strong acceleration and braking";
   constexpr std::string_view kVoltage =
       "the motor voltage to reach its limit: until then the current loop hides it";
   constexpr std::string_view kBreakaway =
@@ -49,24 +47,19 @@ std::string_view excitation_needed(std::string_view quantity) {
       {"H", kReversal},
       {"b_g", kRinging},
       {"k_g", kRinging},
-      {"B_a", kBothWays},
+      {"B_a", motions::kBothWays},
       {"F_s", kBreakaway},
       {"w", kBreakaway},
-      {"M", kAcceleration},
-      {"J_m", kAcceleration},
+      {"M", motions::kAcceleration},
+      {"J_m", motions::kAcceleration},
       {"T_p", kFastChanges},
       {"T_z", kFastChanges},
       {"T_r", kFastChanges},
-      {"T_d", "abrupt changes of the command"},
-      {"coulomb_friction.F_c", kBothWays},
-      {"directional_friction.dB_a", kBothWays},
-      {"directional_friction.dF_c", kBothWays},
-      {"stribeck_friction.F_st", "slow motion, and speeds well above it"},
-      {"quadratic_drag.c", "motion up to the highest speed"},
-      {"added_mass.dM", kAcceleration}};
+      {"T_d", motions::kSwitches}};
   for (const auto& [name, need] : kNeeds)
     if (name == quantity) return need;
-  return {};
+  const auto effect = effect_named(quantity.substr(0, quantity.find('.')));
+  return effect ? kEffectTable[*effect].excitation : std::string_view();
 }
 
 }  // namespace axisfit

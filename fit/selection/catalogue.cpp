@@ -2,76 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "fit/estimation/continuation.h"
-#include "sim/effects/effects.h"
 
 namespace axisfit {
 namespace {
 
 std::size_t index_of_quantity(std::string_view name) { return find_quantity(name)->index; }
-
-/// n values from a to b, each the same multiple of the one before.
-std::vector<std::vector<double>> geometric(double a, double b, int n) {
-  std::vector<std::vector<double>> values;
-  for (int i = 0; i < n; ++i) values.push_back({a * std::pow(b / a, double(i) / double(n - 1))});
-  return values;
-}
-
-struct Entry {
-  std::string_view name;
-  std::string_view acts_on;
-  std::vector<std::string_view> strengths;  // quantities of the effect, or full names
-  std::vector<std::string_view> shapes = {};
-  std::vector<std::vector<double>> settings = {{}};
-};
-
-/// The effects of sim/effects, with the settings of their shapes. An effect with several strengths
-/// that mean different things stands here once for each.
-std::vector<Entry> entries(const Scales& s, double pinion_radius) {
-  std::vector<std::vector<double>> periods;
-  for (const double period : s.periods) periods.push_back({period});
-  // Per turn of the motor: those that the residual shows, and the likely ones.
-  const auto orders_of = [&](const std::vector<double>& lengths) {
-    std::vector<std::vector<double>> orders{{1.0}, {2.0}, {3.0}, {4.0}, {6.0}};
-    for (const double length : lengths)
-      orders.push_back({2.0 * std::numbers::pi * pinion_radius / length});
-    return orders;
-  };
-  const double speed = std::max(s.speed, 1e-3);
-  // From a few cycles in the recording up to a third of the sampling rate.
-  auto modes = geometric(std::max(1.0, 4.0 / (s.end - s.start)), 0.33 / s.interval, 20);
-  for (auto& mode : modes) mode.push_back(0.03);
-  return {
-      {"coulomb_friction", "friction", {"F_c"}},
-      {"directional_friction", "friction", {"dB_a"}},
-      {"stribeck_friction",
-       "friction",
-       {"F_st"},
-       {"v_st"},
-       geometric(0.003 * speed, 0.3 * speed, 5)},
-      {"position_friction", "friction", {"G_c"}},
-      {"position_friction", "friction", {"G_q"}},
-      {"position_friction", "friction", {"G_c", "G_q"}},
-      {"position_friction", "friction", {"G_b"}},
-      {"load_friction", "friction", {"mu"}},
-      {"dahl_friction", "friction", {"F_d"}, {"l_d"}, geometric(1e-5, 1e-2, 4)},
-      {"constant_force", "arm force", {"F_0"}},
-      {"quadratic_drag", "arm force", {"c"}},
-      {"stroke_spring", "arm force", {"k_s"}},
-      {"periodic_force", "arm force", {"F_s1", "F_c1"}, {"period"}, periods},
-      {"periodic_force", "arm force", {"F_s2", "F_c2"}},
-      {"added_mass", "inertia", {"dM"}},
-      {"elastic_mode", "inertia", {"m_e"}, {"f_e", "zeta_e"}, modes},
-      {"cogging_torque", "motor torque", {"T_s", "T_c"}, {"order"}, orders_of(s.periods)},
-      {"torque_ripple", "motor torque", {"r_s", "r_c"}, {"order"}, orders_of(s.drive_periods)},
-      {"torque_droop", "motor torque", {"c_i"}},
-      {"torque_fade", "motor torque", {"c_t"}},
-      {"drive_lag", "drive", {"T_l"}},
-      {"command_offset", "drive", {"U_0"}},
-  };
-}
 
 /// Whether a quantity is estimated, or given to a single recording: then there is a value of it.
 bool has_value(const Job& job, std::size_t quantity) {
@@ -113,40 +50,26 @@ bool is_recorded(const Job& job, Signal signal) {
   });
 }
 
-std::string meaning_of(std::string_view effect) {
-  std::string text;
-  const Effects<double> effects{};
-  visit_effects(effects, [&](std::size_t, const auto& e) {
-    if (e.name == effect) text = e.meaning;
-  });
-  return text;
+/// The quantities of an effect with these symbols.
+std::vector<std::size_t> quantities_of(std::string_view effect,
+                                       const std::vector<std::string_view>& symbols) {
+  std::vector<std::size_t> quantities;
+  for (const std::string_view symbol : symbols)
+    quantities.push_back(index_of_quantity(std::string(effect) + "." + std::string(symbol)));
+  return quantities;
 }
 
-/// The ends of a curve; one over the motor angle has none.
-std::vector<double> ends_of(std::string_view curve, const Scales& s) {
-  if (curve == "force_over_velocity") return {s.velocity_low, s.velocity_high};
-  if (curve == "force_over_position") return {s.position_low, s.position_high};
-  if (curve == "force_over_time") return {s.start, s.end};
-  return {};
-}
-
-Candidate curve(std::string_view name, const Scales& scales) {
+Candidate candidate_of(const EffectInfo& effect, SearchEntry entry) {
   Candidate candidate;
-  candidate.name = name;
-  candidate.acts_on = "arm force";
-  candidate.meaning = meaning_of(name);
-  candidate.is_curve = true;
-  candidate.shapes_are_free = false;
-  candidate.settings = {ends_of(name, scales)};
-  for (const QuantityEntry& entry : quantity_list()) {
-    if (entry.group != name) continue;
-    // The constant part of a curve is another effect's, and the first and last coefficient hold it.
-    if (entry.quantity.shape)
-      candidate.shapes.push_back(entry.index);
-    else if (entry.quantity.symbol != "c1" &&
-             (entry.quantity.symbol != "c16" || candidate.settings[0].empty()))
-      candidate.strengths.push_back(entry.index);
-  }
+  candidate.name = effect.name;
+  candidate.acts_on = name_of(effect.acts_on);
+  candidate.meaning = effect.meaning;
+  candidate.strengths = quantities_of(effect.name, entry.strengths);
+  candidate.shapes = quantities_of(effect.name, entry.shapes);
+  candidate.settings = std::move(entry.settings);
+  candidate.shapes_are_free = !entry.is_curve;
+  candidate.probes = std::move(entry.probes);
+  candidate.is_curve = entry.is_curve;
   return candidate;
 }
 
@@ -159,38 +82,28 @@ std::vector<double> neutral_strengths(const Candidate& candidate) {
   return values;
 }
 
-std::vector<Candidate> catalogue(const Job& job, const Scales& scales) {
+std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
+  scales.pinion_radius = job.model.axis.r_g;
+  const Structure& structure = job.model.structure;
   std::vector<Candidate> list;
   const auto add_if_absent = [&](Candidate candidate) {
     if (!candidate.settings.empty() && is_absent(job, candidate.strengths))
       list.push_back(std::move(candidate));
   };
-  const std::vector<double> later{2.0 * scales.interval, 8.0 * scales.interval};
+  const auto add_effects = [&](ActsOn place, bool curves) {
+    for (std::size_t e = 0; e < kEffects; ++e) {
+      if (kEffectTable[e].acts_on != place) continue;
+      for (SearchEntry& entry : kEffectTable[e].search(scales))
+        if (entry.is_curve == curves && is_used(entry.used_by, structure) &&
+            (structure.effects[e] || !entry.extends))
+          add_if_absent(candidate_of(kEffectTable[e], std::move(entry)));
+    }
+  };
+  for (const ActsOn place : kPlacesToAct) add_effects(place, false);
   const std::vector<double> both_signs{-2.0 * scales.interval, 2.0 * scales.interval};
-  for (const Entry& entry : entries(scales, job.model.axis.r_g)) {
-    Candidate candidate;
-    candidate.name = entry.name;
-    candidate.acts_on = entry.acts_on;
-    candidate.meaning = meaning_of(entry.name);
-    for (const auto symbol : entry.strengths)
-      candidate.strengths.push_back(
-          index_of_quantity(std::string(entry.name) + "." + std::string(symbol)));
-    for (const auto symbol : entry.shapes)
-      candidate.shapes.push_back(
-          index_of_quantity(std::string(entry.name) + "." + std::string(symbol)));
-    candidate.settings = entry.settings;
-    if (entry.name == "drive_lag") candidate.probes = later;
-    // A part of an effect that needs another part of it, as a second harmonic the first.
-    const auto effect = effect_named(entry.name);
-    if (entry.strengths[0] == "F_s2" && !job.model.structure.effects[*effect]) continue;
-    // The offset of a force source is a constant force by another name: no recording decides.
-    if (entry.name == "command_offset" && capabilities(job.model.structure).is_force_driven)
-      continue;
-    add_if_absent(std::move(candidate));
-  }
   Candidate dead_time{"dead_time", "drive", "dead time of the command", {}, {}, {{}}};
   dead_time.strengths = {index_of_quantity("T_d")};
-  dead_time.probes = later;
+  dead_time.probes = later(scales);
   add_if_absent(std::move(dead_time));
   for (const SignalInfo& signal : kSignalTable) {
     if (!is_recorded(job, signal.signal)) continue;
@@ -200,14 +113,12 @@ std::vector<Candidate> catalogue(const Job& job, const Scales& scales) {
       if (is_ignored(*entry, job.options.observer)) continue;
       Candidate candidate{name,           "sensor", std::string(entry->quantity.meaning),
                           {entry->index}, {},       {{}}};
-      if (part == "lag") candidate.probes = later;
+      if (part == "lag") candidate.probes = later(scales);
       if (part == "delay") candidate.probes = both_signs;
       add_if_absent(std::move(candidate));
     }
   }
-  for (const std::string_view name :
-       {"force_over_velocity", "force_over_position", "force_over_motor_angle", "force_over_time"})
-    add_if_absent(curve(name, scales));
+  for (const ActsOn place : kPlacesToAct) add_effects(place, true);
   return list;
 }
 
@@ -244,6 +155,7 @@ Job with_candidate(const Job& job, const Candidate& candidate, std::span<const d
     p.lower = q.lower;
     p.upper = q.upper;
     p.initial = std::clamp(shapes[i], q.lower, q.upper);
+    p.logarithmic = q.lower > 0.0;
     extended_job.free.push_back(p);
   }
   return extended_job;

@@ -42,19 +42,9 @@ inline bool same_effect(const Candidate& a, const Candidate& b) {
 /// The strengths of an absent effect: zero, but for a gain, which is one.
 std::vector<double> neutral_strengths(const Candidate& candidate);
 
-/// What the recordings span: the scales on which shapes are sought.
-struct Scales {
-  double position_low = 0.0, position_high = 0.0;  ///< m, of the arm
-  double speed = 0.0;                              ///< m/s, largest magnitude
-  double velocity_low = 0.0, velocity_high = 0.0;  ///< m/s
-  double start = 0.0, end = 0.0;                   ///< s
-  double interval = 0.0;                           ///< s, between samples, mean
-  std::vector<double> periods;                     ///< m, of forces along the stroke, best first
-  std::vector<double> drive_periods;  ///< m, of such in proportion to the drive's force
-};
-
 /// All candidates that the job's axis can have, its recordings could show, and its model lacks.
-std::vector<Candidate> catalogue(const Job& job, const Scales& scales);
+/// The pinion radius is the job's.
+std::vector<Candidate> catalogue(const Job& job, SearchScales scales);
 
 /// The job with the candidate added to its free parameters, started from these strengths and
 /// shapes, the other free parameters from `values`.

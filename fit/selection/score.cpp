@@ -42,9 +42,10 @@ Eigen::MatrixXd basis_of(const Eigen::MatrixXd& a) {
   return qr.householderQ() * Eigen::MatrixXd::Identity(a.rows(), qr.rank());
 }
 
-Scales scales_of(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u, double rate,
-                 const Linearization& base, const Eigen::MatrixXd& basis, const StopFlag* stop) {
-  Scales s{INFINITY, -INFINITY, 0.0, INFINITY, -INFINITY, INFINITY, -INFINITY, 0.0, {}, {}};
+SearchScales scales_of(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
+                       double rate, const Linearization& base, const Eigen::MatrixXd& basis,
+                       const StopFlag* stop) {
+  SearchScales s{INFINITY, -INFINITY, 0.0, INFINITY, -INFINITY, INFINITY, -INFINITY};
   Eigen::Index row = 0;
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     const Recording& recording = job.recordings[r];

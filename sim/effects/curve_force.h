@@ -26,6 +26,9 @@ struct CurveForce {
   static constexpr bool kCloses = kVariable == CurveOver::motor_angle;
   static constexpr int kCoefficients = 16;
   static constexpr int kIntervals = kCloses ? kCoefficients : kCoefficients - 3;
+  static constexpr std::array<std::string_view, kCoefficients> kNames{
+      "c1", "c2",  "c3",  "c4",  "c5",  "c6",  "c7",  "c8",
+      "c9", "c10", "c11", "c12", "c13", "c14", "c15", "c16"};
   static constexpr std::string_view name = [] {
     switch (kVariable) {
       case CurveOver::velocity:
@@ -63,23 +66,64 @@ struct CurveForce {
     }
   }();
 
+  static constexpr ActsOn acts_on = ActsOn::arm_force;
+  static constexpr std::string_view excitation = [] {
+    switch (kVariable) {
+      case CurveOver::velocity:
+        return motions::kBothWays;
+      case CurveOver::position:
+        return motions::kWholeStroke;
+      case CurveOver::motor_angle:
+        return motions::kManyTurns;
+      case CurveOver::time:
+        return std::string_view("motion throughout the recording");
+    }
+  }();
+  /// The ends in a motion of typical strength: outside of it, because the force has a kink there.
+  static constexpr std::array<double, 2> kTypicalEnds = [] {
+    switch (kVariable) {
+      case CurveOver::velocity:
+        return std::array{-0.7, 0.5};
+      case CurveOver::position:
+        return std::array{-0.11, 0.17};
+      case CurveOver::motor_angle:
+        return std::array{0.0, 2.0 * std::numbers::pi};
+      case CurveOver::time:
+        return std::array{-0.05, 1.05};
+    }
+  }();
+
   std::array<T, kCoefficients> c;
   T from, to;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
     constexpr UsedBy kUsedBy = kCloses ? UsedBy::motor : UsedBy::every_axis;
-    constexpr std::array<std::string_view, kCoefficients> kNames{
-        "c1", "c2",  "c3",  "c4",  "c5",  "c6",  "c7",  "c8",
-        "c9", "c10", "c11", "c12", "c13", "c14", "c15", "c16"};
     for (std::size_t k = 0; k < kNames.size(); ++k)
-      visit(Quantity{kNames[k], "N", "coefficient of the curve", -1e5, 1e5, 0.0, kUsedBy},
+      visit(Quantity{kNames[k], "N", "coefficient of the curve", -1e5, 1e5, 0.0, kUsedBy}.typically(
+                10.0 * std::sin(2.0 * double(k + 1))),
             self.c[k]);
     if constexpr (!kCloses) {
-      visit(Quantity{"from", unit, "start of the curve", -1e6, 1e6, kRequired, kUsedBy, true},
+      visit(Quantity{"from", unit, "start of the curve", -1e6, 1e6, kRequired, kUsedBy, true}
+                .typically(kTypicalEnds[0]),
             self.from);
-      visit(Quantity{"to", unit, "end of the curve", -1e6, 1e6, kRequired, kUsedBy, true}, self.to);
+      visit(Quantity{"to", unit, "end of the curve", -1e6, 1e6, kRequired, kUsedBy, true}.typically(
+                kTypicalEnds[1]),
+            self.to);
     }
+  }
+
+  static std::vector<SearchEntry> search(const SearchScales& scales) {
+    SearchEntry entry{.strengths = {}, .is_curve = true};
+    // The constant part of a curve is another effect's, and the first and last coefficient hold it.
+    entry.strengths.assign(kNames.begin() + 1, kNames.end() - (kCloses ? 0 : 1));
+    if constexpr (!kCloses) entry.shapes = {"from", "to"};
+    if constexpr (kVariable == CurveOver::velocity)
+      entry.settings = {{scales.velocity_low, scales.velocity_high}};
+    if constexpr (kVariable == CurveOver::position)
+      entry.settings = {{scales.position_low, scales.position_high}};
+    if constexpr (kVariable == CurveOver::time) entry.settings = {{scales.start, scales.end}};
+    return {entry};
   }
 
   T arm_force(const Instant<T>& at) const { return value(variable(at)); }

@@ -20,15 +20,24 @@ template <class T>
 struct DahlFriction {
   static constexpr std::string_view name = "dahl_friction";
   static constexpr std::string_view meaning = "friction that builds up over a short travel";
+  static constexpr ActsOn acts_on = ActsOn::friction;
+  static constexpr std::string_view excitation =
+      "many reversals, sampled more densely than friction builds up";
 
   T F_d, l_d;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"F_d", "N", "steady friction after a long travel", 0, 1e5}, self.F_d);
+    visit(Quantity{"F_d", "N", "steady friction after a long travel", 0, 1e5}.typically(10.0),
+          self.F_d);
     visit(Quantity{"l_d", "m", "travel over which it builds up", 1e-7, 1, kRequired,
-                   UsedBy::every_axis, true},
+                   UsedBy::every_axis, true}
+              .typically(2e-4),
           self.l_d);
+  }
+
+  static std::vector<SearchEntry> search(const SearchScales&) {
+    return {{{"F_d"}, {"l_d"}, geometric(1e-5, 1e-2, 4)}};
   }
 
   T hysteresis(const Instant<T>& at) const {

@@ -16,18 +16,24 @@ template <class T>
 struct DirectionalFriction {
   static constexpr std::string_view name = "directional_friction";
   static constexpr std::string_view meaning = "friction that differs between the directions";
+  static constexpr ActsOn acts_on = ActsOn::friction;
+  static constexpr std::string_view excitation = motions::kBothWays;
 
   T dB_a, dF_c;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
     visit(Quantity{"dB_a", "N s/m", "viscous friction in the positive direction minus the mean",
-                   -1e6, 1e6, 0.0},
+                   -1e6, 1e6, 0.0}
+              .typically(30.0),
           self.dB_a);
     visit(Quantity{"dF_c", "N", "dry friction in the positive direction minus the mean", -1e5, 1e5,
-                   0.0},
+                   0.0}
+              .typically(5.0),
           self.dF_c);
   }
+
+  static std::vector<SearchEntry> search(const SearchScales&) { return {{{"dB_a"}}}; }
 
   void add_to(Slots<T>& slots) const {
     slots.viscous_asymmetry += dB_a;

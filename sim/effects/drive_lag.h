@@ -10,12 +10,18 @@ template <class T>
 struct DriveLag {
   static constexpr std::string_view name = "drive_lag";
   static constexpr std::string_view meaning = "lag of the drive";
+  static constexpr ActsOn acts_on = ActsOn::drive;
+  static constexpr std::string_view excitation = motions::kSwitches;
 
   T T_l;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"T_l", "s", "time constant of the drive", 0, 10}, self.T_l);
+    visit(Quantity{"T_l", "s", "time constant of the drive", 0, 10}.typically(5e-4), self.T_l);
+  }
+
+  static std::vector<SearchEntry> search(const SearchScales& scales) {
+    return {{.strengths = {"T_l"}, .probes = later(scales)}};
   }
 
   void add_to(Slots<T>& slots) const { slots.drive_lag += T_l; }

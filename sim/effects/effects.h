@@ -1,15 +1,19 @@
 // The effects beyond the paper: the list that names them all.
 //
 // An effect is a struct template with its parameters as members, a `name` and a `meaning` for files
-// and tables, a `visit` that describes its parameters, and one or more of the slots of slots.h.
-// Zero strength is a regular point of every effect: there it vanishes, and its derivative exists.
-// docs/effects.md holds the recipe for a new one. Whoever reads a slot folds over the list below.
+// and tables, a `visit` that describes its parameters, what search.h asks of it, and one or more of
+// the slots of slots.h. Zero strength is a regular point of every effect: there it vanishes, and
+// its derivative exists. docs/effects.md holds the recipe for a new one. Whoever wants to know
+// something of effects folds over the list below: there is no other.
 #pragma once
 
+#include <array>
 #include <bitset>
 #include <optional>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
+#include <vector>
 
 #include "sim/effects/added_mass.h"
 #include "sim/effects/cogging_torque.h"
@@ -59,14 +63,61 @@ void visit_effects(EffectsOfT& effects, Visitor&& visit) {
       effects);
 }
 
+/// What an effect is, whatever its parameters.
+struct EffectInfo {
+  std::string_view name, meaning;
+  ActsOn acts_on;
+  std::string_view excitation;  ///< what a motion must do to show it, in words after "needs"
+  std::vector<SearchEntry> (*search)(const SearchScales&);
+};
+
+/// Of all effects, in the order of the list.
+inline constexpr std::array<EffectInfo, kEffects> kEffectTable =
+    []<class... Effect>(std::type_identity<std::tuple<Effect...>>) {
+      return std::array{EffectInfo{Effect::name, Effect::meaning, Effect::acts_on,
+                                   Effect::excitation, &Effect::search}...};
+    }(std::type_identity<Effects<double>>());
+
 /// Place in the list of the effect of that name.
 inline std::optional<std::size_t> effect_named(std::string_view name) {
-  std::optional<std::size_t> found;
-  const Effects<double> effects{};
-  visit_effects(effects, [&](std::size_t index, const auto& effect) {
-    if (effect.name == name) found = index;
-  });
-  return found;
+  for (std::size_t index = 0; index < kEffects; ++index)
+    if (kEffectTable[index].name == name) return index;
+  return std::nullopt;
+}
+
+/// Whether an effect has a hysteresis, which is remembered for it at every stop.
+template <class Effect>
+inline constexpr bool kHasHysteresis = requires {
+  &Effect::hysteresis;
+};
+
+/// Before each effect of the list, and after the last: the number of effects with a hysteresis.
+inline constexpr std::array<std::size_t, kEffects + 1> kHysteresesBefore =
+    []<class... Effect>(std::type_identity<std::tuple<Effect...>>) {
+      std::array<std::size_t, kEffects + 1> before{};
+      std::size_t index = 0;
+      ((before[index + 1] = before[index] + kHasHysteresis<Effect>, ++index), ...);
+      return before;
+    }(std::type_identity<Effects<double>>());
+
+/// One value for each effect with a hysteresis.
+template <class T>
+using Hystereses = std::array<T, kHysteresesBefore[kEffects]>;
+
+/// Where the arm last came to rest, and all hystereses there.
+template <class T>
+struct RestMemory {
+  T position{0.0};  ///< m
+  Hystereses<T> hystereses{};
+};
+
+/// The same without derivatives.
+template <class T>
+RestMemory<double> value_of(const RestMemory<T>& memory) {
+  RestMemory<double> plain{value_of(memory.position), {}};
+  for (std::size_t i = 0; i < plain.hystereses.size(); ++i)
+    plain.hystereses[i] = value_of(memory.hystereses[i]);
+  return plain;
 }
 
 namespace slots {
@@ -96,45 +147,72 @@ Slots<T> affine(const Effects<T>& effects, const EffectSet& active) {
   return total;
 }
 
+/// Calls read(index, effect, at) for the effects in the set, each with its own memory at the
+/// instant.
 template <class T, class Read>
-T sum(const Effects<T>& effects, const EffectSet& active, Read&& read) {
-  T total(0.0);
-  visit_effects(effects, [&](std::size_t index, const auto& effect) {
-    if (active[index]) read(effect, total);
+void visit_active(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at,
+                  const RestMemory<T>& memory, Read&& read) {
+  visit_effects(effects, [&]<class Effect>(std::size_t index, const Effect& effect) {
+    if (!active[index]) return;
+    if constexpr (kHasHysteresis<Effect>) {
+      Instant<T> own = at;
+      own.memory = {memory.position, memory.hystereses[kHysteresesBefore[index]]};
+      read(index, effect, own);
+    } else {
+      read(index, effect, at);
+    }
   });
-  return total;
 }
 
 /// Smooth force on the arm, N.
 template <class T>
-T arm_force(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at) {
-  return sum(effects, active, [&](const auto& effect, T& total) {
-    if constexpr (requires { effect.arm_force(at); }) total += effect.arm_force(at);
-  });
+T arm_force(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at,
+            const RestMemory<T>& memory) {
+  T total(0.0);
+  visit_active(effects, active, at, memory,
+               [&](std::size_t, const auto& effect, const Instant<T>& own) {
+                 if constexpr (requires { effect.arm_force(own); }) total += effect.arm_force(own);
+               });
+  return total;
 }
 
 /// Dry friction that is not affine, N.
 template <class T>
-T friction_curve(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at) {
-  return sum(effects, active, [&](const auto& effect, T& total) {
-    if constexpr (requires { effect.friction_curve(at); }) total += effect.friction_curve(at);
-  });
+T friction_curve(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at,
+                 const RestMemory<T>& memory) {
+  T total(0.0);
+  visit_active(effects, active, at, memory,
+               [&](std::size_t, const auto& effect, const Instant<T>& own) {
+                 if constexpr (requires { effect.friction_curve(own); })
+                   total += effect.friction_curve(own);
+               });
+  return total;
 }
 
 /// Smooth torque on the motor, N m.
 template <class T>
-T motor_torque(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at) {
-  return sum(effects, active, [&](const auto& effect, T& total) {
-    if constexpr (requires { effect.motor_torque(at); }) total += effect.motor_torque(at);
-  });
+T motor_torque(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at,
+               const RestMemory<T>& memory) {
+  T total(0.0);
+  visit_active(effects, active, at, memory,
+               [&](std::size_t, const auto& effect, const Instant<T>& own) {
+                 if constexpr (requires { effect.motor_torque(own); })
+                   total += effect.motor_torque(own);
+               });
+  return total;
 }
 
-/// State of the hysteresis, 1.
+/// What is to be remembered of an arm that comes to rest.
 template <class T>
-T hysteresis(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at) {
-  return sum(effects, active, [&](const auto& effect, T& total) {
-    if constexpr (requires { effect.hysteresis(at); }) total += effect.hysteresis(at);
-  });
+RestMemory<T> memory_of(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at,
+                        const RestMemory<T>& memory) {
+  RestMemory<T> next{at.position, {}};
+  visit_active(effects, active, at, memory,
+               [&]<class Effect>(std::size_t index, const Effect& effect, const Instant<T>& own) {
+                 if constexpr (kHasHysteresis<Effect>)
+                   next.hystereses[kHysteresesBefore[index]] = effect.hysteresis(own);
+               });
+  return next;
 }
 
 /// What the effects of a set need beyond numbers.
@@ -151,7 +229,7 @@ inline Needs needs(const EffectSet& active) {
     found.arm_force |= requires { effect.arm_force(at); };
     found.friction_curve |= requires { effect.friction_curve(at); };
     found.motor_torque |= requires { effect.motor_torque(at); };
-    found.hysteresis |= requires { effect.hysteresis(at); };
+    found.hysteresis |= kHysteresesBefore[index] < kHysteresesBefore[index + 1];
   });
   return found;
 }

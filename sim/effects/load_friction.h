@@ -13,13 +13,17 @@ template <class T>
 struct LoadFriction {
   static constexpr std::string_view name = "load_friction";
   static constexpr std::string_view meaning = "friction proportional to the transmitted force";
+  static constexpr ActsOn acts_on = ActsOn::friction;
+  static constexpr std::string_view excitation = motions::kAcceleration;
 
   T mu;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"mu", "1", "dry friction per transmitted force", 0, 1}, self.mu);
+    visit(Quantity{"mu", "1", "dry friction per transmitted force", 0, 1}.typically(0.05), self.mu);
   }
+
+  static std::vector<SearchEntry> search(const SearchScales&) { return {{{"mu"}}}; }
 
   void add_to(Slots<T>& slots) const { slots.load_friction += mu; }
 };

@@ -15,17 +15,30 @@ template <class T>
 struct PeriodicForce {
   static constexpr std::string_view name = "periodic_force";
   static constexpr std::string_view meaning = "force that is periodic along the stroke";
+  static constexpr ActsOn acts_on = ActsOn::arm_force;
+  static constexpr std::string_view excitation = "slow motion over many periods";
 
   T F_s1, F_c1, F_s2, F_c2, period;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"F_s1", "N", "sine coefficient, first harmonic", -1e5, 1e5}, self.F_s1);
-    visit(Quantity{"F_c1", "N", "cosine coefficient, first harmonic", -1e5, 1e5}, self.F_c1);
-    visit(Quantity{"F_s2", "N", "sine coefficient, second harmonic", -1e5, 1e5, 0.0}, self.F_s2);
-    visit(Quantity{"F_c2", "N", "cosine coefficient, second harmonic", -1e5, 1e5, 0.0}, self.F_c2);
-    visit(Quantity{"period", "m", "spatial period", 1e-5, 1e3, kRequired, UsedBy::every_axis, true},
+    visit(Quantity{"F_s1", "N", "sine coefficient, first harmonic", -1e5, 1e5}.typically(12.0),
+          self.F_s1);
+    visit(Quantity{"F_c1", "N", "cosine coefficient, first harmonic", -1e5, 1e5}.typically(-7.0),
+          self.F_c1);
+    visit(Quantity{"F_s2", "N", "sine coefficient, second harmonic", -1e5, 1e5, 0.0}.typically(4.0),
+          self.F_s2);
+    visit(
+        Quantity{"F_c2", "N", "cosine coefficient, second harmonic", -1e5, 1e5, 0.0}.typically(3.0),
+        self.F_c2);
+    visit(Quantity{"period", "m", "spatial period", 1e-5, 1e3, kRequired, UsedBy::every_axis, true}
+              .typically(0.036),
           self.period);
+  }
+
+  static std::vector<SearchEntry> search(const SearchScales& scales) {
+    return {{{"F_s1", "F_c1"}, {"period"}, one_by_one(scales.periods)},
+            {.strengths = {"F_s2", "F_c2"}, .extends = true}};
   }
 
   T arm_force(const Instant<T>& at) const {

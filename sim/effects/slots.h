@@ -10,10 +10,15 @@
 //   T friction_curve(const Instant<T>&) const;  N against the arm's motion, with sticking
 //   T motor_torque(const Instant<T>&) const;    N m on the motor
 //
-// and goes through the Runge-Kutta part of the integrator. A force that jumps needs a guard
-// (equations.h), as dry friction has.
+// and goes through the Runge-Kutta part of the integrator. Such a force may depend on a hysteresis,
+// the state of which is known in closed form since the arm last came to rest,
+//
+//   T hysteresis(const Instant<T>&) const;      1, and at.memory holds what it was there
+//
+// A force that jumps needs a guard (equations.h), as dry friction has.
 #pragma once
 
+#include "sim/effects/search.h"
 #include "sim/quantity.h"
 
 namespace axisfit {
@@ -35,7 +40,8 @@ struct Slots {
   T elastic_damping{0.0};     ///< 1, damping ratio
 };
 
-/// Where the arm last came to rest, and the state of its hysteresis there; see DahlFriction.
+/// Where the arm last came to rest, and the state there of the hysteresis of the effect that asks;
+/// see DahlFriction.
 template <class T>
 struct Memory {
   T position{0.0};    ///< m
@@ -52,7 +58,7 @@ struct Instant {
   T motor_angle;   ///< rad, y2
   T current;       ///< A; zero for a force source
   T drive_torque;  ///< N m, of the motor by its current
-  Memory<T> memory;
+  Memory<T> memory = {};
 };
 
 }  // namespace axisfit

@@ -16,16 +16,25 @@ template <class T>
 struct StribeckFriction {
   static constexpr std::string_view name = "stribeck_friction";
   static constexpr std::string_view meaning = "friction that is higher (or lower) at low speed";
+  static constexpr ActsOn acts_on = ActsOn::friction;
+  static constexpr std::string_view excitation = "slow motion, and speeds well above it";
 
   T F_st, v_st;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"F_st", "N", "dry friction at low speed minus that at high speed", -1e5, 1e5},
+    visit(Quantity{"F_st", "N", "dry friction at low speed minus that at high speed", -1e5, 1e5}
+              .typically(12.0),
           self.F_st);
     visit(Quantity{"v_st", "m/s", "speed at which it has fallen to 1/e", 1e-4, 10, kRequired,
-                   UsedBy::every_axis, true},
+                   UsedBy::every_axis, true}
+              .typically(0.05),
           self.v_st);
+  }
+
+  static std::vector<SearchEntry> search(const SearchScales& scales) {
+    const double speed = std::max(scales.speed, 1e-3);
+    return {{{"F_st"}, {"v_st"}, geometric(0.003 * speed, 0.3 * speed, 5)}};
   }
 
   T friction_curve(const Instant<T>& at) const {

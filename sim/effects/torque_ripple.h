@@ -14,6 +14,8 @@ template <class T>
 struct TorqueRipple {
   static constexpr std::string_view name = "torque_ripple";
   static constexpr std::string_view meaning = "torque constant that varies with the motor angle";
+  static constexpr ActsOn acts_on = ActsOn::motor_torque;
+  static constexpr std::string_view excitation = "high current over many turns of the motor";
 
   T r_s, r_c, order;
 
@@ -21,14 +23,22 @@ struct TorqueRipple {
   static void visit(Self& self, Visitor&& visit) {
     using enum UsedBy;
     visit(
-        Quantity{"r_s", "1", "sine coefficient, relative to K_m", -1, 1, kRequired, electric_drive},
+        Quantity{"r_s", "1", "sine coefficient, relative to K_m", -1, 1, kRequired, electric_drive}
+            .typically(0.03),
         self.r_s);
     visit(Quantity{"r_c", "1", "cosine coefficient, relative to K_m", -1, 1, kRequired,
-                   electric_drive},
+                   electric_drive}
+              .typically(-0.02),
           self.r_c);
     visit(Quantity{"order", "1", "periods per motor revolution", 0.01, 1e3, kRequired,
-                   electric_drive, true},
+                   electric_drive, true}
+              .typically(2.0),
           self.order);
+  }
+
+  static std::vector<SearchEntry> search(const SearchScales& scales) {
+    return {
+        {{"r_s", "r_c"}, {"order"}, orders_per_turn(scales.drive_periods, scales.pinion_radius)}};
   }
 
   T motor_torque(const Instant<T>& at) const {

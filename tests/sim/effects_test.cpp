@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <iostream>
-#include <map>
 #include <numbers>
 #include <string>
 
@@ -16,68 +15,7 @@
 namespace axisfit {
 namespace {
 
-std::string name_of(std::size_t effect) {
-  std::string name;
-  const Effects<double> effects{};
-  visit_effects(effects, [&](std::size_t index, const auto& e) {
-    if (index == effect) name = e.name;
-  });
-  return name;
-}
-
-/// A value that is felt in the motion below, for every quantity of every effect.
-double typical(const std::string& name) {
-  static const std::map<std::string, double> kTypical{
-      {"coulomb_friction.F_c", 15.0},
-      {"constant_force.F_0", -8.0},
-      {"quadratic_drag.c", 60.0},
-      {"directional_friction.dB_a", 30.0},
-      {"directional_friction.dF_c", 5.0},
-      {"stribeck_friction.F_st", 12.0},
-      {"stribeck_friction.v_st", 0.05},
-      {"position_friction.G_c", 60.0},
-      {"position_friction.G_q", 40.0},
-      {"position_friction.G_b", 300.0},
-      {"load_friction.mu", 0.05},
-      {"dahl_friction.F_d", 10.0},
-      {"dahl_friction.l_d", 2e-4},
-      {"stroke_spring.k_s", 300.0},
-      {"periodic_force.F_s1", 12.0},
-      {"periodic_force.F_c1", -7.0},
-      {"periodic_force.F_s2", 4.0},
-      {"periodic_force.F_c2", 3.0},
-      {"periodic_force.period", 0.036},
-      {"added_mass.dM", 8.0},
-      {"elastic_mode.m_e", 12.0},
-      {"elastic_mode.f_e", 25.0},
-      {"elastic_mode.zeta_e", 0.03},
-      {"cogging_torque.T_s", 0.05},
-      {"cogging_torque.T_c", -0.03},
-      {"cogging_torque.order", 3.0},
-      {"torque_ripple.r_s", 0.03},
-      {"torque_ripple.r_c", -0.02},
-      {"torque_ripple.order", 2.0},
-      {"torque_droop.c_i", 0.01},
-      {"torque_fade.c_t", 0.1},
-      {"drive_lag.T_l", 5e-4},
-      {"command_offset.U_0", 0.05},
-      // The force of a curve has a kink at its ends: they lie outside of the motion.
-      {"force_over_velocity.from", -0.7},
-      {"force_over_velocity.to", 0.5},
-      {"force_over_position.from", -0.11},
-      {"force_over_position.to", 0.17},
-      {"force_over_time.from", -0.05},
-      {"force_over_time.to", 1.05},
-  };
-  const auto found = kTypical.find(name);
-  if (found != kTypical.end()) return found->second;
-  // c1 ... c16 of the curves
-  const std::size_t c = name.find(".c");
-  if (name.starts_with("force_over_") && c != std::string::npos)
-    return 10.0 * std::sin(2.0 * std::stod(name.substr(c + 2)));
-  ADD_FAILURE() << "no typical value for " << name;
-  return 0.0;
-}
+std::string name_of(std::size_t effect) { return std::string(kEffectTable[effect].name); }
 
 struct Variant {
   const char* name;
@@ -96,7 +34,7 @@ void add_typical(Model<double>& model, std::size_t effect, double strength = 1.0
   for (const QuantityEntry& entry : quantity_list())
     if (entry.group == name_of(effect))
       *members(model)[entry.index] =
-          entry.quantity.shape ? typical(entry.name) : strength * typical(entry.name);
+          entry.quantity.shape ? entry.quantity.typical : strength * entry.quantity.typical;
 }
 
 /// There, back and to rest, with some dry friction: an arm that slides both ways and sticks.
@@ -144,6 +82,19 @@ class EveryEffect : public testing::TestWithParam<std::size_t> {
     add_typical(model, effect(), strength);
   }
 };
+
+TEST_P(EveryEffect, IsDescribedInFull) {
+  const EffectInfo& info = kEffectTable[effect()];
+  EXPECT_FALSE(info.meaning.empty());
+  EXPECT_FALSE(info.excitation.empty());
+  EXPECT_FALSE(info.search({.speed = 1.0, .end = 1.0, .interval = 1e-3, .periods = {0.1}}).empty());
+  for (const QuantityEntry& entry : quantity_list()) {
+    if (entry.group != info.name) continue;
+    EXPECT_GE(entry.quantity.typical, entry.quantity.lower) << entry.name;
+    EXPECT_LE(entry.quantity.typical, entry.quantity.upper) << entry.name;
+    EXPECT_NE(entry.quantity.typical, 0.0) << entry.name;
+  }
+}
 
 TEST_P(EveryEffect, OfStrengthZeroIsNoneBitForBit) {
   for (const Variant& variant : kVariants) {
@@ -211,7 +162,7 @@ TEST_P(EveryEffect, HasADerivativeAtStrengthZero) {
             EXPECT_LT(c.error, 1e-4 + c.convergence) << c.name;
             worst.add(c);
           },
-          [](const QuantityEntry& q, double) { return std::abs(typical(q.name)); },
+          [](const QuantityEntry& q, double) { return std::abs(q.quantity.typical); },
           entry.quantity.lower < 0.0 ? Sides::both : Sides::above);
     }
     std::cout << variant.name << ": " << worst << "\n";

@@ -11,8 +11,8 @@
 namespace axisfit {
 namespace {
 
-Scales scales() {
-  Scales s;
+SearchScales scales() {
+  SearchScales s;
   s.position_low = -0.1;
   s.position_high = 0.5;
   s.speed = 1.2;
@@ -54,8 +54,7 @@ TEST(Catalogue, HasEveryEffectOfTheList) {
   const auto list = catalogue(job_with({Signal::velocity}), scales());
   const Effects<double> effects{};
   visit_effects(effects, [&](std::size_t, const auto& effect) {
-    EXPECT_NE(find(list, effect.name), nullptr)
-        << effect.name << " has no entry in fit/selection/catalogue.cpp";
+    EXPECT_NE(find(list, effect.name), nullptr) << effect.name << " offers nothing to this axis";
   });
 }
 
@@ -99,7 +98,7 @@ TEST(Catalogue, EntriesAreComplete) {
 
 TEST(Catalogue, SeeksPeriodsWhereTheSpectrumShowsThem) {
   const Job job = job_with({Signal::velocity});
-  Scales s = scales();
+  SearchScales s = scales();
   s.drive_periods = {0.01};
   const auto list = catalogue(job, s);
   EXPECT_EQ(find(list, "periodic_force")->settings,
@@ -113,7 +112,7 @@ TEST(Catalogue, SeeksPeriodsWhereTheSpectrumShowsThem) {
   EXPECT_TRUE(has_order("cogging_torque", 0.05));
   EXPECT_TRUE(has_order("cogging_torque", 0.02));
   EXPECT_TRUE(has_order("torque_ripple", 0.01));
-  Scales none = scales();
+  SearchScales none = scales();
   none.periods.clear();
   EXPECT_EQ(find(catalogue(job, none), "periodic_force"), nullptr);
 }
@@ -257,8 +256,8 @@ TEST_F(WithCandidate, AddsItsStrengthsAndShapesAndNothingElse) {
       const FreeParameter& p = job.free[2 + strengths.size() + i];
       EXPECT_EQ(p.quantity, c.shapes[i]);
       EXPECT_EQ(p.initial, c.settings.back()[i]);
-      EXPECT_TRUE(p.logarithmic);
-      EXPECT_GT(p.lower, 0.0);
+      EXPECT_EQ(p.lower, quantity_list()[c.shapes[i]].quantity.lower);
+      EXPECT_EQ(p.logarithmic, p.lower > 0.0);
     }
     // The rest of the model is as it was.
     const std::string& group = quantity_list()[c.strengths[0]].group;
