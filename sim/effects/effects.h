@@ -25,6 +25,7 @@
 #include "sim/effects/directional_friction.h"
 #include "sim/effects/drive_lag.h"
 #include "sim/effects/elastic_mode.h"
+#include "sim/effects/friction_bump.h"
 #include "sim/effects/load_friction.h"
 #include "sim/effects/periodic_force.h"
 #include "sim/effects/position_friction.h"
@@ -41,10 +42,10 @@ namespace axisfit {
 template <class T>
 using Effects =
     std::tuple<CoulombFriction<T>, ConstantForce<T>, QuadraticDrag<T>, DirectionalFriction<T>,
-               StribeckFriction<T>, PositionFriction<T>, LoadFriction<T>, DahlFriction<T>,
-               StrokeSpring<T>, PeriodicForce<T>, AddedMass<T>, ElasticMode<T>, CoggingTorque<T>,
-               TorqueRipple<T>, TorqueDroop<T>, TorqueFade<T>, DriveLag<T>, CommandOffset<T>,
-               ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>,
+               StribeckFriction<T>, PositionFriction<T>, FrictionBump<T>, LoadFriction<T>,
+               DahlFriction<T>, StrokeSpring<T>, PeriodicForce<T>, AddedMass<T>, ElasticMode<T>,
+               CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>, TorqueFade<T>, DriveLag<T>,
+               CommandOffset<T>, ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>,
                ForceOverTime<T>>;
 
 inline constexpr std::size_t kEffects = std::tuple_size_v<Effects<double>>;

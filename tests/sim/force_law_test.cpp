@@ -290,6 +290,31 @@ TEST(ForceLaw, OfPositionFrictionIsAHarmonicStop) {
   EXPECT_LT(later(-holds - 1e-6), 0.0);
 }
 
+TEST(ForceLaw, OfFrictionBumpTakesAGaussianOfWork) {
+  // From one end to the other: M v^2 / 2 falls by the work of friction, and the bump holds at rest.
+  constexpr double F_c = 5.0, F_b = 15.0, y_b = 0.1, w_b = 0.03, v = 0.9;
+  for (const double way : {1.0, -1.0}) {
+    Model<double> model = rubbing_mass(F_c);
+    add_effect<FrictionBump>(model) = {F_b, way * y_b, w_b};
+    model.initial[1] = way * v;
+    const auto times = instants(50, 5e-3);
+    const auto r = run(model, {}, times);
+    ASSERT_GT(way * r.states.back()[0], y_b + 2.0 * w_b);
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const double y = way * r.states[k][0], speed = way * r.states[k][1];
+      const double work = F_c * y + F_b * w_b * std::sqrt(kPi) / 2.0 *
+                                        (std::erf((y - y_b) / w_b) + std::erf(y_b / w_b));
+      ASSERT_NEAR(speed, std::sqrt(v * v - 2.0 * work / kMass), 1e-9) << k;
+    }
+    model.initial = {way * (y_b + 0.5 * w_b)};
+    const double holds = F_c + F_b * std::exp(-0.25);
+    for (const double push : {1.0, -1.0}) {
+      EXPECT_FALSE(moves(model, push * (holds - 1e-6)));
+      EXPECT_TRUE(moves(model, push * (holds + 1e-6)));
+    }
+  }
+}
+
 TEST(ForceLaw, OfDirectionalDryFrictionIsAConstantForce) {
   for (const double F_c : {15.0, 2.0}) {  // more and less than the difference
     Model<double> directional = paper_axis();
