@@ -30,6 +30,7 @@
 #include "report/html/report_page.h"
 #include "report/result_json.h"
 #include "report/text/report_text.h"
+#include "report/text/words.h"
 
 namespace {
 

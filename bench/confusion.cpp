@@ -27,6 +27,7 @@
 #include "fit/estimation/solve.h"
 #include "fit/selection/select_effects.h"
 #include "io/config/axis_file.h"
+#include "report/text/words.h"
 
 namespace {
 
@@ -304,7 +305,7 @@ Outcome run(const Case& one, const Rig& paper, std::uint64_t seed) {
     if (trial.decision == Decision::accepted) outcome.accepted.insert(trial.candidate.name);
     if (trial.decision == Decision::undecided) outcome.undecided.insert(trial.candidate.name);
     outcome.story += fmt::format("    round {} {}: {} (score {:.4g}, {:.3g} %)\n", trial.round,
-                                 trial.candidate.name, trial.reason, trial.score,
+                                 trial.candidate.name, reason_text(trial), trial.score,
                                  trial.improvement.validate_percent);
   }
   outcome.explained = selection.explained;

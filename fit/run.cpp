@@ -118,10 +118,6 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   return result;
 }
 
-std::string stop_reason(const RunResult& result) {
-  return result.time_limit ? fmt::format(" by the time limit of {:g} s", *result.time_limit) : "";
-}
-
 bool has_noise_from(const Job& job, NoiseSource source) {
   return std::ranges::any_of(job.recordings, [&](const Recording& r) {
     return std::ranges::find(r.measurements, source, &Measurement::noise) != r.measurements.end();
@@ -133,13 +129,6 @@ const Experiment* next_experiment(const RunResult& result) {
   for (const Discrimination& s : result.discriminations)
     if (s.experiment) return &*s.experiment;
   return result.suggestion ? &result.suggestion->experiment : nullptr;
-}
-
-std::string overall_verdict(const RunResult& result) {
-  const FitResult& fit = result.fit();
-  if (!result.selection) return fit.verdict;
-  // Both judge the same model by the same residual.
-  return (fit.usable ? "Usable fit." : fit.verdict) + " " + result.selection->verdict;
 }
 
 std::optional<ExcludedSamples> excluded_samples(const Measurement& measurement) {
@@ -156,37 +145,9 @@ std::optional<ExcludedSamples> excluded_samples(const Measurement& measurement) 
   return excluded;
 }
 
-std::string_view verdict_name(const ParameterUncertainty& uncertainty) {
-  if (uncertainty.at_bound) return "at bound";
-  if (!uncertainty.determined) return "not determined";
-  return uncertainty.weak ? "weakly determined" : "determined";
-}
-
-const char* decision_name(Decision decision) {
-  switch (decision) {
-    case Decision::accepted:
-      return "accepted";
-    case Decision::undecided:
-      return "undecided";
-    case Decision::rejected:
-      return "rejected";
-  }
-  return "";
-}
-
-const char* role_name(const Recording& recording, bool fitted) {
-  if (recording.role == Role::validate) return "validate";
-  return fitted ? "fit" : "held_out";
-}
-
-const char* role_name(const Recording& recording, const SignalError& signal) {
-  if (recording.role == Role::validate) return "validate";
-  return signal.fitted ? "fit" : "compare";
-}
-
-const FreeParameter& as_specified(const RunResult& result, std::size_t parameter) {
-  const std::vector<FreeParameter>& declared = result.baseline.free;
-  return parameter < declared.size() ? declared[parameter] : result.job().free[parameter];
+const FreeParameter& as_specified(const RunResult& run_result, std::size_t parameter) {
+  const std::vector<FreeParameter>& declared = run_result.baseline.free;
+  return parameter < declared.size() ? declared[parameter] : run_result.job().free[parameter];
 }
 
 }  // namespace axisfit

@@ -75,12 +75,6 @@ bool has_noise_from(const Job& job, NoiseSource source);
 /// effects apart, or else that which determines the parameters.
 const Experiment* next_experiment(const RunResult& result);
 
-/// Whether the fit can be used, and what a closed loop says of it.
-std::string overall_verdict(const RunResult& result);
-
-/// " by the time limit of 60 s", or nothing: to follow "stopped".
-std::string stop_reason(const RunResult& result);
-
 /// Fits the job, analyses its residual and does what the options ask for: all that fit-params does
 /// between reading its files and writing its results. Throws std::runtime_error if the options name
 /// a parameter that is not free, and Interrupted if it is stopped before one start of the fit has
@@ -94,18 +88,6 @@ struct ExcludedSamples {
   bool is_within_noise = false;  ///< whether that mean is no further from zero than noise would be
 };
 std::optional<ExcludedSamples> excluded_samples(const Measurement& measurement);
-
-/// "determined", "weakly determined", "not determined", "at bound"
-std::string_view verdict_name(const ParameterUncertainty& uncertainty);
-
-/// "accepted", "undecided", "rejected"
-const char* decision_name(Decision decision);
-
-/// "fit", "validate" or, where a recording was fitted in part, "held_out".
-const char* role_name(const Recording& recording, bool fitted);
-
-/// Of one signal of a recording: "fit", "validate", or "compare" where it is only compared.
-const char* role_name(const Recording& recording, const SignalError& signal);
 
 /// A free parameter of the final model with the user's initial value, which the loop does not keep;
 /// of an added effect, with the one it was started from.

@@ -4,6 +4,7 @@
 
 #include "base/version.h"
 #include "report/text/report_text.h"
+#include "report/text/words.h"
 
 namespace axisfit {
 namespace {
@@ -100,7 +101,7 @@ Json estimate_json(const ParameterResult& p) {
           {"unit", quantity.unit},
           {"meaning", quantity.meaning},
           {"value", p.value},
-          {"verdict", verdict_name(u)},
+          {"verdict", verdict_name(u.verdict())},
           {"standard_error", optional(u.determined, u.standard_error)},
           {"confidence_interval", interval_json(u)}};
 }
@@ -259,7 +260,7 @@ Json effect_json(const EffectTrial& t) {
           {"meaning", t.candidate.meaning},
           {"decision", decision_name(t.decision)},
           {"accepted", t.decision == Decision::accepted},
-          {"reason", t.reason},
+          {"reason", reason_text(t)},
           {"round", t.round},
           {"score", t.score},
           {"parameters", list(t.parameters, estimate_json)},
@@ -315,7 +316,7 @@ Json selection_json(const RunResult& run_result) {
             {"after", models.back()}};
   models.erase(0);
   json["models"] = std::move(models);
-  json["selection"] = {{"verdict", selection.verdict},
+  json["selection"] = {{"verdict", verdict_text(selection)},
                        {"explained", selection.explained},
                        {"held_out_blocks", selection.held_out_blocks},
                        {"hints", list(run_result.discriminations,
@@ -386,7 +387,7 @@ Json result_json(const RunResult& run_result) {
             {"usable", fit.usable},
             {"interrupted", run_result.interrupted},
             {"time_limit_reached", run_result.time_limit.has_value()},
-            {"verdict", fit.verdict},
+            {"verdict", verdict_text(fit)},
             {"message", fit.message},
             {"axis", run_result.baseline.axis},
             {"recordings", std::move(recordings)},
@@ -451,7 +452,7 @@ Json check_json(const Job& job, const std::vector<RecordingCheck>& checks, const
     }
     parameters.push_back({{"name", space.name(i)},
                           {"initial", space[i].initial},
-                          {"verdict", verdict_name(u)},
+                          {"verdict", verdict_name(u.verdict())},
                           {"standard_error", optional(u.determined, u.standard_error)},
                           {"sensitivity", std::move(sensitivity)}});
   }

@@ -119,66 +119,37 @@ RecordingResult evaluate_recording(const Job& job, const ParameterSpace& space, 
   return result;
 }
 
-/// A fitted signal that the model follows no better than a constant would: then there is no fit.
-std::string unexplained_signal(const Job& job, const FitResult& result) {
-  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
-    for (std::size_t m = 0; m < result.recordings[r].signals.size(); ++m) {
-      const SignalError& e = result.recordings[r].signals[m];
-      if (!e.fitted) continue;
-      if (!e.prediction_rmse && !result.recordings[r].free_running.finished)
-        return fmt::format("{} of {}", info(e.signal).name, job.recordings[r].name);
-      const double rmse = e.prediction_rmse.value_or(e.rmse);
-      const double chi_square = e.prediction_reduced_chi_square.value_or(e.reduced_chi_square);
-      // Small beside the noise, if that is not itself taken from the residual.
-      const bool noisy = chi_square <= 2.0 && e.noise != NoiseSource::fit;
-      if (!noisy && rmse > standard_deviation(job.recordings[r].measurements[m].values))
-        return fmt::format("{} of {}", info(e.signal).name, job.recordings[r].name);
-    }
-  }
-  return {};
+/// Whether a constant would follow a fitted signal as well as the model does: then there is no fit.
+bool is_not_followed(const Job& job, const FitResult& result, std::size_t recording,
+                     std::size_t measurement) {
+  const SignalError& e = result.recordings[recording].signals[measurement];
+  if (!e.fitted) return false;
+  if (!e.prediction_rmse && !result.recordings[recording].free_running.finished) return true;
+  const double rmse = e.prediction_rmse.value_or(e.rmse);
+  const double chi_square = e.prediction_reduced_chi_square.value_or(e.reduced_chi_square);
+  // Small beside the noise, if that is not itself taken from the residual.
+  const bool noisy = chi_square <= 2.0 && e.noise != NoiseSource::fit;
+  return !noisy &&
+         rmse > standard_deviation(job.recordings[recording].measurements[measurement].values);
 }
 
-std::string undetermined_parameters(const FitResult& result) {
-  std::string names;
+/// Whether the model explains everything is for the test of the residuals to decide.
+FitVerdict verdict_of(const Job& job, const FitResult& result) {
+  using enum FitVerdict::Kind;
+  if (result.status == Status::failed) return {.kind = not_simulated};
+  if (result.status == Status::not_converged)
+    return {.kind = no_minimum, .iteration_limit = job.options.max_iterations};
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    for (std::size_t m = 0; m < result.recordings[r].signals.size(); ++m)
+      if (is_not_followed(job, result, r, m))
+        return {.kind = signal_not_followed,
+                .signal = result.recordings[r].signals[m].signal,
+                .recording = job.recordings[r].name};
+  FitVerdict verdict{.kind = usable};
   for (const ParameterResult& p : result.parameters)
     if (!p.uncertainty.determined && !p.uncertainty.at_bound)
-      names += (names.empty() ? "" : ", ") + p.name;
-  return names;
-}
-
-/// Sets status, usable and verdict.
-void set_verdict(const Job& job, const SolveResult& solved, FitResult& result) {
-  result.status = !solved.usable     ? Status::failed
-                  : solved.converged ? Status::converged
-                                     : Status::not_converged;
-  if (result.status == Status::failed) {
-    result.verdict =
-        "No usable fit: the simulation does not finish at the initial values. Check them and the "
-        "axis file for impossible values.";
-    return;
-  }
-  if (result.status == Status::not_converged) {
-    result.verdict = fmt::format(
-        "No usable fit: no minimum was found within {} iterations. Try --starts 20, or free fewer "
-        "parameters.",
-        job.options.max_iterations);
-    return;
-  }
-  if (const std::string unexplained = unexplained_signal(job, result); !unexplained.empty()) {
-    result.verdict = fmt::format(
-        "No usable fit: the model follows the {} no better than a constant would. Try other "
-        "initial "
-        "values, --starts 20, or check units and signs of the columns.",
-        unexplained);
-    return;
-  }
-  result.usable = true;
-  // Whether it explains everything is for the test of the residuals to say.
-  result.verdict = fmt::format("Usable fit: reduced chi-square {:.4g} on the fitted data.",
-                               result.reduced_chi_square);
-  const std::string undetermined = undetermined_parameters(result);
-  if (!undetermined.empty())
-    result.verdict += " These recordings do not determine " + undetermined + ".";
+      verdict.undetermined.push_back(p.name);
+  return verdict;
 }
 
 }  // namespace
@@ -247,7 +218,11 @@ FitResult estimate(const Job& job, const RunContext& context) {
   result.identifiability = identifiability(
       space, solved.u, at_solution,
       std::sqrt(found.autocorrelation_time * std::max(1.0, result.reduced_chi_square)));
-  set_verdict(job, solved, result);
+  result.status = !solved.usable     ? Status::failed
+                  : solved.converged ? Status::converged
+                                     : Status::not_converged;
+  result.verdict = verdict_of(job, result);
+  result.usable = result.verdict.kind == FitVerdict::Kind::usable;
   return result;
 }
 

@@ -68,11 +68,29 @@ struct Minimum {
 /// The usable ends of starts, those of equal cost (to a thousandth) taken together, best first.
 std::vector<Minimum> distinct_minima(std::vector<StartResult> starts);
 
+/// Whether a fit can be used, and what the verdict rests on.
+struct FitVerdict {
+  enum class Kind {
+    usable,               ///< a minimum was found, and every fitted signal is followed
+    not_simulated,        ///< the simulation does not finish at the initial values
+    no_minimum,           ///< the iteration limit came first
+    signal_not_followed,  ///< a constant would follow a fitted signal as well
+  };
+  Kind kind = Kind::not_simulated;
+  int iteration_limit = 0;           ///< of no_minimum
+  Signal signal = Signal::velocity;  ///< of signal_not_followed: the first of them
+  std::string recording{};           ///< which has that signal
+  /// Of a usable fit: the parameters that are neither determined nor at a bound.
+  std::vector<std::string> undetermined{};
+
+  bool operator==(const FitVerdict&) const = default;
+};
+
 struct FitResult {
   Status status = Status::failed;
   bool usable = false;  ///< may be relied on for what it says: converged, and better than nothing
-  std::string verdict;  ///< one sentence for the user
-  std::string message;  ///< the solver's reason to stop
+  FitVerdict verdict;
+  std::string message;       ///< the solver's reason to stop
   bool interrupted = false;  ///< not all starts were finished
   std::vector<ParameterResult> parameters;
   std::vector<RecordingResult> recordings;

@@ -9,6 +9,13 @@
 
 namespace axisfit {
 
+enum class ParameterVerdict {
+  determined,
+  weakly_determined,  ///< to no more than its order of magnitude
+  not_determined,     ///< the data leave it open, alone or together with others
+  at_bound,           ///< held by a bound; it has no standard error
+};
+
 /// What the data say of the i-th parameter beyond its value.
 struct ParameterUncertainty {
   bool at_bound = false;        ///< held by a bound; it has no standard error
@@ -23,6 +30,12 @@ struct ParameterUncertainty {
   double lower = 0.0, upper = 0.0;
 
   bool has_interval() const { return lower != 0.0 || upper != 0.0; }
+
+  ParameterVerdict verdict() const {
+    if (at_bound) return ParameterVerdict::at_bound;
+    if (!determined) return ParameterVerdict::not_determined;
+    return weak ? ParameterVerdict::weakly_determined : ParameterVerdict::determined;
+  }
 };
 
 struct Uncertainty {

@@ -1,7 +1,5 @@
 #include "fit/selection/acceptance.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -122,32 +120,32 @@ Determination determination(const Job& job, const FitResult& result, const Candi
   return d;
 }
 
-std::string rejection_reason(const Candidate& candidate, const Improvement& gain,
-                             const Determination& determined, std::size_t tried, double chance) {
-  if (!gain.comparable) return "with it the simulation does not finish for all recordings";
+std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvement& gain,
+                                      const Determination& determined, std::size_t tried,
+                                      double chance) {
+  using enum Rejection::Test;
+  if (!gain.comparable) return Rejection{.test = simulation};
   // Schwarz's criterion, with the price of having been chosen among many.
   const double bic_penalty = static_cast<double>(candidate.parameters()) * std::log(gain.samples) +
                              2.0 * std::log(static_cast<double>(std::max<std::size_t>(1, tried)));
   if (gain.fit_gain < bic_penalty)
-    return fmt::format(
-        "no better than chance: the sum of squares falls by {:.3g}, where {} of {} effects needs "
-        "{:.3g}",
-        std::max(0.0, gain.fit_gain), "the best", tried, bic_penalty);
+    return Rejection{.test = significance,
+                     .found = std::max(0.0, gain.fit_gain),
+                     .required = bic_penalty,
+                     .tried = tried};
   constexpr double kMinPercent = 0.5;
-  if (gain.p_value > chance)
-    return fmt::format("does not lower the validation error (p = {:.2g})", gain.p_value);
+  if (gain.p_value > chance) return Rejection{.test = validation, .found = gain.p_value};
   if (gain.validate_percent < kMinPercent)
-    return fmt::format("hardly lowers the validation error, by {:.2g} %", gain.validate_percent);
-  if (!determined.at_bound.empty()) return determined.at_bound + " is at its bound";
+    return Rejection{.test = validation_size, .found = gain.validate_percent};
+  if (!determined.at_bound.empty())
+    return Rejection{.test = bound, .parameter = determined.at_bound};
   if (!determined.undetermined.empty())
-    return "the recordings do not determine " + determined.undetermined;
+    return Rejection{.test = shape, .parameter = determined.undetermined};
   constexpr double kAlias = 1e-10;  // below is rounding
-  if (determined.distinct < kAlias)
-    return "it cannot be distinguished from a change of the other parameters";
+  if (determined.distinct < kAlias) return Rejection{.test = distinct};
   if (determined.wald < determined.required)
-    return fmt::format("its strength is not determined: {:.2g} standard errors from zero",
-                       std::sqrt(determined.wald));
-  return {};
+    return Rejection{.test = strength, .found = std::sqrt(determined.wald)};
+  return std::nullopt;
 }
 
 }  // namespace axisfit

@@ -1,6 +1,7 @@
 // Whether an effect that was added to a model may stay.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,10 +50,35 @@ Determination determination(const Job& job, const FitResult& result, const Candi
 /// How probable it may be that an effect helps by chance on what was not fitted.
 constexpr double kChance = 1e-3;
 
-/// Why the candidate must be refused; empty when it may stay.
+/// A test that a candidate failed.
+struct Rejection {
+  enum class Test {
+    fit,              ///< there is no usable fit with it
+    simulation,       ///< with it the simulation does not finish for all recordings
+    significance,     ///< the best of many by chance lowers the sum of squares as much
+    validation,       ///< it does not lower the validation error
+    validation_size,  ///< it hardly does
+    bound,            ///< a parameter of it is held by a bound
+    shape,            ///< the data leave a shape of it open
+    distinct,         ///< other parameters can imitate it
+    strength,         ///< the data leave its strength open
+  };
+  Test test = Test::fit;
+  /// Of significance, the fall of the sum of squares; of validation, the p-value; of
+  /// validation_size, the fall of the validation error, %; of strength, the standard errors from
+  /// zero.
+  double found = 0.0;
+  double required = 0.0;    ///< of significance: the least fall of the sum of squares
+  std::size_t tried = 0;    ///< of significance: candidates and settings among which it was chosen
+  std::string parameter{};  ///< of bound and shape
+
+  bool operator==(const Rejection&) const = default;
+};
+
+/// The first test that the candidate fails; none when it may stay.
 /// `tried` is the number of candidates and settings among which it was chosen.
-std::string rejection_reason(const Candidate& candidate, const Improvement& gain,
-                             const Determination& determined, std::size_t tried,
-                             double chance = kChance);
+std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvement& gain,
+                                      const Determination& determined, std::size_t tried,
+                                      double chance = kChance);
 
 }  // namespace axisfit

@@ -1,7 +1,7 @@
 // A model with one effect more, refitted.
 #pragma once
 
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "fit/selection/acceptance.h"
@@ -13,9 +13,9 @@ struct ExtendedModel {
   Job job;  ///< the candidate's parameters are its last
   FitResult fit;
   std::vector<ResidualSeries> residuals;
-  double score = 0.0;            ///< gain that the score test promised
-  Improvement gain;              ///< against the model before
-  std::string rejection_reason;  ///< by the gate; empty: it may stay
+  double score = 0.0;                  ///< gain that the score test promised
+  Improvement gain;                    ///< against the model before
+  std::optional<Rejection> rejection;  ///< by the gate; none: it may stay
 };
 
 /// Fits from close by, content with less than a final fit: one start, one continuation.

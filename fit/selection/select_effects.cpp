@@ -1,8 +1,5 @@
 #include "fit/selection/select_effects.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -186,11 +183,10 @@ class EffectSelector {
   void judge(ExtendedModel& e, const std::vector<ResidualSeries>& before,
              double chance = kChance) const {
     e.gain = improvement(before, e.residuals);
-    e.rejection_reason =
-        !e.fit.usable ? "there is no usable fit with it"
-                      : rejection_reason(e.candidate, e.gain,
-                                         determination(e.job, e.fit, e.candidate, e.residuals),
-                                         tried_, chance);
+    e.rejection = e.fit.usable ? rejection_of(e.candidate, e.gain,
+                                              determination(e.job, e.fit, e.candidate, e.residuals),
+                                              tried_, chance)
+                               : Rejection{.test = Rejection::Test::fit};
   }
 
   /// Refits a shortlist and takes the best that passes the gate. Returns whether one did.
@@ -238,11 +234,10 @@ class EffectSelector {
     }
     ExtendedModel* best = nullptr;
     for (ExtendedModel* e : contenders)
-      if (e->rejection_reason.empty() && (best == nullptr || bic_advantage(*e, *best) > 0.0))
-        best = e;
+      if (!e->rejection && (best == nullptr || bic_advantage(*e, *best) > 0.0)) best = e;
     // No simpler effect does as well.
     for (ExtendedModel* e : contenders)
-      if (best != nullptr && e->rejection_reason.empty() &&
+      if (best != nullptr && !e->rejection &&
           e->candidate.parameters() < best->candidate.parameters() &&
           bic_advantage(*best, *e) < kIndistinguishable)
         best = e;
@@ -263,7 +258,7 @@ class EffectSelector {
   }
 
   static bool is_preferred(const ExtendedModel& a, const ExtendedModel& b) {
-    if (a.rejection_reason.empty() != b.rejection_reason.empty()) return a.rejection_reason.empty();
+    if (a.rejection.has_value() != b.rejection.has_value()) return !a.rejection;
     return bic_advantage(a, b) > 0.0;
   }
 
@@ -278,14 +273,12 @@ class EffectSelector {
                             e.fit.parameters.end());
     if (&e == best) {
       trial.decision = Decision::accepted;
-      trial.reason = fmt::format(
-          "explains the residual best: {:.3g} % lower validation error ({:.3g} standard deviations "
-          "above chance)",
-          e.gain.validate_percent, e.gain.z);
+      trial.reason = Reason::explains_best;
+    } else if (e.rejection) {
+      trial.rejection = e.rejection;
     } else {
-      trial.reason = !e.rejection_reason.empty()
-                         ? e.rejection_reason
-                         : fmt::format("explains less than {}", best->candidate.name);
+      trial.reason = Reason::explains_less;
+      trial.other = best->candidate.name;
     }
     const auto known = std::ranges::find_if(result_.effects, [&](const EffectTrial& t) {
       return same_effect(t.candidate, e.candidate);
@@ -347,7 +340,7 @@ class EffectSelector {
       }
       if (EffectTrial* trial = trial_of(with.candidate)) {
         trial->decision = Decision::rejected;
-        trial->reason = "no longer needed with the effects accepted after it";
+        trial->reason = Reason::not_needed;
       }
       accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(a));
       rebuild(std::move(reduced));
@@ -392,7 +385,9 @@ class EffectSelector {
       const auto undecide = [&](const Candidate& candidate, const Candidate& other) {
         if (EffectTrial* trial = trial_of(candidate)) {
           trial->decision = Decision::undecided;
-          trial->reason = "explains these recordings as well as " + other.name;
+          trial->reason = Reason::explains_equally;
+          trial->rejection.reset();
+          trial->other = other.name;
         }
       };
       undecide(chosen, r.rival);
@@ -439,10 +434,11 @@ class EffectSelector {
         if (loss > -kIndistinguishable) continue;
         const auto before = residual_series(reduced.job, reduced.fit);
         judge(e, before);
-        if (!e.rejection_reason.empty()) continue;
+        if (e.rejection) continue;
         if (EffectTrial* old = trial_of(accepted.candidate)) {
           old->decision = Decision::rejected;
-          old->reason = "explains less than " + e.candidate.name + ", which replaced it";
+          old->reason = Reason::replaced;
+          old->other = e.candidate.name;
         }
         record_trial(e, &e);
         accepted.candidate = e.candidate;
@@ -458,7 +454,7 @@ class EffectSelector {
   }
 
   void finish();
-  std::string verdict() const;
+  SelectionVerdict verdict() const;
 
   const SelectionOptions options_;
   const FitResult& first_;
@@ -500,35 +496,27 @@ void EffectSelector::finish() {
   result_.verdict = verdict();
 }
 
-std::string EffectSelector::verdict() const {
-  if (!result_.models.front().fit.usable)
-    return "No effect selection: without a usable fit the residual says nothing about effects.";
-  std::vector<std::string> accepted, undecided;
-  for (const EffectTrial& t : result_.effects) {
-    if (t.decision == Decision::undecided) undecided.push_back(t.candidate.name);
-  }
-  for (const Accepted& a : accepted_) accepted.push_back(a.candidate.name);
-  std::string text;
-  if (accepted.empty() && undecided.empty() && result_.explained)
-    return "Nothing is missing: the baseline model explains every signal down to its noise.";
-  if (!accepted.empty()) {
-    const Improvement total =
+SelectionVerdict EffectSelector::verdict() const {
+  using enum SelectionVerdict::Kind;
+  SelectionVerdict verdict;
+  if (!result_.models.front().fit.usable) return verdict;
+  for (const EffectTrial& t : result_.effects)
+    if (t.decision == Decision::undecided) verdict.undecided.push_back(t.candidate.name);
+  for (const Accepted& a : accepted_) verdict.accepted.push_back(a.candidate.name);
+  if (!verdict.accepted.empty()) {
+    verdict.kind = effects_accepted;
+    verdict.validate_percent =
         improvement(residual_series(declared_job(), result_.models.front().fit),
-                    residual_series(result_.models.back().job, result_.models.back().fit));
-    text = fmt::format("The model lacked {}. With {}, the validation error falls by {:.3g} %",
-                       fmt::join(accepted, ", "), accepted.size() > 1 ? "them" : "it",
-                       total.validate_percent);
-    text += result_.explained ? ", and every signal is explained down to its noise."
-                              : ", but not down to the noise.";
+                    residual_series(result_.models.back().job, result_.models.back().fit))
+            .validate_percent;
+  } else if (result_.explained && verdict.undecided.empty()) {
+    verdict.kind = nothing_missing;
   } else if (result_.interrupted) {
-    return "The search for missing effects was stopped: no effect has been accepted so far.";
-  } else if (undecided.empty()) {
-    text = "Something is missing, but no effect passes the tests: see the reasons.";
+    verdict.kind = stopped;
+  } else {
+    verdict.kind = verdict.undecided.empty() ? none_passes : undecided;
   }
-  if (!undecided.empty())
-    text += fmt::format("{}Undecided: {}; none of them was added.", text.empty() ? "" : " ",
-                        fmt::join(undecided, ", "));
-  return text;
+  return verdict;
 }
 
 }  // namespace

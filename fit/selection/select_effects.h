@@ -6,6 +6,7 @@
 // catalogue explains is drawn as a curve without a name.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,12 +27,24 @@ enum class Decision {
   rejected,
 };
 
+/// What a decision on an effect rests on.
+enum class Reason {
+  failed_test,       ///< EffectTrial::rejection
+  explains_best,     ///< of all that were tried in its round
+  explains_less,     ///< than the other
+  replaced,          ///< by the other, which explains more
+  explains_equally,  ///< as well as the other
+  not_needed,        ///< any longer, with the effects that were accepted after it
+};
+
 /// One effect that was refitted, and what became of it.
 struct EffectTrial {
   Candidate candidate;
   int round = 0;
   Decision decision = Decision::rejected;
-  std::string reason;
+  Reason reason = Reason::failed_test;
+  std::optional<Rejection> rejection;       ///< of failed_test
+  std::string other;                        ///< effect that it was compared with, see reason
   double score = 0.0;                       ///< gain that the score test promised
   std::vector<ParameterResult> parameters;  ///< its own
   Improvement improvement;                  ///< against the model before it
@@ -50,6 +63,24 @@ struct UndecidedPair {
   Model<double> with_chosen, with_rival;  ///< fitted
 };
 
+/// What a search comes to.
+struct SelectionVerdict {
+  enum class Kind {
+    no_usable_fit,     ///< of the baseline model: its residual says nothing about effects
+    nothing_missing,   ///< the baseline model explains every signal
+    effects_accepted,  ///< one or more
+    stopped,           ///< before an effect was accepted
+    undecided,         ///< no effect was accepted, some explain the recordings equally well
+    none_passes,       ///< something is missing, but every effect was rejected
+  };
+  Kind kind = Kind::no_usable_fit;
+  std::vector<std::string> accepted{}, undecided{};  ///< effects
+  /// Fall of the root mean square of what was not fitted, by the accepted effects together.
+  double validate_percent = 0.0;
+
+  bool operator==(const SelectionVerdict&) const = default;
+};
+
 struct EffectSelection {
   std::vector<SelectionStep> models;  ///< the declared one first, then one for each accepted effect
   SelectionStep result;               ///< the last of them, fitted to all samples
@@ -57,7 +88,7 @@ struct EffectSelection {
   bool held_out_blocks = false;       ///< no recording to validate: blocks of the fitted were kept
   bool explained = false;             ///< nothing but noise is left
   bool interrupted = false;           ///< the search was not finished
-  std::string verdict;                ///< a few sentences for the user
+  SelectionVerdict verdict;
   std::vector<UndecidedPair> rivals;  ///< the effects that stay undecided
 };
 

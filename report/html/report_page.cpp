@@ -11,6 +11,7 @@
 #include "report/html/assets/assets.h"
 #include "report/html/report_charts.h"
 #include "report/text/report_text.h"
+#include "report/text/words.h"
 
 namespace axisfit {
 namespace {
@@ -233,11 +234,21 @@ class Page {
   }
 
   static Html badge(const ParameterUncertainty& u) {
-    const char* kind = u.at_bound      ? "bound"
-                       : !u.determined ? "open"
-                       : u.weak        ? "weak"
-                                       : "determined";
-    return html(R"(<span class="badge {}">{}</span>)", kind, std::string(verdict_name(u)));
+    const auto kind = [&] {
+      switch (u.verdict()) {
+        case ParameterVerdict::at_bound:
+          return "bound";
+        case ParameterVerdict::not_determined:
+          return "open";
+        case ParameterVerdict::weakly_determined:
+          return "weak";
+        case ParameterVerdict::determined:
+          break;
+      }
+      return "determined";
+    };
+    return html(R"(<span class="badge {}">{}</span>)", kind(),
+                std::string(verdict_name(u.verdict())));
   }
 
   Html parameters() {
@@ -360,7 +371,7 @@ class Page {
                      each(trials, [&](const EffectTrial* t) { return trial(*t); })),
                after_round(trials));
     }
-    Html all = paragraph_of(selection.verdict);
+    Html all = paragraph_of(verdict_text(selection));
     if (selection.held_out_blocks)
       all += paragraph_of(
           "No recording has the role validate: every second tenth of each recording was held out "
@@ -375,7 +386,7 @@ class Page {
         html(R"(<th scope="row">{} <small>{}</small></th>)", t.candidate.name,
              t.candidate.meaning) +
         number_cell(number(t.score)) +
-        cell(html(R"(<span class="badge {0}">{0}</span>)", decision)) + cell(t.reason) +
+        cell(html(R"(<span class="badge {0}">{0}</span>)", decision)) + cell(reason_text(t)) +
         number_cell(judged ? fmt::format("{:+.3g} %", -t.improvement.validate_percent) : "-") +
         number_cell(judged ? fmt::format("{:.1g}", t.improvement.p_value) : "-"));
   }

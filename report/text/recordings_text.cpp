@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "init/column_guess.h"
 #include "report/text/report_text.h"
+#include "report/text/words.h"
 
 namespace axisfit {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "base/text_table.h"
 #include "io/recording/csv.h"
+#include "report/text/words.h"
 
 namespace axisfit {
 namespace {

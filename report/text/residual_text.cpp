@@ -8,6 +8,7 @@
 #include "base/text_table.h"
 #include "base/units.h"
 #include "report/text/report_text.h"
+#include "report/text/words.h"
 
 namespace axisfit {
 namespace {

@@ -6,6 +6,7 @@
 #include "base/text_table.h"
 #include "base/units.h"
 #include "report/text/report_text.h"
+#include "report/text/words.h"
 
 namespace axisfit {
 namespace {
@@ -42,7 +43,7 @@ std::string effects_text(const EffectSelection& selection) {
       if (t.decision != decision) continue;
       const std::string estimate = estimate_of(t);
       rows.push_back({decision_name(decision), t.candidate.name,
-                      estimate + (estimate.empty() ? "" : ": ") + t.reason});
+                      estimate + (estimate.empty() ? "" : ": ") + reason_text(t)});
     }
   return "Effects tried\n" +
          format_table(rows, {Alignment::left, Alignment::left, Alignment::wrapped}) + "\n";

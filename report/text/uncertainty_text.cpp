@@ -8,6 +8,7 @@
 #include "base/text_table.h"
 #include "base/units.h"
 #include "report/text/report_text.h"
+#include "report/text/words.h"
 
 namespace axisfit {
 namespace {
@@ -52,8 +53,9 @@ std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty
   std::vector<std::vector<std::string>> rows;
   for (std::size_t i = 0; i < space.size(); ++i) {
     std::string description(quantity_list()[space[i].quantity].quantity.meaning);
-    if (const std::string_view verdict = verdict_name(known[i]); verdict != "determined")
-      description += fmt::format(": {}", verdict);
+    if (const ParameterVerdict verdict = known[i].verdict();
+        verdict != ParameterVerdict::determined)
+      description += fmt::format(": {}", verdict_name(verdict));
     rows.push_back({space.name(i), description});
   }
   return format_table(rows, {Alignment::left, Alignment::wrapped});

@@ -36,7 +36,7 @@ class InitJobTest : public ::testing::Test {
 
   std::map<std::string, double> fitted(const JobFile& file) {
     const FitResult result = estimate(file.job);
-    EXPECT_TRUE(result.usable) << result.verdict;
+    EXPECT_TRUE(result.usable) << result.message;
     std::map<std::string, double> values;
     for (const ParameterResult& p : result.parameters) {
       EXPECT_TRUE(p.uncertainty.determined) << p.name;
@@ -149,7 +149,7 @@ TEST_F(InitJobTest, TheUsersGainIsAllThatABentScrewNeeds) {
   axis.replace(axis.find(guessed), guessed.size(), "K_f: 113.0973 N/V");
   folder_.write("axis.yaml", axis);
   const FitResult result = estimate(read().job);
-  ASSERT_TRUE(result.usable) << result.verdict;
+  ASSERT_TRUE(result.usable) << result.message;
   EXPECT_NEAR(result.parameters[0].value, 85.687, 0.01 * 85.687);  // bent by what is missing
   EXPECT_NEAR(result.parameters[1].value, 258.96, 0.05 * 258.96);
   // Held as firmly as the samples allow, the simulation follows 6 N that the model lacks.

@@ -20,6 +20,7 @@
 #include "io/config/axis_file.h"
 #include "io/config/job_file.h"
 #include "report/text/report_text.h"
+#include "report/text/words.h"
 #include "tests/apps/files.h"
 #include "tests/apps/fit_job.h"
 
@@ -139,7 +140,7 @@ TEST(ResultTest, JsonSaysWhatTheFitFound) {
   const Json& json = fit.json;
   EXPECT_EQ(json.at("status"), "converged");
   EXPECT_EQ(json.at("usable"), true);
-  EXPECT_EQ(json.at("verdict"), fit.run_result.first.verdict);
+  EXPECT_EQ(json.at("verdict"), verdict_text(fit.run_result.first));
   EXPECT_EQ(json.at("axis"), "x axis of the Automatix AID 600");
   EXPECT_EQ(json.at("version"), version());
   EXPECT_EQ(json.at("seed"), 5);
@@ -225,7 +226,7 @@ TEST(ResultTest, ReportHasEveryFreeParameterAndTheVerdict) {
                            "judge", "validate", "compare", "motor_current", "151 samples",
                            "* estimated from differences of the samples"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
-  EXPECT_NE(text.find("\n" + fit.run_result.first.verdict + "\n"), std::string::npos);
+  EXPECT_NE(text.find("\n" + verdict_text(fit.run_result.first) + "\n"), std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -314,7 +315,7 @@ TEST(ResultTest, ARecordingThatCannotBeSimulatedHasNoErrors) {
   const std::string text = report_text(run_result);
   EXPECT_NE(text.find(" - "), std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
-  EXPECT_TRUE(text.ends_with(std::string("\n").append(paragraph(run_result.first.verdict))));
+  EXPECT_TRUE(text.ends_with(std::string("\n").append(paragraph(verdict_text(run_result.first)))));
 }
 
 TEST(ResultTest, LongNamesAndNumbersFitInTheWidth) {

@@ -47,7 +47,7 @@ double sum_of_squares(const Job& job, const FitResult& result, std::size_t recor
 
 TEST(Estimate, FindsTheTruthFromAPoorStart) {
   const FitResult result = estimate(example_job());
-  ASSERT_TRUE(result.usable) << result.verdict;
+  ASSERT_TRUE(result.usable) << result.message;
   EXPECT_EQ(result.status, Status::converged);
   EXPECT_LT(result.reduced_chi_square, 1.1);
   EXPECT_EQ(result.observer_gain, 0.0);
@@ -123,7 +123,7 @@ TEST(Estimate, SharesParametersAndKeepsOthersPerRecording) {
   job.free.push_back(job.free[1]);
   job.free[2].recording = 1;
   const FitResult result = estimate(job);
-  ASSERT_TRUE(result.usable) << result.verdict;
+  ASSERT_TRUE(result.usable) << result.message;
   EXPECT_EQ(result.parameters[1].name, "M@step");
   EXPECT_EQ(result.parameters[2].name, "M@loaded");
   EXPECT_NEAR(result.parameters[1].value, 146.0,
@@ -153,13 +153,17 @@ TEST(Estimate, RefusesAModelThatCannotBeSimulated) {
   const FitResult result = estimate(job);
   EXPECT_FALSE(result.usable);
   EXPECT_EQ(result.status, Status::failed);
+  EXPECT_EQ(result.verdict.kind, FitVerdict::Kind::not_simulated);
 }
 
 TEST(Estimate, RefusesAFitThatIsNoBetterThanAConstant) {
   Job job = example_job();
   for (double& v : job.recordings[0].measurements[0].values) v = -v;  // a wrong sign
   const FitResult result = estimate(job);
-  EXPECT_FALSE(result.usable) << result.verdict;
+  EXPECT_FALSE(result.usable) << result.message;
+  EXPECT_EQ(result.verdict, (FitVerdict{.kind = FitVerdict::Kind::signal_not_followed,
+                                        .signal = job.recordings[0].measurements[0].signal,
+                                        .recording = job.recordings[0].name}));
 }
 
 // A residual that is small beside the noise says nothing where the noise is taken from it.
@@ -255,7 +259,7 @@ TEST(EstimateWithNoise, FindsTheNoiseOfEverySignal) {
   Job job = job_of_unknown_noise();
   const std::vector<FreeParameter> declared = job.free;
   const FitResult result = estimate_with_noise(job);
-  ASSERT_TRUE(result.usable) << result.verdict;
+  ASSERT_TRUE(result.usable) << result.message;
   EXPECT_NEAR(result.reduced_chi_square, 1.0, 1e-3);
   for (const Recording& r : job.recordings)
     for (const Measurement& m : r.measurements)

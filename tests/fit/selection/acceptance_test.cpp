@@ -154,8 +154,8 @@ TEST(DisadvantageTest, CorrelatedResidualsCountLess) {
 TEST(RefusalTest, OfAnImprovementThatIsRealIsNone) {
   const Improvement gain = improvement(pair(with_wave(noise(1), 1.0), with_wave(noise(2), 1.0)),
                                        pair(noise(1), noise(2)));
-  EXPECT_EQ(rejection_reason(candidate(), gain, determined(), 100), "");
-  EXPECT_EQ(rejection_reason(candidate(2, 1), gain, determined(), 100), "");
+  EXPECT_FALSE(rejection_of(candidate(), gain, determined(), 100));
+  EXPECT_FALSE(rejection_of(candidate(2, 1), gain, determined(), 100));
 }
 
 // A parameter that was fitted to the noise gains about one of the sum of squares, and the best of a
@@ -185,7 +185,7 @@ TEST(RefusalTest, OfChance) {
       }
     }
     const Improvement gain = improvement(pair(fitted, judged), pair(after_fitted, after_judged));
-    refused += rejection_reason(candidate(), gain, determined(), 100).empty() ? 0 : 1;
+    refused += rejection_of(candidate(), gain, determined(), 100) ? 1 : 0;
   }
   EXPECT_EQ(refused, kTrials);
 }
@@ -196,8 +196,8 @@ TEST(RefusalTest, OfWhatOnlyFits) {
   EXPECT_GT(gain.fit_gain, 500.0);
   EXPECT_LT(gain.validate_percent, 0.0);
   EXPECT_GT(gain.p_value, 0.9);
-  EXPECT_NE(rejection_reason(candidate(), gain, determined(), 100).find("not fitted"),
-            std::string::npos);
+  const auto rejection = rejection_of(candidate(), gain, determined(), 100);
+  EXPECT_EQ(rejection, (Rejection{.test = Rejection::Test::validation, .found = gain.p_value}));
 }
 
 TEST(RefusalTest, OfWhatHardlyHelps) {
@@ -208,10 +208,10 @@ TEST(RefusalTest, OfWhatHardlyHelps) {
   gain.z = 6.0;
   gain.p_value = 1e-9;
   gain.validate_percent = 0.3;
-  EXPECT_NE(rejection_reason(candidate(), gain, determined(), 100).find("hardly"),
-            std::string::npos);
+  EXPECT_EQ(rejection_of(candidate(), gain, determined(), 100),
+            (Rejection{.test = Rejection::Test::validation_size, .found = 0.3}));
   gain.validate_percent = 0.6;
-  EXPECT_EQ(rejection_reason(candidate(), gain, determined(), 100), "");
+  EXPECT_FALSE(rejection_of(candidate(), gain, determined(), 100));
 }
 
 TEST(RefusalTest, OfWhatHelpsByChanceMoreOftenThanOnceInAThousand) {
@@ -233,35 +233,41 @@ TEST(RefusalTest, PricesParametersAndTheChoice) {
                                  pair(noise(1), noise(2)));
   gain.samples = 2000.0;  // log 7.6
   gain.fit_gain = 8.0;
-  EXPECT_EQ(rejection_reason(candidate(), gain, determined(), 1), "");
-  EXPECT_NE(rejection_reason(candidate(), gain, determined(), 100), "");
-  EXPECT_NE(rejection_reason(candidate(1, 1), gain, determined(), 1), "");
+  EXPECT_FALSE(rejection_of(candidate(), gain, determined(), 1));
+  const double log_n = std::log(2000.0);
+  const auto chosen = [](double required, std::size_t tried) {
+    return Rejection{Rejection::Test::significance, 8.0, required, tried};
+  };
+  EXPECT_EQ(rejection_of(candidate(), gain, determined(), 100),
+            chosen(log_n + 2.0 * std::log(100.0), 100));
+  EXPECT_EQ(rejection_of(candidate(1, 1), gain, determined(), 1), chosen(2.0 * log_n, 1));
   gain.fit_gain = 17.0;
-  EXPECT_EQ(rejection_reason(candidate(), gain, determined(), 100), "");
+  EXPECT_FALSE(rejection_of(candidate(), gain, determined(), 100));
 }
 
 TEST(RefusalTest, OfWhatIsNotDetermined) {
   const Improvement gain = improvement(pair(with_wave(noise(1), 1.0), with_wave(noise(2), 1.0)),
                                        pair(noise(1), noise(2)));
-  const auto reason = [&](const Determination& d) {
-    return rejection_reason(candidate(), gain, d, 100);
+  const auto rejection = [&](const Determination& d) {
+    return rejection_of(candidate(), gain, d, 100);
   };
+  using enum Rejection::Test;
   Determination d = determined();
   d.wald = 9.0;
-  EXPECT_NE(reason(d).find("3 standard errors"), std::string::npos) << reason(d);
+  EXPECT_EQ(rejection(d), (Rejection{.test = strength, .found = 3.0}));
   d = determined();
   d.distinct = 1e-12;
-  EXPECT_NE(reason(d).find("imitate"), std::string::npos);
+  EXPECT_EQ(rejection(d), Rejection{.test = distinct});
   d = determined();
   d.at_bound = "F_c";
-  EXPECT_NE(reason(d).find("F_c is at its bound"), std::string::npos);
+  EXPECT_EQ(rejection(d), (Rejection{.test = bound, .parameter = "F_c"}));
   d = determined();
   d.undetermined = "v_st";
-  EXPECT_NE(reason(d).find("do not determine v_st"), std::string::npos);
+  EXPECT_EQ(rejection(d), (Rejection{.test = shape, .parameter = "v_st"}));
 }
 
 TEST(RefusalTest, OfWhatCannotBeSimulated) {
-  EXPECT_NE(rejection_reason(candidate(), {}, {}, 1), "");
+  EXPECT_EQ(rejection_of(candidate(), {}, {}, 1), Rejection{.test = Rejection::Test::simulation});
 }
 
 /// The slide with dry friction, fitted with it.

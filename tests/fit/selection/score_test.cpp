@@ -24,7 +24,7 @@ std::vector<Score> best_settings(const ScoreTest& test) {
 
 ScoreTest score(const Job& job) {
   const FitResult fit = estimate(job);
-  EXPECT_TRUE(fit.usable) << fit.verdict;
+  EXPECT_TRUE(fit.usable) << fit.message;
   return score_test(job, values_of(fit), score_gains(job).front());
 }
 

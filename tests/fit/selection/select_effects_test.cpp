@@ -14,7 +14,11 @@ class OneUndeclaredEffect : public testing::TestWithParam<HiddenEffect> {};
 TEST_P(OneUndeclaredEffect, IsAcceptedAlone) {
   const HiddenEffect& secret = GetParam();
   const EffectSelection selection = close(secret.job());
-  EXPECT_EQ(accepted(selection), Names{secret.name}) << selection.verdict;
+  EXPECT_EQ(accepted(selection), Names{secret.name});
+  EXPECT_EQ(selection.verdict.kind, SelectionVerdict::Kind::effects_accepted);
+  EXPECT_EQ(selection.verdict.accepted, std::vector<std::string>{secret.name});
+  EXPECT_TRUE(selection.verdict.undecided.empty());
+  EXPECT_GT(selection.verdict.validate_percent, 0.0);
   EXPECT_EQ(undecided(selection), Names{});
   EXPECT_TRUE(selection.explained);
   EXPECT_FALSE(selection.held_out_blocks);
@@ -40,7 +44,13 @@ TEST_P(AnEffectWithATwin, IsLeftUndecided) {
   Job job = secret.job();
   job.limits = {-0.5, 0.5, 1.0, 10.0};
   const EffectSelection selection = close(job);
-  EXPECT_EQ(undecided(selection), (Names{secret.name, secret.twin})) << selection.verdict;
+  EXPECT_EQ(undecided(selection), (Names{secret.name, secret.twin}));
+  EXPECT_EQ(selection.verdict.kind, SelectionVerdict::Kind::undecided);
+  for (const EffectTrial& trial : selection.effects)
+    if (trial.decision == Decision::undecided) {
+      EXPECT_EQ(trial.reason, Reason::explains_equally);
+      EXPECT_EQ(trial.other, trial.candidate.name == secret.name ? secret.twin : secret.name);
+    }
   EXPECT_EQ(accepted(selection), Names{});
   EXPECT_FALSE(selection.explained);
   ASSERT_EQ(selection.rivals.size(), 1u);
@@ -66,7 +76,7 @@ TEST(CloseLoop, AddsNothingToAModelThatHasEverything) {
     EXPECT_EQ(undecided(selection), Names{}) << seed;
     EXPECT_TRUE(selection.explained);
     EXPECT_EQ(selection.models.size(), 1u);
-    EXPECT_EQ(selection.verdict.find("Nothing is missing"), 0u) << selection.verdict;
+    EXPECT_EQ(selection.verdict.kind, SelectionVerdict::Kind::nothing_missing);
   }
 }
 
@@ -76,11 +86,15 @@ TEST(CloseLoop, AddsNothingForNoiseThatIsLargerThanStated) {
   for (Recording& r : job.recordings)
     for (Measurement& m : r.measurements) m.sigma *= 0.7;
   const EffectSelection selection = close(job);
-  EXPECT_EQ(accepted(selection), Names{}) << selection.verdict;
+  EXPECT_EQ(accepted(selection), Names{});
+  EXPECT_EQ(selection.verdict.kind, SelectionVerdict::Kind::none_passes);
   EXPECT_EQ(undecided(selection), Names{});
   EXPECT_FALSE(selection.explained);
   EXPECT_FALSE(selection.effects.empty());
-  for (const EffectTrial& trial : selection.effects) EXPECT_FALSE(trial.reason.empty());
+  for (const EffectTrial& trial : selection.effects) {
+    EXPECT_EQ(trial.reason, Reason::failed_test) << trial.candidate.name;
+    EXPECT_TRUE(trial.rejection.has_value()) << trial.candidate.name;
+  }
 }
 
 TEST(CloseLoop, HoldsOutBlocksWhereThereIsNothingToValidate) {
@@ -111,7 +125,7 @@ TEST(CloseLoop, FindsTwoEffects) {
   hidden_effect_named("coulomb_friction").put_into(truth);
   hidden_effect_named("added_mass").put_into(truth);
   const EffectSelection selection = close(two_recordings(truth, slide(), {"B_a"}));
-  EXPECT_EQ(accepted(selection), (Names{"coulomb_friction", "added_mass"})) << selection.verdict;
+  EXPECT_EQ(accepted(selection), (Names{"coulomb_friction", "added_mass"}));
   EXPECT_TRUE(selection.explained);
   ASSERT_EQ(selection.models.size(), 3u);
   EXPECT_LT(selection.models[1].fit.reduced_chi_square, selection.models[0].fit.reduced_chi_square);
@@ -147,8 +161,8 @@ TEST(CloseLoop, KeepsWhatIsAcceptedWhenItIsStopped) {
     EXPECT_EQ(selection.interrupted, stop.load());
     EXPECT_EQ(accepted(selection), late ? Names{"drive_lag"} : Names{});
     EXPECT_TRUE(selection.result.fit.usable);
-    EXPECT_EQ(selection.verdict.find("was stopped") != std::string::npos, !late)
-        << selection.verdict;
+    EXPECT_EQ(selection.verdict.kind,
+              late ? SelectionVerdict::Kind::effects_accepted : SelectionVerdict::Kind::stopped);
   }
 }
 
@@ -167,6 +181,8 @@ TEST(CloseLoop, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(a.candidate.name, b.candidate.name);
     EXPECT_EQ(a.decision, b.decision);
     EXPECT_EQ(a.reason, b.reason);
+    EXPECT_EQ(a.rejection, b.rejection);
+    EXPECT_EQ(a.other, b.other);
     EXPECT_EQ(a.score, b.score);
     EXPECT_EQ(a.improvement.fit_gain, b.improvement.fit_gain);
     EXPECT_EQ(a.improvement.z, b.improvement.z);
@@ -196,7 +212,7 @@ TEST(CloseLoop, NeedsAUsableFit) {
   EXPECT_TRUE(selection.effects.empty());
   EXPECT_FALSE(selection.explained);
   EXPECT_EQ(selection.models.size(), 1u);
-  EXPECT_NE(selection.verdict.find("not closed"), std::string::npos);
+  EXPECT_EQ(selection.verdict.kind, SelectionVerdict::Kind::no_usable_fit);
 }
 
 }  // namespace

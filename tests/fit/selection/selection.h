@@ -30,11 +30,12 @@ inline std::set<std::string> undecided(const EffectSelection& selection) {
 /// Fits, closes the loop, and tells the outcome on the way.
 inline EffectSelection close(const Job& job) {
   const FitResult fit = estimate(job);
-  EXPECT_TRUE(fit.usable) << fit.verdict;
+  EXPECT_TRUE(fit.usable) << fit.message;
   EffectSelection selection = select_effects(job, fit);
-  std::cout << "reduced chi-square " << fit.reduced_chi_square << "; " << selection.verdict << "\n";
+  std::cout << "reduced chi-square " << fit.reduced_chi_square << "\n";
   for (const EffectTrial& t : selection.effects)
-    std::cout << "  " << t.candidate.name << ": " << t.reason << "\n";
+    std::cout << "  " << t.candidate.name << ": decision " << static_cast<int>(t.decision)
+              << ", reason " << static_cast<int>(t.reason) << " " << t.other << "\n";
   return selection;
 }
 

@@ -1,0 +1,38 @@
+// The words for what a run finds: its data and judgements (fit/) as names and sentences.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "fit/run.h"
+
+namespace axisfit {
+
+/// Whether a fit can be used, one sentence or two.
+std::string verdict_text(const FitResult& fit);
+
+/// What a search for effects comes to, a sentence or a few.
+std::string verdict_text(const EffectSelection& selection);
+
+/// Whether the final model can be used, and what a search for effects comes to.
+std::string overall_verdict(const RunResult& run_result);
+
+/// What the decision on an effect rests on; no sentence, to follow its estimate.
+std::string reason_text(const EffectTrial& trial);
+
+/// " by the time limit of 60 s", or nothing: to follow "stopped".
+std::string stop_reason(const RunResult& run_result);
+
+/// "determined", "weakly determined", "not determined", "at bound"
+std::string_view verdict_name(ParameterVerdict verdict);
+
+/// "accepted", "undecided", "rejected"
+const char* decision_name(Decision decision);
+
+/// "fit", "validate" or, where a recording was fitted in part, "held_out".
+const char* role_name(const Recording& recording, bool fitted);
+
+/// Of one signal of a recording: "fit", "validate", or "compare" where it is only compared.
+const char* role_name(const Recording& recording, const SignalError& signal);
+
+}  // namespace axisfit
