@@ -7,6 +7,8 @@
 #include <numbers>
 #include <span>
 
+#include "fit/data/recording_check.h"
+
 namespace axisfit {
 namespace {
 

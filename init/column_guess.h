@@ -57,10 +57,6 @@ const std::vector<StoredUnit>& stored_units(Kind kind);
 /// The one whose text this is; null where there is none.
 const StoredUnit* stored_unit(Kind kind, std::string_view text);
 
-/// Largest logarithm of the ratio of two sizes of one unit: more than noise makes of a measured
-/// one.
-inline constexpr double kSameUnit = 0.14;
-
 /// The one of about this size; null where there is none.
 const StoredUnit* unit_of_size(Kind kind, double size);
 

@@ -37,6 +37,10 @@ struct ValueCheck {
   double clipped_at = 0.0;  ///< that value
 };
 
+/// Largest logarithm of the ratio of two sizes of one unit: more than noise makes of a measured
+/// one.
+inline constexpr double kSameUnit = 0.14;
+
 /// How a recorded rate compares with the rate of change of another signal.
 struct RateRatio {
   double ratio = 0.0;        ///< rate = ratio * d(values)/dt

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/data/recording_check.h"
+#include "fit/data/recording_warnings.h"
 #include "fit/design/forecast.h"
 #include "fit/design/run_time_estimate.h"
 #include "fit/run.h"
@@ -54,7 +54,10 @@ std::string forecast_text(const Job& job, const Forecast& forecast);
 /// What the recordings show by themselves: sampling, ranges, noise, and what looks wrong.
 std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& checks);
 
-/// What looks wrong with a recording, and what to do about it: a sentence or two each.
+/// What looks wrong with a recording, and what to do about it: a sentence or two.
+std::string warning_text(const RecordingWarning& warning);
+
+/// The same of all that looks wrong with a recording.
 std::vector<std::string> warnings_for(const Job& job, const Recording& recording,
                                       const RecordingCheck& check);
 

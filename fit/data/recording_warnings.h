@@ -1,0 +1,100 @@
+// What looks wrong with a recording by itself, and with its units.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "fit/data/recording_check.h"
+
+namespace axisfit {
+
+/// A unit taken for another.
+enum class UnitMistake {
+  milli,             ///< mm for m
+  micro,             ///< um for m
+  minute,            ///< a velocity per minute for one per second
+  milli_per_minute,  ///< mm/min for m/s
+  rpm,               ///< rpm for rad/s
+  degrees,           ///< degrees for radians
+  standard_gravity,  ///< g for m/s^2
+};
+
+namespace warning {
+
+/// Stretches without samples, over which the command is unknown.
+struct Gaps {
+  std::size_t count = 0;
+  double largest = 0.0, at = 0.0;  ///< s, and where that begins
+};
+
+struct UnevenSampling {
+  double jitter = 0.0;  ///< as Sampling::jitter
+};
+
+/// Every rate is wrong by the same factor.
+struct TimeUnit {
+  enum class Stored { milliseconds, seconds, unknown };
+  double ratio = 1.0;               ///< of a recorded rate and the derivative, magnitude
+  Stored stored = Stored::unknown;  ///< the unit that would explain it
+};
+
+/// Intervals that no axis is likely to be sampled at.
+struct UnlikelyInterval {
+  double interval = 0.0;  ///< s
+};
+
+/// A rate that is not the derivative of the other signal, by its size or its sign.
+struct WrongRate {
+  RateCheck rate;
+  bool wrong_size = false;               ///< false: only the sign
+  std::optional<UnitMistake> mistake{};  ///< that would explain the size; none: none of those known
+};
+
+struct NoCommand {};
+
+/// The axis file gives another speed at the largest command than the arm reaches.
+struct UnlikelySpeed {
+  double speed = 0.0;              ///< m/s, of the arm
+  double command = 0.0;            ///< V, magnitude
+  double expected = 0.0;           ///< m/s, at that command
+  Signal from = Signal::velocity;  ///< the signal that gives the speed
+};
+
+struct Constant {
+  Signal signal = Signal::velocity;
+};
+
+/// A sensor that repeats one value while the arm moves.
+struct Stuck {
+  Signal signal = Signal::velocity;
+  std::size_t samples = 0;
+  double at = 0.0;  ///< s, where that begins
+};
+
+/// A sensor at the end of its range.
+struct Clipped {
+  Signal signal = Signal::velocity;
+  std::size_t samples = 0;
+  double value = 0.0;  ///< in the signal's unit
+};
+
+/// The noise that is given is not that of the samples.
+struct UnlikelySigma {
+  Signal signal = Signal::velocity;
+  double scatter = 0.0, sigma = 0.0;  ///< in the signal's unit
+};
+
+}  // namespace warning
+
+using RecordingWarning = std::variant<warning::Gaps, warning::UnevenSampling, warning::TimeUnit,
+                                      warning::UnlikelyInterval, warning::WrongRate,
+                                      warning::NoCommand, warning::UnlikelySpeed, warning::Constant,
+                                      warning::Stuck, warning::Clipped, warning::UnlikelySigma>;
+
+/// In the order of the alternatives, those of a signal after those of the whole recording.
+std::vector<RecordingWarning> warnings_of(const Job& job, const Recording& recording,
+                                          const RecordingCheck& check);
+
+}  // namespace axisfit

@@ -1,0 +1,157 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "report/text/report_text.h"
+
+namespace axisfit {
+namespace {
+
+std::string short_number(double value) { return fmt::format("{:.4g}", value); }
+std::string short_number(double value, Signal signal) {
+  return with_unit(short_number(value), info(signal).unit);
+}
+
+/// Where a rate that is too large or too small usually comes from, in a job that has no such unit.
+struct Advice {
+  Signal rate;
+  UnitMistake mistake;
+  std::string_view too_large, too_small;  ///< sentences
+};
+
+constexpr Advice kAdvice[]{
+    {Signal::velocity, UnitMistake::milli,
+     "Use mm/s instead of m/s if the velocity is stored in mm/s, or m instead of mm for the "
+     "position.",
+     "Use m/s instead of mm/s if the velocity is stored in m/s, or mm instead of m for the "
+     "position."},
+    {Signal::velocity, UnitMistake::micro,
+     "Use um/s instead of m/s if the velocity is stored in um/s, or m instead of um for the "
+     "position.",
+     "Use m/s instead of um/s if the velocity is stored in m/s, or um instead of m for the "
+     "position."},
+    {Signal::velocity, UnitMistake::minute, "The velocity is per minute: use m/min instead of m/s.",
+     "The velocity is per second: use m/s instead of m/min."},
+    {Signal::velocity, UnitMistake::milli_per_minute,
+     "The velocity is per minute: use mm/min instead of m/s.",
+     "The velocity is per second: use m/s instead of mm/min."},
+    {Signal::velocity, UnitMistake::rpm,
+     "This looks like rpm instead of rad/s: multiply the velocity by 0.10472.",
+     "This looks like rad/s instead of rpm: multiply the velocity by 9.5493."},
+    {Signal::velocity, UnitMistake::degrees,
+     "This looks like degrees instead of radians: multiply the velocity by 0.017453.",
+     "This looks like radians instead of degrees: multiply the velocity by 57.296."},
+    {Signal::acceleration, UnitMistake::milli,
+     "Use mm/s^2 instead of m/s^2 if the acceleration is stored in mm/s^2, or m/s instead of mm/s "
+     "for the velocity.",
+     "Use m/s^2 instead of mm/s^2 if the acceleration is stored in m/s^2, or mm/s instead of m/s "
+     "for the velocity."},
+    {Signal::acceleration, UnitMistake::standard_gravity,
+     "It is not in g: remove the factor 9.80665.",
+     "It is in g: use 'unit: m/s^2, factor: 9.80665'."},
+    {Signal::acceleration, UnitMistake::minute,
+     "The velocity is per second: use m/s instead of m/min.",
+     "The velocity is per minute: use m/min instead of m/s."},
+};
+
+std::string_view advice_on(const warning::WrongRate& w) {
+  const auto* advice = std::ranges::find_if(
+      kAdvice, [&](const Advice& a) { return a.rate == w.rate.rate && a.mistake == w.mistake; });
+  if (advice == std::end(kAdvice)) return "No unit explains this: is there a gear between the two?";
+  return std::abs(w.rate.found.ratio) > 1.0 ? advice->too_large : advice->too_small;
+}
+
+std::string text_of(const warning::Gaps& w) {
+  return fmt::format(
+      "{} {} s at {} s. The command is unknown there: trim the recording, or split it in two.",
+      w.count == 1 ? "A gap of" : fmt::format("{} gaps, the largest of", w.count),
+      short_number(w.largest), short_number(w.at));
+}
+
+std::string text_of(const warning::UnevenSampling& w) {
+  return fmt::format(
+      "Sampling is uneven, with a jitter of {:.2g} %. If the clock is even and only the time "
+      "stamps are not, use sample numbers instead; otherwise give every sigma, because its "
+      "estimate needs even sampling.",
+      100.0 * w.jitter);
+}
+
+std::string text_of(const warning::TimeUnit& w) {
+  using enum warning::TimeUnit::Stored;
+  return fmt::format(
+      "velocity and acceleration are both {:.5g} times the derivative: the unit of time is wrong. "
+      "{}",
+      w.ratio,
+      w.stored == milliseconds ? "Use 'unit: ms'."
+      : w.stored == seconds    ? "Use 'unit: s'."
+                               : "Correct it.");
+}
+
+std::string text_of(const warning::UnlikelyInterval& w) {
+  return fmt::format(
+      "Samples are {} s apart. Is the unit of time right? For milliseconds use 'unit: ms', for "
+      "microseconds 'unit: us'.",
+      short_number(w.interval));
+}
+
+std::string text_of(const warning::WrongRate& w) {
+  std::string text = fmt::format("{} is {:.5g} times the derivative of the {}.",
+                                 info(w.rate.rate).name, w.rate.found.ratio, info(w.rate.of).name);
+  if (w.wrong_size) text += fmt::format(" {}", advice_on(w));
+  if (w.rate.found.ratio < 0.0) text += " Their signs differ: use 'sign: -1' for one of them.";
+  return text;
+}
+
+std::string text_of(const warning::NoCommand&) {
+  return "The command is zero throughout: is that the right column?";
+}
+
+std::string text_of(const warning::UnlikelySpeed& w) {
+  return fmt::format(
+      "The arm reaches {} m/s, but at its largest command, {} V, the axis file gives {} m/s. Check "
+      "the units of the command and of the {}, and K_1, K_2, K_t and r_g.",
+      short_number(w.speed), short_number(w.command), short_number(w.expected), info(w.from).name);
+}
+
+std::string text_of(const warning::Constant& w) {
+  return fmt::format("{} is constant: is that the right column?", info(w.signal).name);
+}
+
+std::string text_of(const warning::Stuck& w) {
+  return fmt::format(
+      "{} has the same value in {} samples from {} s on, while the arm moves: the sensor is stuck. "
+      "Trim the recording, or do not fit the signal ('fit: false').",
+      info(w.signal).name, w.samples, short_number(w.at));
+}
+
+std::string text_of(const warning::Clipped& w) {
+  return fmt::format(
+      "{} is exactly {} in {} samples: it is clipped at the end of its range. Record with a wider "
+      "range, or do not fit the signal ('fit: false').",
+      info(w.signal).name, short_number(w.value, w.signal), w.samples);
+}
+
+std::string text_of(const warning::UnlikelySigma& w) {
+  return fmt::format(
+      "{} scatters by {} from sample to sample, but its sigma is {}. Without a sigma the scatter "
+      "is used.",
+      info(w.signal).name, short_number(w.scatter, w.signal), short_number(w.sigma, w.signal));
+}
+
+}  // namespace
+
+std::string warning_text(const RecordingWarning& warning) {
+  return std::visit([](const auto& w) { return text_of(w); }, warning);
+}
+
+std::vector<std::string> warnings_for(const Job& job, const Recording& recording,
+                                      const RecordingCheck& check) {
+  std::vector<std::string> texts;
+  for (const RecordingWarning& warning : warnings_of(job, recording, check))
+    texts.push_back(warning_text(warning));
+  return texts;
+}
+
+}  // namespace axisfit
