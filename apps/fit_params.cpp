@@ -125,8 +125,10 @@ void print(const std::string& text) {
   if (!(std::cout << text).flush()) throw std::runtime_error("cannot write to standard output");
 }
 
-std::string for_stdout(const std::string& report) {
-  return takes_colour(STDOUT_FILENO) ? coloured(report) : report;
+bool in_colour() { return takes_colour(STDOUT_FILENO); }
+
+void print_report(const std::string& report) {
+  print(in_colour() ? with_bold_headings(report) : report);
 }
 
 /// What the recordings show and can tell, before the fit.
@@ -139,8 +141,8 @@ int check(const Arguments& arguments, const Job& job, std::optional<ProgressLine
   if (arguments.json)
     print(check_json(job, recordings, found, run_time).dump(2) + "\n");
   else if (!arguments.quiet)
-    print(for_stdout(recordings_text(job, recordings) + "\n" + forecast_text(job, found) + "\n" +
-                     run_time_text(job, run_time)));
+    print_report(recordings_text(job, recordings) + "\n" + forecast_text(job, found, in_colour()) +
+                 "\n" + run_time_text(job, run_time));
   return kUsable;
 }
 
@@ -204,7 +206,7 @@ Files files_of(const Arguments& arguments, const JobFile& file, const RunResult&
   if (const Experiment* next = next_experiment(run_result)) {
     files.emplace_back(kMotionFile, format_motion_file({next->motion, next->duration},
                                                        fmt::format("Suggested by {}:\n{}.", origin,
-                                                                   next->description)));
+                                                                   motion_text(next->motion))));
   }
   return files;
 }
@@ -314,7 +316,7 @@ int run_command(const Arguments& arguments) {
   if (arguments.json)
     print(json);
   else if (!arguments.quiet)
-    print(for_stdout(report_text(run_result)));
+    print_report(report_text(run_result, in_colour()));
   if (folder) write(arguments, file, run_result, json, *folder);
   if (run_result.interrupted) {
     if (!arguments.quiet) std::cerr << how_to_continue(arguments);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 namespace axisfit {
 
@@ -15,7 +16,13 @@ bool takes_colour(int file);
 /// Columns of the terminal; without one those of COLUMNS, or 80.
 std::size_t terminal_width(int file);
 
-/// A report (report_text.h) for a terminal: headings bold, verdicts green, yellow or red.
-std::string coloured(const std::string& report);
+/// What a coloured word stands for: green, yellow or red.
+enum class Tone { neutral, good, caution, bad };
+
+/// Words in the colour of their tone; without `colour`, as they are.
+std::string toned(std::string_view words, Tone tone, bool colour);
+
+/// A text with its headings bold: lines at the margin, above what is indented.
+std::string with_bold_headings(const std::string& text);
 
 }  // namespace axisfit

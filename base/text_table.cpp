@@ -53,8 +53,15 @@ std::vector<std::size_t> widths_of(const std::vector<std::vector<std::string>>& 
 }  // namespace
 
 std::size_t width_of(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+  constexpr std::string_view kCode = "\033[";
+  std::size_t width = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text.substr(i, kCode.size()) == kCode)
+      i = std::min(text.find('m', i), text.size());
+    else if ((text[i] & 0xC0) != 0x80)
+      ++width;
+  }
+  return width;
 }
 
 std::string format_table(const std::vector<std::vector<std::string>>& rows,

@@ -16,7 +16,7 @@ enum class Alignment {
   wrapped,  ///< left, and broken at blanks where the line would be too long; the last column only
 };
 
-/// Its width in characters, which may have several bytes.
+/// Its width in characters, which may have several bytes; codes that set colour have none.
 std::size_t width_of(std::string_view text);
 
 /// Rows as columns, a line or more for each, all ending with '\n'. Where lines would be too long, a

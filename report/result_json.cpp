@@ -132,7 +132,7 @@ Json identifiability_json(const ParameterSpace& space, const Eigen::MatrixXd& co
                                    parts[name(part.parameter)] = part.change;
                                  return Json{{"singular_value", weak.singular_value},
                                              {"direction", std::move(parts)},
-                                             {"description", weak.description}};
+                                             {"description", weak_direction_text(weak)}};
                                })},
       {"combinations", list(known.combinations, [](const Combination& c) {
          return Json{{"name", c.name}, {"value", c.value}, {"standard_error", c.standard_error}};
@@ -174,7 +174,7 @@ Json suggestion_json(const Suggestion& s, const FitResult& fit) {
                          {"standard_error", optional(u.determined, u.standard_error)},
                          {"confidence_interval", interval_json(u)}});
   }
-  return {{"motion", s.experiment.description},
+  return {{"motion", motion_text(s.experiment.motion)},
           {"duration_s", s.experiment.duration},
           {"parameter", fit.parameters[s.parameter].name},
           {"predicted", std::move(predicted)},
@@ -320,7 +320,7 @@ Json selection_json(const RunResult& run_result) {
                        {"explained", selection.explained},
                        {"held_out_blocks", selection.held_out_blocks},
                        {"hints", list(run_result.discriminations,
-                                      [](const Discrimination& s) { return s.description; })}};
+                                      discrimination_text)}};
   return json;
 }
 

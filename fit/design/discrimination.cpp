@@ -1,7 +1,5 @@
 #include "fit/design/discrimination.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +11,6 @@ namespace axisfit {
 namespace {
 
 struct Trial {
-  std::string motion;  ///< as it follows "during"
   const Recording* recorded = nullptr;
   const Experiment* experiment = nullptr;
   Schedule command;
@@ -59,13 +56,12 @@ Discrimination discriminate(const EffectSelection& selection, const UndecidedPai
     if (has_signal(signal.signal, job.model.structure)) signals.push_back(signal.signal);
 
   std::vector<Trial> trials;
-  for (const Recording& r : job.recordings)
-    trials.push_back({"the motion of " + r.name, &r, nullptr, r.command, r.times});
+  for (const Recording& r : job.recordings) trials.push_back({&r, nullptr, r.command, r.times});
   const std::vector<double> times = next_sampling_times(job);
   const std::vector<Experiment> candidates =
       candidate_motions(job.model.structure, within, times.back());
   for (const Experiment& experiment : candidates)
-    trials.push_back({experiment.description, nullptr, &experiment,
+    trials.push_back({nullptr, &experiment,
                       commands_of(experiment, rivals.with_chosen, job.controller, times), times});
 
   const Crew crew(job.options.threads);
@@ -90,16 +86,15 @@ Discrimination discriminate(const EffectSelection& selection, const UndecidedPai
   });
   const auto best = std::ranges::max_element(found, {}, &Discrimination::size);
   const Trial& trial = trials[static_cast<std::size_t>(best - found.begin())];
-  const std::string equal =
-      fmt::format("{} and {} explain these recordings equally well; ", rivals.chosen, rivals.rival);
   constexpr double kVisible = 0.1;
-  if (!best->signal || best->size < kVisible)
-    return {equal + "no motion tried discriminates between them.", {}, {}, best->size};
-  if (trial.experiment != nullptr) best->experiment = *trial.experiment;
-  best->description =
-      fmt::format("{}they differ most in the {} during {}: by {:.2g} times its noise.", equal,
-                  info(*best->signal).name, trial.motion, best->size);
-  return *best;
+  Discrimination result{.chosen = rivals.chosen, .rival = rivals.rival, .size = best->size};
+  if (!best->signal || best->size < kVisible) return result;
+  result.signal = best->signal;
+  if (trial.experiment != nullptr)
+    result.experiment = *trial.experiment;
+  else
+    result.recording = trial.recorded->name;
+  return result;
 }
 
 }  // namespace axisfit

@@ -7,11 +7,12 @@
 namespace axisfit {
 
 struct Discrimination {
-  std::string description;  ///< one sentence for the user
+  std::string chosen{}, rival{};  ///< the effects
   std::optional<Experiment>
-      experiment;                ///< the motion; none where a known one will do, or none does
-  std::optional<Signal> signal;  ///< in which they differ most
-  double size = 0.0;             ///< rms of that difference, in units of the signal's noise
+      experiment{};                ///< the motion; none where a known one will do, or none does
+  std::string recording{};         ///< the one whose motion will do; empty: none
+  std::optional<Signal> signal{};  ///< in which they differ most; none: no motion discriminates
+  double size = 0.0;               ///< rms of that difference, in units of the signal's noise
 };
 
 /// In which signal and motion two rivals of a loop differ most. Tried are the motions of the job's

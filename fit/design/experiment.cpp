@@ -1,7 +1,5 @@
 #include "fit/design/experiment.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -163,32 +161,19 @@ bool is_within(const MachineLimits& limits, double position, double velocity) {
 std::vector<Experiment> candidate_motions(const Structure& structure, const MachineLimits& limits,
                                           double duration) {
   std::vector<Experiment> candidates;
-  const auto add = [&](const Motion& motion, std::string description) {
-    candidates.push_back({motion, duration, std::move(description)});
-  };
+  const auto add = [&](const Motion& motion) { candidates.push_back({motion, duration}); };
   for (const double share : {1.0, 0.5, 0.2, 0.1, 0.05})
     for (const double sign : {1.0, -1.0}) {
       const double u = sign * share * *limits.voltage;
-      const std::string volts = fmt::format("{:.3g} V", u);
-      add(StepMotion{u, 0.0}, "a step of " + volts);
+      add(StepMotion{u, 0.0});
       for (const double part : {0.25, 0.125, 0.0625}) {
         const double hold = part * duration;
-        add(LevelsMotion{{u, -u, 0.5 * u, -0.5 * u, 0.2 * u, -0.2 * u, 0.0}, hold},
-            fmt::format("levels of {}, -1, 0.5, -0.5, 0.2 and -0.2 times that, then zero, each "
-                        "held for {:.3g} s",
-                        volts, hold));
-        add(LevelsMotion{{u, 0.0, -u, 0.0}, hold},
-            fmt::format("levels of {}, zero, the opposite and zero, each held for {:.3g} s", volts,
-                        hold));
+        add(LevelsMotion{{u, -u, 0.5 * u, -0.5 * u, 0.2 * u, -0.2 * u, 0.0}, hold});
+        add(LevelsMotion{{u, 0.0, -u, 0.0}, hold});
       }
-      for (const double f : {0.5, 1.0, 2.0, 5.0, 10.0, 20.0})
-        add(SineMotion{u, f, f}, fmt::format("a sine of {} and {:g} Hz", volts, f));
-      for (const double f : {5.0, 20.0, 60.0})
-        add(SineMotion{u, 0.5, f}, fmt::format("a chirp of {} from 0.5 to {:g} Hz", volts, f));
-      for (const double bit : {0.01, 0.025, 0.05, 0.1, 0.2})
-        add(PrbsMotion{u, bit, 0.0, 1},
-            fmt::format("a pseudo-random binary sequence of +-{:.3g} V with a bit period of {:g} s",
-                        std::abs(u), bit));
+      for (const double f : {0.5, 1.0, 2.0, 5.0, 10.0, 20.0}) add(SineMotion{u, f, f});
+      for (const double f : {5.0, 20.0, 60.0}) add(SineMotion{u, 0.5, f});
+      for (const double bit : {0.01, 0.025, 0.05, 0.1, 0.2}) add(PrbsMotion{u, bit, 0.0, 1});
     }
   if (!capabilities(structure).is_electric) return candidates;  // no set-velocity input
   for (const double part : {0.9, 0.5, 0.2, -0.9, -0.5, -0.2})
@@ -196,8 +181,7 @@ std::vector<Experiment> candidate_motions(const Structure& structure, const Mach
       const MoveMotion move{part * (*limits.highest - *limits.lowest), share * *limits.speed,
                             4.0 * share * *limits.speed};
       if (move.distance == 0.0 || move.speed == 0.0) continue;
-      add(move, fmt::format("a move of {:.3g} m at {:.3g} m/s and {:.3g} m/s^2", move.distance,
-                            move.speed, move.acceleration));
+      add(move);
     }
   return candidates;
 }

@@ -22,8 +22,7 @@ bool is_within(const MachineLimits& limits, double position, double velocity);
 /// A motion from rest, and for how long.
 struct Experiment {
   Motion motion;
-  double duration = 0.0;      ///< s
-  std::string description{};  ///< "a step of 10 V"
+  double duration = 0.0;  ///< s
 };
 
 /// Steps, levels, sines, chirps, pseudo-random sequences, each at several amplitudes up to the

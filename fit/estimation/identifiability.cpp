@@ -1,7 +1,6 @@
 #include "fit/estimation/identifiability.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -16,14 +15,6 @@ std::string product(const std::string& a, const std::string& b, double exponent)
   if (std::abs(exponent + 1.0) < kWhole) return a + " / " + b;
   if (std::abs(exponent - 1.0) < kWhole) return a + " " + b;
   return fmt::format("{} {}^{:.2g}", a, b, exponent);
-}
-
-std::string change_of(const ParameterSpace& space, const WeakDirection::Part& part) {
-  const double tenth = 0.1 * part.change;
-  if (space[part.parameter].logarithmic)
-    return fmt::format("{} by {:+.2g} %", space.name(part.parameter), 100.0 * std::expm1(tenth));
-  return fmt::format("{} by {:+.2g}", space.name(part.parameter),
-                     tenth * space.slope(part.parameter, 0.0));
 }
 
 }  // namespace
@@ -64,17 +55,16 @@ Identifiability identifiability(const ParameterSpace& space, const Eigen::Vector
             {static_cast<std::size_t>(seen[static_cast<std::size_t>(k)]), v(k, m)});
     std::ranges::sort(weak.parts, std::greater{},
                       [](const WeakDirection::Part& p) { return std::abs(p.change); });
-    // The largest grows.
-    if (weak.parts[0].change < 0.0)
-      for (WeakDirection::Part& p : weak.parts) p.change = -p.change;
-
-    const auto name = [&](std::size_t i) { return space.name(weak.parts[i].parameter); };
-    if (weak.parts.size() == 1) {
-      weak.description = fmt::format("{} hardly affects these recordings.", name(0));
-      continue;
+    const bool shrinks = weak.parts[0].change < 0.0;
+    for (WeakDirection::Part& p : weak.parts) {
+      if (shrinks) p.change = -p.change;  // the largest grows
+      p.name = space.name(p.parameter);
+      p.relative = space[p.parameter].logarithmic;
+      const double tenth = 0.1 * p.change;
+      p.tenth = p.relative ? std::expm1(tenth) : tenth * space.slope(p.parameter, 0.0);
     }
-    const std::size_t a = weak.parts[0].parameter, b = weak.parts[1].parameter;
-    if (weak.parts.size() == 2 && space[a].logarithmic && space[b].logarithmic) {
+    if (weak.parts.size() == 2 && weak.parts[0].relative && weak.parts[1].relative) {
+      const std::size_t a = weak.parts[0].parameter, b = weak.parts[1].parameter;
       const double exponent = -weak.parts[0].change / weak.parts[1].change;
       const auto column = [&](std::size_t parameter) {
         return std::ranges::find(seen, static_cast<Eigen::Index>(parameter)) - seen.begin();
@@ -84,22 +74,16 @@ Identifiability identifiability(const ParameterSpace& space, const Eigen::Vector
       g[column(b)] = exponent;
       const double error = error_without(m, g);
       Combination c;
-      c.name = product(name(0), name(1), exponent);
+      c.name = product(weak.parts[0].name, weak.parts[1].name, exponent);
       c.value =
           std::exp(u[static_cast<Eigen::Index>(a)] + exponent * u[static_cast<Eigen::Index>(b)]);
       c.standard_error = c.value * error;
       // Unless another weak direction hides it, too.
       if (error < 1.0 && std::isfinite(c.value)) {
-        weak.description =
-            fmt::format("{} and {} are determined only as {}.", name(0), name(1), c.name);
+        weak.combination = c.name;
         result.combinations.push_back(std::move(c));
-        continue;
       }
     }
-    std::vector<std::string> changes;
-    for (const WeakDirection::Part& part : weak.parts) changes.push_back(change_of(space, part));
-    weak.description = fmt::format("These can change jointly with hardly any effect: {}.",
-                                   fmt::join(changes, ", "));
   }
   return result;
 }

@@ -16,9 +16,14 @@ struct WeakDirection {
   struct Part {
     std::size_t parameter = 0;
     double change = 0.0;
+    std::string name{};  ///< of the parameter
+    /// Change of the value over a tenth of that length: in the quantity's unit or, of a
+    /// logarithmic parameter, relative to the value.
+    double tenth = 0.0;
+    bool relative = false;
   };
-  std::vector<Part> parts;  ///< largest first
-  std::string description;  ///< a sentence for the user
+  std::vector<Part> parts;    ///< largest first
+  std::string combination{};  ///< that of two parts which is determined; empty: none
 };
 
 /// What is determined of two parameters of which neither is: a b^exponent.

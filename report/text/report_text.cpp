@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "base/terminal.h"
 #include "base/text_table.h"
 #include "io/recording/csv.h"
 #include "report/text/words.h"
@@ -55,10 +56,10 @@ std::string recordings_text(const RunResult& run_result) {
 }
 
 /// What stands beside the numbers, which have no room for it.
-std::string legend_text(const Job& job, const FitResult& result) {
+std::string legend_text(const Job& job, const FitResult& result, bool colour) {
   std::vector<ParameterUncertainty> known;
   for (const ParameterResult& p : result.parameters) known.push_back(p.uncertainty);
-  return meanings_text(job, known);
+  return meanings_text(job, known, colour);
 }
 
 /// With a closed loop, the declared model's estimates stand where the initial values would.
@@ -162,13 +163,13 @@ std::string series_name(const Recording& recording, const char* role, Signal sig
   return fmt::format("{}, {}: {}", recording.name, role, info(signal).name);
 }
 
-std::string report_text(const RunResult& run_result) {
+std::string report_text(const RunResult& run_result, bool colour) {
   const Job& job = run_result.job();
   const FitResult& result = run_result.fit();
   std::string text = fmt::format(
       "{}\n{}{}\n{}\n{}\n", recordings_text(run_result), parameters_text(run_result),
-      uncertainty_text(result) + starts_text(run_result.first), legend_text(job, result),
-      run_result.selection ? selection_text(run_result) : errors_text(job, result));
+      uncertainty_text(result) + starts_text(run_result.first), legend_text(job, result, colour),
+      run_result.selection ? selection_text(run_result, colour) : errors_text(job, result));
   if (const std::string profiles = profiles_text(run_result); !profiles.empty())
     text += profiles + "\n";
   if (run_result.diagnosis && !run_result.diagnosis->explained) {
@@ -181,15 +182,17 @@ std::string report_text(const RunResult& run_result) {
   if (run_result.diagnosis)
     if (const std::string faults = instruments_text(job, *run_result.diagnosis); !faults.empty())
       text += "Instruments\n" + faults + "\n";
-  text += paragraph(overall_verdict(run_result));
-  for (const Discrimination& s : run_result.discriminations) text += paragraph(s.description);
+  text += paragraph(overall_verdict(run_result, colour));
+  for (const Discrimination& s : run_result.discriminations)
+    text += paragraph(discrimination_text(s));
   if (!run_result.selection && run_result.diagnosis)
-    text += residual_verdict(job, *run_result.diagnosis);
+    text += residual_verdict(job, *run_result.diagnosis, colour);
   if (run_result.interrupted) {
     const int starts = std::max(1, job.options.starts);
     return text + "\n" +
            paragraph(fmt::format(
-               "Stopped early{}: this is the result of {}{}.", stop_reason(run_result),
+               "{}{}: this is the result of {}{}.", toned("Stopped early", Tone::caution, colour),
+               stop_reason(run_result),
                starts > 1 ? fmt::format("{} of {} starts", run_result.first.starts.size(), starts)
                           : "the fit",
                run_result.selection ? ", with the effects accepted so far" : ""));

@@ -1,4 +1,5 @@
 // What was found as text for a terminal. Lines end with '\n' and have no more than 80 characters.
+// With `colour`, verdicts are green, yellow or red.
 #pragma once
 
 #include <string>
@@ -12,7 +13,7 @@
 namespace axisfit {
 
 /// Recordings, table of parameters, errors per signal or the models of the loop, and the verdicts.
-std::string report_text(const RunResult& run_result);
+std::string report_text(const RunResult& run_result, bool colour = false);
 
 /// Its part on a residual that is not explained: how much that is, and what it depends on.
 std::string residual_text(const Job& job, const Diagnosis& diagnosis);
@@ -24,16 +25,17 @@ std::string instruments_text(const Job& job, const Diagnosis& diagnosis);
 std::string suspected_effects_text(const Job& job, const Diagnosis& diagnosis);
 
 /// The verdict on the residual, one paragraph.
-std::string residual_verdict(const Job& job, const Diagnosis& diagnosis);
+std::string residual_verdict(const Job& job, const Diagnosis& diagnosis, bool colour = false);
 
 /// Its part on the closed loop: effects that were tried, and the errors before and after.
-std::string selection_text(const RunResult& run_result);
+std::string selection_text(const RunResult& run_result, bool colour = false);
 
 /// "step, fit: velocity"
 std::string series_name(const Recording& recording, const char* role, Signal signal);
 
 /// What each parameter of a job is and, unless it is determined, its verdict.
-std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty>& known);
+std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty>& known,
+                          bool colour = false);
 
 /// What the intervals rest on, and what is known instead of parameters that are not determined.
 std::string uncertainty_text(const FitResult& result);
@@ -49,7 +51,7 @@ std::string profiles_text(const RunResult& run_result);
 std::string suggestion_text(const RunResult& run_result);
 
 /// What the recordings of a job can tell of its parameters, before the fit.
-std::string forecast_text(const Job& job, const Forecast& forecast);
+std::string forecast_text(const Job& job, const Forecast& forecast, bool colour = false);
 
 /// What the recordings show by themselves: sampling, ranges, noise, and what looks wrong.
 std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& checks);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/terminal.h"
 #include "base/text_table.h"
 #include "base/units.h"
 #include "report/text/report_text.h"
@@ -119,12 +120,13 @@ std::string suspected_effects_text(const Job& job, const Diagnosis& diagnosis) {
                       {Alignment::left, Alignment::left, Alignment::right, Alignment::wrapped});
 }
 
-std::string residual_verdict(const Job& job, const Diagnosis& diagnosis) {
+std::string residual_verdict(const Job& job, const Diagnosis& diagnosis, bool colour) {
   const auto& tests = diagnosis.tests;
   if (tests.empty()) return "";
   if (!diagnosis.explained) {
     const auto worst = std::ranges::max_element(tests, {}, &SeriesTest::unexplained_percent);
-    std::string text = fmt::format("Unexplained: up to {:.3g} % of the residual, in the {}. ",
+    std::string text = fmt::format("{}: up to {:.3g} % of the residual, in the {}. ",
+                                   toned("Unexplained", Tone::caution, colour),
                                    worst->unexplained_percent, name_of(job, worst->series));
     if (diagnosis.suspected_effects.empty())
       text += "No effect that axisfit knows explains it.";

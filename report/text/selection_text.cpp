@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/terminal.h"
 #include "base/text_table.h"
 #include "base/units.h"
 #include "report/text/report_text.h"
@@ -35,14 +36,20 @@ std::string estimate_of(const EffectTrial& trial) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string effects_text(const EffectSelection& selection) {
+Tone tone_of(Decision decision) {
+  return decision == Decision::accepted    ? Tone::good
+         : decision == Decision::undecided ? Tone::caution
+                                           : Tone::neutral;
+}
+
+std::string effects_text(const EffectSelection& selection, bool colour) {
   if (selection.effects.empty()) return "";
   std::vector<std::vector<std::string>> rows;
   for (const Decision decision : {Decision::accepted, Decision::undecided, Decision::rejected})
     for (const EffectTrial& t : selection.effects) {
       if (t.decision != decision) continue;
       const std::string estimate = estimate_of(t);
-      rows.push_back({decision_name(decision), t.candidate.name,
+      rows.push_back({toned(decision_name(decision), tone_of(decision), colour), t.candidate.name,
                       estimate + (estimate.empty() ? "" : ": ") + reason_text(t)});
     }
   return "Effects tried\n" +
@@ -100,8 +107,8 @@ std::string forces_text(const RunResult& run_result) {
 
 }  // namespace
 
-std::string selection_text(const RunResult& run_result) {
-  std::string text = effects_text(*run_result.selection) + errors_text(run_result) + "\n";
+std::string selection_text(const RunResult& run_result, bool colour) {
+  std::string text = effects_text(*run_result.selection, colour) + errors_text(run_result) + "\n";
   if (run_result.selection->held_out_blocks)
     text += paragraph(
                 "No recording has the role validate: every second tenth of each recording was held "

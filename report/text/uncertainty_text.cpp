@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "base/terminal.h"
 #include "base/text_table.h"
 #include "base/units.h"
 #include "report/text/report_text.h"
@@ -48,14 +49,18 @@ std::string correlation_text(const FitResult& result) {
 
 }  // namespace
 
-std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty>& known) {
+std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty>& known,
+                          bool colour) {
   const ParameterSpace space(job);
   std::vector<std::vector<std::string>> rows;
   for (std::size_t i = 0; i < space.size(); ++i) {
     std::string description(quantity_list()[space[i].quantity].quantity.meaning);
     if (const ParameterVerdict verdict = known[i].verdict();
         verdict != ParameterVerdict::determined)
-      description += fmt::format(": {}", verdict_name(verdict));
+      description +=
+          ": " + toned(verdict_name(verdict),
+                       verdict == ParameterVerdict::not_determined ? Tone::bad : Tone::caution,
+                       colour);
     rows.push_back({space.name(i), description});
   }
   return format_table(rows, {Alignment::left, Alignment::wrapped});
@@ -77,7 +82,7 @@ std::string uncertainty_text(const FitResult& result) {
 
 std::string identifiability_text(const Identifiability& known) {
   std::string text;
-  for (const WeakDirection& weak : known.weak) text += paragraph(weak.description, 2);
+  for (const WeakDirection& weak : known.weak) text += paragraph(weak_direction_text(weak), 2);
   for (const Combination& c : known.combinations)
     text += paragraph(fmt::format("{} = {} +- {:.2g}", c.name,
                                   with_digits_of(c.value, c.standard_error), c.standard_error),
@@ -120,7 +125,7 @@ std::string suggestion_text(const RunResult& run_result) {
       return "Next experiment\n" +
              paragraph(fmt::format("Record {}, for {:.3g} s, with the {}: it discriminates between "
                                    "the undecided effects.",
-                                   discrimination.experiment->description,
+                                   motion_text(discrimination.experiment->motion),
                                    discrimination.experiment->duration,
                                    info(*discrimination.signal).name),
                        2);
@@ -132,8 +137,8 @@ std::string suggestion_text(const RunResult& run_result) {
   std::string text = fmt::format(
       "Record {}, for {:.3g} s: it does most for {}, the least determined parameter. Of {} motions "
       "tried, {} stay within {:.4g} .. {:.4g} m, {:.3g} m/s and {:.3g} V.",
-      s.experiment.description, s.experiment.duration, name, s.tried, s.feasible, *s.limits.lowest,
-      *s.limits.highest, *s.limits.speed, *s.limits.voltage);
+      motion_text(s.experiment.motion), s.experiment.duration, name, s.tried, s.feasible,
+      *s.limits.lowest, *s.limits.highest, *s.limits.speed, *s.limits.voltage);
   const MachineLimits& given = run_result.baseline.limits;
   if (!given.lowest || !given.speed)
     text += " These limits are what the recordings covered; set 'limits' in the job to allow more.";
@@ -153,7 +158,7 @@ std::string suggestion_text(const RunResult& run_result) {
          format_table(rows, {Alignment::left, Alignment::right, Alignment::right, Alignment::left});
 }
 
-std::string forecast_text(const Job& job, const Forecast& forecast) {
+std::string forecast_text(const Job& job, const Forecast& forecast, bool colour) {
   if (!forecast.finite)
     return paragraph(
         "Identifiability could not be checked: with the initial values the simulation does not "
@@ -182,7 +187,7 @@ std::string forecast_text(const Job& job, const Forecast& forecast) {
   return "What these recordings determine, if the initial values are about right\n" +
          format_table(rows, {Alignment::left, Alignment::right, Alignment::wrapped}) +
          identifiability_text(forecast.identifiability) + needs + "\n" +
-         meanings_text(job, forecast.uncertainty.parameters);
+         meanings_text(job, forecast.uncertainty.parameters, colour);
 }
 
 }  // namespace axisfit

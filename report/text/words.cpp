@@ -3,6 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+#include <variant>
+
+#include "base/terminal.h"
+
 namespace axisfit {
 namespace {
 
@@ -35,30 +40,79 @@ std::string rejection_text(const Rejection& rejection) {
   return "";
 }
 
+std::string text_of(const StepMotion& motion) {
+  return fmt::format("a step of {:.3g} V", motion.level);
+}
+
+/// A level as it relates to the first.
+std::string level_text(double ratio) {
+  return ratio == 0.0    ? "zero"
+         : ratio == -1.0 ? "the opposite"
+                         : fmt::format("{:g} times that", ratio);
+}
+
+std::string text_of(const LevelsMotion& motion) {
+  const std::vector<double>& levels = motion.levels;
+  const double first = levels.front();
+  std::string text = fmt::format("levels of {:.3g} V", first);
+  std::vector<double> ratios;
+  for (const double level : levels) ratios.push_back(level / first);
+  if (levels.size() > 4 && levels.back() == 0.0) {
+    const auto last = std::prev(ratios.end(), 2);
+    text += fmt::format(", {:g} and {:g} times that, then zero",
+                        fmt::join(std::next(ratios.begin()), last, ", "), *last);
+  } else {
+    for (std::size_t i = 1; i < levels.size(); ++i)
+      text += (i + 1 < levels.size() ? ", " : " and ") + level_text(ratios[i]);
+  }
+  return text + fmt::format(", each held for {:.3g} s", motion.hold);
+}
+
+std::string text_of(const SineMotion& motion) {
+  return motion.from == motion.to
+             ? fmt::format("a sine of {:.3g} V and {:g} Hz", motion.amplitude, motion.from)
+             : fmt::format("a chirp of {:.3g} V from {:g} to {:g} Hz", motion.amplitude,
+                           motion.from, motion.to);
+}
+
+std::string text_of(const PrbsMotion& motion) {
+  return fmt::format("a pseudo-random binary sequence of +-{:.3g} V with a bit period of {:g} s",
+                     std::abs(motion.amplitude), motion.bit);
+}
+
+std::string text_of(const MoveMotion& motion) {
+  return fmt::format("a move of {:.3g} m at {:.3g} m/s and {:.3g} m/s^2", motion.distance,
+                     motion.speed, motion.acceleration);
+}
+
+std::string text_of(const RecordedMotion&) { return "a recorded motion"; }
+
 }  // namespace
 
-std::string verdict_text(const FitResult& fit) {
+std::string verdict_text(const FitResult& fit, bool colour) {
   using enum FitVerdict::Kind;
   const FitVerdict& verdict = fit.verdict;
+  const std::string not_usable = toned("No usable fit", Tone::bad, colour);
   switch (verdict.kind) {
     case not_simulated:
-      return "No usable fit: the simulation does not finish at the initial values. Check them and "
+      return not_usable +
+             ": the simulation does not finish at the initial values. Check them and "
              "the axis file for impossible values.";
     case no_minimum:
       return fmt::format(
-          "No usable fit: no minimum was found within {} iterations. Try --starts 20, or free "
-          "fewer parameters.",
-          verdict.iteration_limit);
+          "{}: no minimum was found within {} iterations. Try --starts 20, or free fewer "
+          "parameters.",
+          not_usable, verdict.iteration_limit);
     case signal_not_followed:
       return fmt::format(
-          "No usable fit: the model follows the {} of {} no better than a constant would. Try "
-          "other initial values, --starts 20, or check units and signs of the columns.",
-          info(verdict.signal).name, verdict.recording);
+          "{}: the model follows the {} of {} no better than a constant would. Try other initial "
+          "values, --starts 20, or check units and signs of the columns.",
+          not_usable, info(verdict.signal).name, verdict.recording);
     case usable:
       break;
   }
-  std::string text = fmt::format("Usable fit: reduced chi-square {:.4g} on the fitted data.",
-                                 fit.reduced_chi_square);
+  std::string text = fmt::format("{}: reduced chi-square {:.4g} on the fitted data.",
+                                 toned("Usable fit", Tone::good, colour), fit.reduced_chi_square);
   if (!verdict.undetermined.empty())
     text += fmt::format(" These recordings do not determine {}.",
                         fmt::join(verdict.undetermined, ", "));
@@ -94,12 +148,12 @@ std::string verdict_text(const EffectSelection& selection) {
   return text;
 }
 
-std::string overall_verdict(const RunResult& run_result) {
+std::string overall_verdict(const RunResult& run_result, bool colour) {
   const FitResult& fit = run_result.fit();
-  if (!run_result.selection) return verdict_text(fit);
+  if (!run_result.selection) return verdict_text(fit, colour);
   // Both judge the same model by the same residual.
-  return (fit.usable ? "Usable fit." : verdict_text(fit)) + " " +
-         verdict_text(*run_result.selection);
+  return (fit.usable ? toned("Usable fit", Tone::good, colour) + "." : verdict_text(fit, colour)) +
+         " " + verdict_text(*run_result.selection);
 }
 
 std::string reason_text(const EffectTrial& trial) {
@@ -121,6 +175,36 @@ std::string reason_text(const EffectTrial& trial) {
       return "no longer needed with the effects accepted after it";
   }
   return "";
+}
+
+std::string weak_direction_text(const WeakDirection& weak) {
+  const std::vector<WeakDirection::Part>& parts = weak.parts;
+  if (parts.size() == 1) return parts[0].name + " hardly affects these recordings.";
+  if (!weak.combination.empty())
+    return fmt::format("{} and {} are determined only as {}.", parts[0].name, parts[1].name,
+                       weak.combination);
+  std::vector<std::string> changes;
+  for (const WeakDirection::Part& p : parts)
+    changes.push_back(p.relative ? fmt::format("{} by {:+.2g} %", p.name, 100.0 * p.tenth)
+                                 : fmt::format("{} by {:+.2g}", p.name, p.tenth));
+  return fmt::format("These can change jointly with hardly any effect: {}.",
+                     fmt::join(changes, ", "));
+}
+
+std::string motion_text(const Motion& motion) {
+  return std::visit([](const auto& m) { return text_of(m); }, motion);
+}
+
+std::string discrimination_text(const Discrimination& discrimination) {
+  std::string text = fmt::format("{} and {} explain these recordings equally well; ",
+                                 discrimination.chosen, discrimination.rival);
+  if (!discrimination.signal) return text + "no motion tried discriminates between them.";
+  return text + fmt::format("they differ most in the {} during {}: by {:.2g} times its noise.",
+                            info(*discrimination.signal).name,
+                            discrimination.experiment
+                                ? motion_text(discrimination.experiment->motion)
+                                : "the motion of " + discrimination.recording,
+                            discrimination.size);
 }
 
 std::string stop_reason(const RunResult& run_result) {

@@ -1,4 +1,5 @@
 // The words for what a run finds: its data and judgements (fit/) as names and sentences.
+// With `colour`, verdicts are green, yellow or red, for a terminal.
 #pragma once
 
 #include <string>
@@ -9,16 +10,25 @@
 namespace axisfit {
 
 /// Whether a fit can be used, one sentence or two.
-std::string verdict_text(const FitResult& fit);
+std::string verdict_text(const FitResult& fit, bool colour = false);
 
 /// What a search for effects comes to, a sentence or a few.
 std::string verdict_text(const EffectSelection& selection);
 
 /// Whether the final model can be used, and what a search for effects comes to.
-std::string overall_verdict(const RunResult& run_result);
+std::string overall_verdict(const RunResult& run_result, bool colour = false);
 
 /// What the decision on an effect rests on; no sentence, to follow its estimate.
 std::string reason_text(const EffectTrial& trial);
+
+/// What the recordings leave open in that direction, one sentence.
+std::string weak_direction_text(const WeakDirection& weak);
+
+/// "a step of 10 V"
+std::string motion_text(const Motion& motion);
+
+/// In which motion and signal two undecided effects differ, one sentence.
+std::string discrimination_text(const Discrimination& discrimination);
 
 /// " by the time limit of 60 s", or nothing: to follow "stopped".
 std::string stop_reason(const RunResult& run_result);
