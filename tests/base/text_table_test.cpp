@@ -15,6 +15,7 @@ using Rows = std::vector<std::vector<std::string>>;
 TEST(TextTable, CountsCharactersNotBytes) {
   EXPECT_EQ(width_of("N s/m"), 5u);
   EXPECT_EQ(width_of("µm/s²"), 5u);
+  EXPECT_EQ(width_of("\033[32mN\033[0m s/m"), 5u);
   EXPECT_EQ(format_table({{"µm", "1"}, {"mm", "2"}}, {Alignment::left, Alignment::left}),
             "  µm  1\n  mm  2\n");
 }

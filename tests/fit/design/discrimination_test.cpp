@@ -43,23 +43,22 @@ TEST_F(DiscriminationTest, IsTheDifferenceInUnitsOfTheNoise) {
   EXPECT_EQ(*found.signal, Signal::position);
   EXPECT_FALSE(found.experiment);
   EXPECT_NEAR(found.size, 4.0, 1e-6);
-  EXPECT_EQ(found.description,
-            "this and that explain these recordings equally well; they differ most in the position "
-            "during the motion of fit: by 4 times its noise.");
+  EXPECT_EQ(found.chosen, "this");
+  EXPECT_EQ(found.rival, "that");
+  EXPECT_EQ(found.recording, "fit");
 }
 
 TEST_F(DiscriminationTest, IsNotSoughtInWhatWasRecorded) {
   const Discrimination none = advice(Signal::velocity, 0.1, kNone);
   EXPECT_FALSE(none.signal);
   EXPECT_EQ(none.size, 0.0);
-  EXPECT_NE(none.description.find("no motion that was tried"), std::string::npos);
+  EXPECT_EQ(none.recording, "");
   // Another motion may show it: there the noise of the recorded signal counts.
   const Discrimination other = advice(Signal::velocity, 0.1, {-1.0, 1.0, 2.0, 1.0});
   ASSERT_TRUE(other.signal && other.experiment);
   EXPECT_EQ(*other.signal, Signal::velocity);
   EXPECT_NEAR(other.size, 0.1 / usual_noise(Signal::velocity), 1e-6);
-  EXPECT_NE(other.description.find(other.experiment->description), std::string::npos)
-      << other.description;
+  EXPECT_EQ(other.recording, "");
 }
 
 TEST_F(DiscriminationTest, OfLessThanATenthOfTheNoiseIsNone) {

@@ -180,7 +180,7 @@ TEST(Estimate, RefusesAHopelessFitUnlessTheNoiseIsKnownToBeLarge) {
 TEST(Estimate, ReducedChiSquareCountsDegreesOfFreedom) {
   const Job job = slide_in_few_samples();
   const FitResult result = estimate(job);
-  ASSERT_TRUE(result.usable) << result.verdict;
+  ASSERT_TRUE(result.usable) << result.message;
   const double sum = sum_of_squares(job, result, 0);
   EXPECT_NEAR(result.reduced_chi_square, sum / (16.0 - 2.0), 1e-9 * sum);
   EXPECT_NEAR(result.recordings[0].signals[0].reduced_chi_square, sum / 16.0, 1e-9 * sum);
@@ -278,7 +278,7 @@ TEST(EstimateWithNoise, CountsDegreesOfFreedom) {
   Job job = slide_in_few_samples();
   job.recordings[0].measurements[0].noise = NoiseSource::fit;
   const FitResult result = estimate_with_noise(job);
-  ASSERT_TRUE(result.usable) << result.verdict;
+  ASSERT_TRUE(result.usable) << result.message;
   EXPECT_NEAR(sum_of_squares(job, result, 0), 16.0 - 2.0, 0.01);
 }
 

@@ -221,11 +221,11 @@ TEST(RefusalTest, OfWhatHelpsByChanceMoreOftenThanOnceInAThousand) {
   gain.samples = 2000.0;
   gain.validate_percent = 5.0;
   gain.p_value = 1.1e-3;
-  EXPECT_NE(rejection_reason(candidate(), gain, determined(), 100).find("p = 0.0011"),
-            std::string::npos);
-  EXPECT_EQ(rejection_reason(candidate(), gain, determined(), 100, 1.2e-3), "");
+  EXPECT_EQ(rejection_of(candidate(), gain, determined(), 100),
+            (Rejection{.test = Rejection::Test::validation, .found = 1.1e-3}));
+  EXPECT_FALSE(rejection_of(candidate(), gain, determined(), 100, 1.2e-3));
   gain.p_value = 0.9e-3;
-  EXPECT_EQ(rejection_reason(candidate(), gain, determined(), 100), "");
+  EXPECT_FALSE(rejection_of(candidate(), gain, determined(), 100));
 }
 
 TEST(RefusalTest, PricesParametersAndTheChoice) {

@@ -112,6 +112,63 @@ TEST(WordsTest, OfTheDecisionOnAnEffect) {
   EXPECT_EQ(decided(Reason::not_needed), "no longer needed with the effects accepted after it");
 }
 
+TEST(WordsTest, OfAWeakDirection) {
+  WeakDirection weak;
+  weak.parts = {{.name = "k_g"}};
+  EXPECT_EQ(weak_direction_text(weak), "k_g hardly affects these recordings.");
+  weak.parts = {{.name = "k_g", .tenth = 0.0733, .relative = true}, {.name = "y0", .tenth = -0.02}};
+  EXPECT_EQ(weak_direction_text(weak),
+            "These can change jointly with hardly any effect: k_g by +7.3 %, y0 by -0.02.");
+  weak.combination = "k_g / M";
+  weak.parts[1].name = "M";
+  EXPECT_EQ(weak_direction_text(weak), "k_g and M are determined only as k_g / M.");
+}
+
+TEST(WordsTest, OfMotions) {
+  EXPECT_EQ(motion_text(StepMotion{-10.0, 0.0}), "a step of -10 V");
+  for (const double u : {2.0, -2.0}) {
+    const std::string volts = u > 0.0 ? "2 V" : "-2 V";
+    EXPECT_EQ(motion_text(LevelsMotion{{u, -u, 0.5 * u, -0.5 * u, 0.2 * u, -0.2 * u, 0.0}, 0.625}),
+              "levels of " + volts +
+                  ", -1, 0.5, -0.5, 0.2 and -0.2 times that, then zero, each held for 0.625 s");
+    EXPECT_EQ(motion_text(LevelsMotion{{u, 0.0, -u, 0.0}, 2.5}),
+              "levels of " + volts + ", zero, the opposite and zero, each held for 2.5 s");
+  }
+  EXPECT_EQ(motion_text(SineMotion{5.0, 0.5, 0.5}), "a sine of 5 V and 0.5 Hz");
+  EXPECT_EQ(motion_text(SineMotion{5.0, 0.5, 60.0}), "a chirp of 5 V from 0.5 to 60 Hz");
+  EXPECT_EQ(motion_text(PrbsMotion{-5.0, 0.025, 0.0, 1}),
+            "a pseudo-random binary sequence of +-5 V with a bit period of 0.025 s");
+  EXPECT_EQ(motion_text(MoveMotion{0.45, 0.18, 0.72}),
+            "a move of 0.45 m at 0.18 m/s and 0.72 m/s^2");
+}
+
+TEST(WordsTest, OfWhatDiscriminates) {
+  Discrimination d{.chosen = "spring", .rival = "position.gain"};
+  EXPECT_EQ(discrimination_text(d),
+            "spring and position.gain explain these recordings equally well; no motion tried "
+            "discriminates between them.");
+  d.signal = Signal::position;
+  d.size = 4.04;
+  d.recording = "levels";
+  EXPECT_EQ(discrimination_text(d),
+            "spring and position.gain explain these recordings equally well; they differ most in "
+            "the position during the motion of levels: by 4 times its noise.");
+  d.experiment = Experiment{StepMotion{10.0, 0.0}, 2.0};
+  EXPECT_EQ(discrimination_text(d),
+            "spring and position.gain explain these recordings equally well; they differ most in "
+            "the position during a step of 10 V: by 4 times its noise.");
+}
+
+TEST(WordsTest, InColourAreTheSameWords) {
+  FitResult fit;
+  EXPECT_TRUE(verdict_text(fit, true).starts_with("\033[31mNo usable fit\033[0m: the simulation"));
+  fit.usable = true;
+  fit.verdict.kind = FitVerdict::Kind::usable;
+  fit.reduced_chi_square = 1.0;
+  EXPECT_EQ(verdict_text(fit, true),
+            "\033[32mUsable fit\033[0m: reduced chi-square 1 on the fitted data.");
+}
+
 TEST(WordsTest, OfTheEndOfARun) {
   RunResult run_result;
   EXPECT_EQ(stop_reason(run_result), "");
