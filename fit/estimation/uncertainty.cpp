@@ -3,6 +3,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "base/distributions.h"
@@ -191,6 +192,23 @@ Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
     p.upper = inwards > 0.0 ? other : space[i].upper;
   }
   return result;
+}
+
+bool is_coloured(double autocorrelation_time) {
+  constexpr double kWhite = 1.2;
+  return autocorrelation_time > kWhite;
+}
+
+std::vector<StrongCorrelation> strong_correlations(const Eigen::MatrixXd& correlation) {
+  constexpr double kStrong = 0.95;
+  std::vector<StrongCorrelation> strong;
+  for (Eigen::Index i = 0; i < correlation.rows(); ++i)
+    for (Eigen::Index k = 0; k < i; ++k)
+      if (const double c = correlation(i, k); std::abs(c) > kStrong)
+        strong.push_back({static_cast<std::size_t>(k), static_cast<std::size_t>(i), c});
+  std::ranges::stable_sort(strong, std::greater{},
+                           [](const StrongCorrelation& c) { return std::abs(c.value); });
+  return strong;
 }
 
 }  // namespace axisfit

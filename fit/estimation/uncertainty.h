@@ -47,6 +47,18 @@ struct Uncertainty {
       1.0;  ///< samples per independent sample, of the most coloured signal
 };
 
+/// Whether residuals with that autocorrelation time count as coloured.
+bool is_coloured(double autocorrelation_time);
+
+/// Two estimates that are hardly determined apart: the first has the smaller place.
+struct StrongCorrelation {
+  std::size_t first = 0, second = 0;
+  double value = 0.0;
+};
+
+/// Those beyond +-0.95, the strongest first.
+std::vector<StrongCorrelation> strong_correlations(const Eigen::MatrixXd& correlation);
+
 /// The factor of a standard error that makes half of a 95 % interval, for so many degrees of
 /// freedom (at least one is assumed): Student's quantile.
 double student_95(double degrees_of_freedom);

@@ -11,6 +11,9 @@ struct Drift {
   double standard_error = INFINITY;  ///< of that
   double p_value = 1.0;              ///< of that trend or more, either way, were there none
   double span = 0.0;                 ///< of the trend, from the first time to the last
+
+  /// Of residuals in units of the noise: significant, and a tenth of the noise or more.
+  bool is_notable() const { return p_value < 1e-3 && (span > 0.1 || span < -0.1); }
 };
 
 /// The linear trend of a residual series, by least squares. Its standard error allows for the

@@ -88,8 +88,7 @@ std::string instruments_text(const Job& job, const Diagnosis& diagnosis) {
     // Beside noise that hides it, rounding is none of the reader's concern.
     if (test.resolution > m.sigma)
       add_line(fmt::format("has a resolution of {}", value(test.resolution)));
-    // Significant, and worth a word: from end to end a tenth of the noise or more.
-    if (test.drift.p_value < 1e-3 && std::abs(test.drift.span) > 0.1)
+    if (test.drift.is_notable())
       add_line(fmt::format("drifts: its residual changes by {} per second, {} in total",
                            value(test.drift.per_second * m.sigma),
                            value(test.drift.span * m.sigma)));

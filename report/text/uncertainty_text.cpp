@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "base/terminal.h"
 #include "base/text_table.h"
@@ -27,21 +26,14 @@ std::string interval_text(const ParameterUncertainty& u) {
 
 /// Estimates that hang together: neither is known without the other.
 std::string correlation_text(const FitResult& result) {
-  constexpr double kStrong = 0.95;
   constexpr std::size_t kNamed = 3;
-  std::vector<std::pair<double, std::string>> pairs;
-  for (Eigen::Index i = 0; i < result.correlation.rows(); ++i)
-    for (Eigen::Index k = 0; k < i; ++k)
-      if (const double c = result.correlation(i, k); std::abs(c) > kStrong)
-        pairs.emplace_back(
-            std::abs(c),
-            fmt::format("{} and {} ({:.3g})", result.parameters[static_cast<std::size_t>(k)].name,
-                        result.parameters[static_cast<std::size_t>(i)].name, c));
+  const std::vector<StrongCorrelation> pairs = strong_correlations(result.correlation);
   if (pairs.empty()) return "";
-  std::ranges::stable_sort(pairs, std::greater{}, [](const auto& pair) { return pair.first; });
   const std::size_t named = std::min(kNamed, pairs.size());
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < named; ++i) names.push_back(pairs[i].second);
+  for (std::size_t i = 0; i < named; ++i)
+    names.push_back(fmt::format("{} and {} ({:.3g})", result.parameters[pairs[i].first].name,
+                                result.parameters[pairs[i].second].name, pairs[i].value));
   const std::string more =
       pairs.size() > named ? fmt::format(", and {} more pairs", pairs.size() - named) : "";
   return paragraph(fmt::format("Strongly correlated: {}{}.", fmt::join(names, ", "), more), 2);
@@ -71,8 +63,7 @@ std::string uncertainty_text(const FitResult& result) {
   std::string noise = excess > 1.0
                           ? fmt::format("residuals as observed, {:.3g} times the noise", excess)
                           : "noise as stated below";
-  constexpr double kWhite = 1.2;
-  noise += result.autocorrelation_time > kWhite
+  noise += is_coloured(result.autocorrelation_time)
                ? fmt::format(", with an autocorrelation time of up to {:.3g} samples",
                              result.autocorrelation_time)
                : ", uncorrelated in time";

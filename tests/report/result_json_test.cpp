@@ -526,7 +526,7 @@ TEST(ResultTest, TheNextExperimentPredictsWhatIsKnownAfterIt) {
   RunResult run_result = Found(rubbing_job()).run_result;
   run_result.options.suggest_experiment = true;
   Suggestion& s = run_result.suggestion.emplace();
-  s.experiment = {.motion = StepMotion{}, .duration = 2.0, .description = "a step of 3 V"};
+  s.experiment = {.motion = StepMotion{3.0, 0.0}, .duration = 2.0};
   s.limits = {.lowest = -1.0, .highest = 1.0, .speed = 0.5, .voltage = 10.0};
   const auto known = [](double value, double error) {
     return ParameterUncertainty{.determined = true,
