@@ -20,9 +20,11 @@ int main() {
       force.push_back(60.0 * std::sin((role == axisfit::Role::fit ? 6.0 : 11.0) * times.back()));
       v += 1e-3 * (force.back() - 30.0 * v) / 20.0;
     }
-    job.recordings.push_back({.name = role == axisfit::Role::fit ? "fit" : "check", .role = role,
-        .times = times, .command = axisfit::schedule_from_samples(times, force),
-        .measurements = {{axisfit::Signal::velocity, velocity, 1e-3}}});
+    job.recordings.push_back({.name = role == axisfit::Role::fit ? "fit" : "check",
+                              .role = role,
+                              .times = times,
+                              .command = axisfit::schedule_from_samples(times, force),
+                              .measurements = {{axisfit::Signal::velocity, velocity, 1e-3}}});
   }
   const axisfit::RunResult result = axisfit::run(job, {.select_effects = true});
   std::fputs(axisfit::report_text(result).c_str(), stdout);

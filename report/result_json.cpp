@@ -319,8 +319,7 @@ Json selection_json(const RunResult& run_result) {
   json["selection"] = {{"verdict", verdict_text(selection)},
                        {"explained", selection.explained},
                        {"held_out_blocks", selection.held_out_blocks},
-                       {"hints", list(run_result.discriminations,
-                                      discrimination_text)}};
+                       {"hints", list(run_result.discriminations, discrimination_text)}};
   return json;
 }
 

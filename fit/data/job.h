@@ -96,8 +96,8 @@ struct FreeParameter {
 };
 
 /// The quantity of that name, shared by all recordings, from this initial value within a factor of
-/// a hundred, as far as its range goes; on a linear scale within its whole range if the value is not
-/// positive. Throws std::invalid_argument for an unknown name.
+/// a hundred, as far as its range goes; on a linear scale within its whole range if the value is
+/// not positive. Throws std::invalid_argument for an unknown name.
 FreeParameter free_parameter(std::string_view name, double initial);
 
 /// How the simulation is held to the data while it is fitted, see observer.h.

@@ -39,7 +39,7 @@ std::optional<UnitMistake> mistake_of(const RateCheck& rate) {
 /// Speed per volt that a velocity loop settles at; zero where there is none.
 double command_gain(const Model<double>& model) {
   const auto& a = model.axis;
-  if (model.structure.drive == Drive::force_source || !(a.K_2 * a.K_t > 0.0)) return 0.0;
+  if (!capabilities(model.structure).is_electric || !(a.K_2 * a.K_t > 0.0)) return 0.0;
   return a.K_1 * a.r_g / (a.K_2 * a.K_t);
 }
 

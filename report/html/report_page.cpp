@@ -126,7 +126,8 @@ class Page {
     if (!run_result_.selection && run_result_.diagnosis)
       summary += paragraph_of(residual_verdict(job_, *run_result_.diagnosis));
     Html all = html(R"(<div class="verdict {}">{}</div>)", verdict_class(), summary);
-    for (const Discrimination& s : run_result_.discriminations) all += paragraph_of(discrimination_text(s));
+    for (const Discrimination& s : run_result_.discriminations)
+      all += paragraph_of(discrimination_text(s));
     if (run_result_.interrupted)
       all += paragraph_of(fmt::format("Stopped{} before everything requested was finished.",
                                       stop_reason(run_result_)));
