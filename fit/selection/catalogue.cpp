@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "fit/estimation/continuation.h"
 
@@ -71,6 +73,20 @@ Candidate candidate_of(const EffectInfo& effect, SearchEntry entry) {
   candidate.probes = std::move(entry.probes);
   candidate.is_curve = entry.is_curve;
   return candidate;
+}
+
+/// The range of a shape that may be negative, such as a place: it has no scale of its own, and is
+/// sought where its settings lie, and a tenth of their span beyond.
+std::pair<double, double> range_of_place(const Candidate& candidate, std::size_t shape) {
+  const Quantity& q = quantity_list()[candidate.shapes[shape]].quantity;
+  double least = INFINITY, most = -INFINITY;
+  for (const auto& setting : candidate.settings) {
+    least = std::min(least, setting[shape]);
+    most = std::max(most, setting[shape]);
+  }
+  if (!(most > least)) return {q.lower, q.upper};
+  const double beyond = 0.1 * (most - least);
+  return {std::max(q.lower, least - beyond), std::min(q.upper, most + beyond)};
 }
 
 }  // namespace
@@ -152,10 +168,10 @@ Job with_candidate(const Job& job, const Candidate& candidate, std::span<const d
     const Quantity& q = quantity_list()[candidate.shapes[i]].quantity;
     FreeParameter p;
     p.quantity = candidate.shapes[i];
-    p.lower = q.lower;
-    p.upper = q.upper;
-    p.initial = std::clamp(shapes[i], q.lower, q.upper);
     p.logarithmic = q.lower > 0.0;
+    std::tie(p.lower, p.upper) =
+        p.logarithmic ? std::pair(q.lower, q.upper) : range_of_place(candidate, i);
+    p.initial = std::clamp(shapes[i], p.lower, p.upper);
     extended_job.free.push_back(p);
   }
   return extended_job;

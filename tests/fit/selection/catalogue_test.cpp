@@ -256,8 +256,9 @@ TEST_F(WithCandidate, AddsItsStrengthsAndShapesAndNothingElse) {
       const FreeParameter& p = job.free[2 + strengths.size() + i];
       EXPECT_EQ(p.quantity, c.shapes[i]);
       EXPECT_EQ(p.initial, c.settings.back()[i]);
-      EXPECT_EQ(p.lower, quantity_list()[c.shapes[i]].quantity.lower);
-      EXPECT_EQ(p.logarithmic, p.lower > 0.0);
+      EXPECT_EQ(p.logarithmic, quantity_list()[c.shapes[i]].quantity.lower > 0.0);
+      EXPECT_LE(p.lower, p.initial);
+      EXPECT_GE(p.upper, p.initial);
     }
     // The rest of the model is as it was.
     const std::string& group = quantity_list()[c.strengths[0]].group;
@@ -270,6 +271,22 @@ TEST_F(WithCandidate, AddsItsStrengthsAndShapesAndNothingElse) {
     EXPECT_EQ(job.recordings.size(), job_.recordings.size());
     EXPECT_EQ(model_error(job.model), "");
   }
+}
+
+TEST_F(WithCandidate, SeeksAPlaceWhereItsSettingsLie) {
+  Candidate c = *find(candidates_, "force_over_position");
+  c.shapes_are_free = true;
+  c.settings = {{-0.1, 0.5}, {0.4, 0.5}};
+  const std::vector<double> values{200.0, 2.7}, strengths(c.strengths.size(), 1.0);
+  const Job job = with_candidate(job_, c, values, strengths, c.settings[0]);
+  const FreeParameter& from = job.free[job.free.size() - 2];
+  const FreeParameter& to = job.free.back();
+  EXPECT_FALSE(from.logarithmic);
+  EXPECT_NEAR(from.lower, -0.15, 1e-15);
+  EXPECT_NEAR(from.upper, 0.45, 1e-15);
+  EXPECT_EQ(from.initial, -0.1);
+  EXPECT_EQ(to.lower, -1e6);  // one setting is no range
+  EXPECT_EQ(to.upper, 1e6);
 }
 
 // What other values an absent effect had is forgotten: nothing but the candidate acts.
