@@ -135,7 +135,7 @@ const Section& axis_keys() {
                     "initial state"),
       Key::optional("instruments", Map{instrument_keys()}, DefaultText{"ideal"},
                     "gain, bias, lag, delay and noise of each signal"),
-      Key::optional("controller", Map{controller_keys()}, DefaultText{"default of each key"},
+      Key::optional("controller", Map{controller_keys()}, DefaultText{"those of its keys"},
                     "the slave control unit: limits, moves and the encoder; a fit uses it only to "
                     "compute the command from a `position_reference`")};
   return keys;

@@ -255,9 +255,8 @@ const Section& job_keys() {
       Key::required("recordings", List{{Map{recording_keys()}}},
                     "the recordings; at least one must have the role `fit`"),
       Key::required("free", Map{free_quantities(), 1}, "the quantities to fit; at least one"),
-      Key::optional("fit", Map{fit_keys()}, DefaultText{"default of each key"},
-                    "options of the fit"),
-      Key::optional("limits", Map{limit_keys()}, DefaultText{"default of each key"},
+      Key::optional("fit", Map{fit_keys()}, DefaultText{"those of its keys"}, "options of the fit"),
+      Key::optional("limits", Map{limit_keys()}, DefaultText{"those of its keys"},
                     "limits of the machine for the next experiment")};
   return keys;
 }

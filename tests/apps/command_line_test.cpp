@@ -358,14 +358,14 @@ TEST_F(CommandLineTest, CtrlCKeepsWhatIsFinished) {
   // How to go on is for the user, not for who reads the result; and it works.
   EXPECT_EQ(stopped.out.find("--resume"), std::string::npos);
   const std::string command = path + " --starts=100000 --threads=1 " + output + " --resume";
-  EXPECT_EQ(stopped.err, "\nTo go on from here:\n  fit-params " + command + "\n");
+  EXPECT_EQ(stopped.err, "\nTo continue:\n  fit-params " + command + "\n");
   std::vector<std::string> resume = arguments;
   resume.emplace_back("--resume");
   interrupt_when_ = [&] { return solutions() > finished; };
   const Outcome on = fit(resume);
   EXPECT_EQ(on.exit_code, 130);
-  EXPECT_EQ(on.err.find("Going on with the run that ended in"), 0u) << on.err;
-  EXPECT_TRUE(on.err.ends_with("\nTo go on from here:\n  fit-params " + command + "\n")) << on.err;
+  EXPECT_EQ(on.err.find("Resuming the run in"), 0u) << on.err;
+  EXPECT_TRUE(on.err.ends_with("\nTo continue:\n  fit-params " + command + "\n")) << on.err;
   const Json further = Json::parse(outputs_.read("results/result.json"));
   EXPECT_GT(further.at("starts").size(), finished);
   EXPECT_EQ(further.at("starts").size(), solutions());
@@ -384,7 +384,7 @@ TEST_F(CommandLineTest, CtrlCBeforeAnythingIsFinishedSaysSo) {
       fit({AXISFIT_CONFIGS "/jobs/close-loop.yaml", "--output", outputs_.path("results")});
   EXPECT_EQ(stopped.exit_code, 130);
   EXPECT_EQ(stopped.out, "");
-  EXPECT_TRUE(stopped.err.starts_with("Stopped before a fit was finished")) << stopped.err;
+  EXPECT_TRUE(stopped.err.starts_with("Stopped before any fit finished")) << stopped.err;
   EXPECT_FALSE(std::filesystem::exists(outputs_.path("results/result.json")));
 }
 
@@ -403,11 +403,10 @@ TEST_F(CommandLineTest, ATimeLimitKeepsWhatIsFinished) {
     EXPECT_LT(cpu_time_, limit + 20.0 * kSlower);
     EXPECT_EQ(stopped.exit_code, 124);
   } while (stopped.out.empty() && limit < 300.0);
-  EXPECT_NE(stopped.out.find(
-                fmt::format("Stopped by the time limit of {} s before all was finished", limit)),
+  EXPECT_NE(stopped.out.find(fmt::format("Stopped early by the time limit of {} s", limit)),
             std::string::npos)
       << stopped.err;
-  EXPECT_NE(stopped.err.find("To go on from here:"), std::string::npos) << stopped.err;
+  EXPECT_NE(stopped.err.find("To continue:"), std::string::npos) << stopped.err;
   const Json json = Json::parse(outputs_.read("results/result.json"));
   EXPECT_EQ(json.at("interrupted"), true);
   EXPECT_EQ(json.at("time_limit_reached"), true);
@@ -440,7 +439,7 @@ TEST_F(CommandLineTest, ProgressIsShownOnATerminalAndTakenAway) {
   EXPECT_NE(text.find(std::string(kClear) + "starts  "), std::string::npos) << text;
   EXPECT_NE(text.find(" of 1000000 done"), std::string::npos) << text;
   // What follows begins on a clean line.
-  EXPECT_TRUE(text.substr(text.rfind(kClear)).starts_with(std::string(kClear) + "\r\nNothing is"))
+  EXPECT_TRUE(text.substr(text.rfind(kClear)).starts_with(std::string(kClear) + "\r\nNothing was"))
       << text;
   EXPECT_EQ(outputs_.read("out").find('\033'), std::string::npos);
 
@@ -461,7 +460,7 @@ TEST_F(CommandLineTest, ProgressIsShownOnATerminalAndTakenAway) {
     text = shown_until(limit, {});
     EXPECT_EQ(text.find('\033'), std::string::npos) << text;
   } while (outputs_.read("out").empty() && limit < 300.0);  // no start was finished
-  EXPECT_TRUE(text.starts_with("\r\nNothing is written")) << text;
+  EXPECT_TRUE(text.starts_with("\r\nNothing was saved")) << text;
 }
 
 TEST_F(CommandLineTest, WhatIsQuickShowsNoProgress) {
@@ -514,9 +513,10 @@ TEST_F(CommandLineTest, WhatCanBeDeterminedIsToldBeforeTheFit) {
       text.out.starts_with("What the recordings show\nshort (fit): 151 samples in 0.3 s, "
                            "500 Hz, no gaps\n"))
       << text.out;
-  EXPECT_NE(text.out.find("\nWhat these recordings can tell"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("\nWhat these recordings determine"), std::string::npos) << text.out;
   // How long depends on what else the machine does.
-  const std::regex time("\nThe fit will take about (a second|[0-9]+ s|[0-9]+ min) on this machine");
+  const std::regex time(
+      "\nEstimated run time: about (a second|[0-9]+ s|[0-9]+ min) on this machine");
   EXPECT_TRUE(std::regex_search(text.out, time)) << text.out;
   EXPECT_EQ(text.out.find("\n  ! "), std::string::npos) << text.out;  // nothing looks wrong
   EXPECT_EQ(text.out.find("chi-square"), std::string::npos);
@@ -553,13 +553,13 @@ TEST_F(CommandLineTest, WhatLooksWrongInTheRecordingsIsToldBeforeTheFit) {
   EXPECT_EQ(concerns("fit: false", "fit: true"), "");
   EXPECT_NE(concerns("unit: m/s, sigma", "unit: km/s, sigma").find("acceleration is 0.00"),
             std::string::npos);
-  EXPECT_NE(concerns("unit: m/s, sigma", "unit: m/s, sign: -1, sigma").find("say 'sign: -1'"),
+  EXPECT_NE(concerns("unit: m/s, sigma", "unit: m/s, sign: -1, sigma").find("use 'sign: -1'"),
             std::string::npos);
   EXPECT_NE(concerns("column: acceleration_mps2, unit: m/s^2",
                      "column: acceleration_mps2, unit: m/s^2, factor: 0.1019716")
                 .find("factor: 9.80665"),
             std::string::npos);
-  EXPECT_NE(concerns("unit: s}", "unit: min}").find("Is the unit of the time right?"),
+  EXPECT_NE(concerns("unit: s}", "unit: min}").find("Is the unit of time right?"),
             std::string::npos);
   EXPECT_NE(concerns("sigma: 2 mm/s", "sigma: 0.02 mm/s").find("velocity scatters by 0.001"),
             std::string::npos);
@@ -574,7 +574,7 @@ TEST_F(CommandLineTest, AJobIsMadeForRecordings) {
   EXPECT_EQ(made.out, "");
   EXPECT_EQ(folder_.names("new"), (Names{"axis.yaml", "job.yaml"}));
   EXPECT_TRUE(
-      folder_.without_path(made.err).starts_with("Written: new/axis.yaml\nWritten: new/job.yaml\n"))
+      folder_.without_path(made.err).starts_with("Wrote new/axis.yaml\nWrote new/job.yaml\n"))
       << made.err;
   EXPECT_TRUE(folder_.without_path(made.err).ends_with("      fit-params new/job.yaml\n"));
   EXPECT_EQ(fit({results + "/job.yaml", "--check"}).exit_code, 0);

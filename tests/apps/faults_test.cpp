@@ -105,7 +105,7 @@ TEST_F(FaultsTest, AFullDiskLeavesTheOldResultAndTheWork) {
   std::filesystem::remove(folder_.path("disk/filler"));
   const Answer on = shell(folder_, fit + " --resume");
   EXPECT_EQ(on.exit_code, 0);
-  EXPECT_EQ(on.err.find("Going on with the run that ended in disk/results: "), 0u) << on.err;
+  EXPECT_EQ(on.err.find("Resuming the run in disk/results: "), 0u) << on.err;
   EXPECT_EQ(folder_.names("disk/results"), whole);
   EXPECT_NE(folder_.read("disk/results/result.json"), before);
 
@@ -132,8 +132,8 @@ TEST_F(FaultsTest, AUsableResultIsNotReplacedByAnother) {
   job();
   const std::string before = usable_result();
   constexpr const char* kKeeps =
-      "results keeps the usable result that it holds. To write this one, name another\nfolder with "
-      "--output.\n";
+      "results already holds a usable result, which was kept. To save this one, choose\nanother "
+      "folder with --output.\n";
   job("{max_iterations: 1}");
   const Answer poor = shell(folder_, "fit-params job.yaml --output results");
   EXPECT_EQ(poor.exit_code, 3);

@@ -107,8 +107,8 @@ def numbers(name, text):
     result = json.loads(text)
     for other in ("message", "version", "wall_time_s"):
         del result[other]
-    # A refused effect may have no minimum, and where its parameters stop is chance.
-    result["effects"] = [e for e in result.get("effects", []) if e["decision"] != "refused"]
+    # A rejected effect may have no minimum, and where its parameters stop is chance.
+    result["effects"] = [e for e in result.get("effects", []) if e["decision"] != "rejected"]
     return result
 
 

@@ -98,7 +98,7 @@ TEST_F(InitJobTest, WhatTheRecordingsLeaveOpenIsNotFree) {
   make({AXISFIT_TESTDATA "/clean-slow.csv"}, AXISFIT_CONFIGS "/axes/x.yaml");
   EXPECT_EQ(folder_.names(), (std::set<std::string>{"job.yaml"}));
   const std::string text = folder_.read("job.yaml");
-  EXPECT_NE(text.find("\n  # V_L: {}   left out: no recorded signal depends on it"),
+  EXPECT_NE(text.find("\n  # V_L: {}   not free: no recorded signal depends on it"),
             std::string::npos)
       << text;
   for (const FreeParameter& p : read().job.free) EXPECT_NE(quantity_list()[p.quantity].name, "V_L");
@@ -137,7 +137,7 @@ TEST_F(InitJobTest, ARowOfUnitsCountsAsTheNames) {
         "position: {column: pos, unit: um}", "velocity: {column: vel, unit: mm/s}"})
     EXPECT_NE(job.find(line), std::string::npos) << line << '\n' << job;
   // What the row says is checked as what a name says.
-  EXPECT_NE(job.find("though the header says g it is"), std::string::npos) << job;
+  EXPECT_NE(job.find("the header says g, but it is"), std::string::npos) << job;
   expect_the_driven_mass(fitted(read()), 1.0 / 60.0);
 }
 
@@ -307,7 +307,7 @@ TEST_F(InitJobTest, SaysWhatIsMissing) {
             "a.csv: no column shows how the axis moved; the columns are iq. If one of them does, "
             "rename it, for example to position_mm or velocity_mps; otherwise record that signal.");
   EXPECT_EQ(message("foo,bar"),
-            "a.csv: no column shows what drove the axis; the columns are bar (not understood). If "
+            "a.csv: no column shows what drove the axis; the columns are bar (not recognised). If "
             "one of them does, rename it, for example to current_A, force_N or command_V; "
             "otherwise record that signal.");
   EXPECT_TRUE(folder_.names().count("job.yaml") == 0);

@@ -216,7 +216,7 @@ TEST(ResultTest, AFixedCouplingAlsoTellsThePredictionError) {
             fit.run_result.first.recordings[0].signals[0].prediction_rmse.value());
   EXPECT_TRUE(velocity.contains("prediction_reduced_chi_square"));
   EXPECT_EQ(fit.json.at("observer_gain"), 100.0);
-  EXPECT_NE(fit.text.find("predicted rmse"), std::string::npos);
+  EXPECT_NE(fit.text.find("prediction rmse"), std::string::npos);
 }
 
 TEST(ResultTest, ReportHasEveryFreeParameterAndTheVerdict) {
@@ -376,8 +376,8 @@ TEST(ResultTest, AResidualThatIsNotExplainedNamesItsSuspects) {
   EXPECT_EQ(keys(rubbing->at("strengths")[0]), (std::vector<std::string>{"name", "unit", "value"}));
   EXPECT_EQ(rubbing->at("strengths")[0].at("name"), "coulomb_friction.F_c");
   EXPECT_GT(rubbing->at("strengths")[0].at("value"), 0.5);
-  for (const char* part : {"\nSuspects", "\n  coulomb_friction ", "\nUnexplained: up to ",
-                           "\nMissing force", "at rest are left out"})
+  for (const char* part : {"\nSuspected effects", "\n  coulomb_friction ", "\nUnexplained: up to ",
+                           "\nMissing force", "at standstill are excluded"})
     EXPECT_NE(fit.text.find(part), std::string::npos) << part << " in\n" << fit.text;
 }
 
@@ -396,9 +396,8 @@ TEST(ResultTest, WhatAResidualDependsOnIsNamed) {
   fit.run_result.diagnosis->explained = true;
   std::string text = report_text(fit.run_result);
   std::ranges::replace(text, '\n', ' ');
-  EXPECT_NE(
-      text.find("A trace is left that depends on load, motor angle: at most 25 % of the mean "),
-      std::string::npos);
+  EXPECT_NE(text.find("A small dependence on load, motor angle remains: at most 25 % of the mean "),
+            std::string::npos);
 }
 
 TEST(ResultTest, ADriftOfUnknownErrorHasNone) {
@@ -517,7 +516,7 @@ TEST(ResultTest, StrongCorrelationsOfEitherSignAreNamed) {
   fit.reduced_chi_square = 1.0;
   fit.correlation = Eigen::Matrix3d{{1.0, 0.96, -0.98}, {0.96, 1.0, 0.94}, {-0.98, 0.94, 1.0}};
   EXPECT_NE(on_one_line(uncertainty_text(fit))
-                .find("Strongly correlated: M and K_f by -0.98, M and B_a by 0.96."),
+                .find("Strongly correlated: M and K_f (-0.98), M and B_a (0.96)."),
             std::string::npos)
       << uncertainty_text(fit);
 }
@@ -553,11 +552,12 @@ TEST(ResultTest, TheTimeOfAFitIsSaidToItsFirstDigit) {
   const auto told = [&](double seconds) {
     return on_one_line(run_time_text(job, {.evaluation = 0.01, .expected = seconds}));
   };
-  EXPECT_EQ(told(0.9),
-            "The fit will take about a second on this machine with 1 thread; if the model does not "
-            "explain the recordings, up to ten times that.");
-  EXPECT_EQ(told(36.0).find("The fit will take about 40 s on this machine"), 0u);
-  EXPECT_EQ(told(1300.0).find("The fit will take about 20 min on this machine"), 0u);
+  EXPECT_EQ(
+      told(0.9),
+      "Estimated run time: about a second on this machine with 1 thread; up to ten times that "
+      "if the model does not explain the recordings.");
+  EXPECT_EQ(told(36.0).find("Estimated run time: about 40 s on this machine"), 0u);
+  EXPECT_EQ(told(1300.0).find("Estimated run time: about 20 min on this machine"), 0u);
   job.options.threads = 3;
   EXPECT_NE(told(0.9).find("with 3 threads; "), std::string::npos);
 }
@@ -570,14 +570,15 @@ TEST(ResultTest, ErrorsOfAHeldSimulationStandBesideTheFreeRunningOnes) {
   SignalScore score{{.fitted = true}, SignalErrors{.rmse = 0.5}, SignalErrors{0.25, 3.0, 1.5}};
   run_result.scores = {{.signals = {score}, .forces = {{}, {}}}};
   const auto told = [&] { return on_one_line(selection_text(run_result)); };
-  EXPECT_NE(told().find("Errors of the held simulation, before and after rmse of range red. chi2 "
-                        "free-running rmse fitted, fit: velocity declared 0.25 m/s 3 % 1.5 "
-                        "0.5 m/s "),
-            std::string::npos)
+  EXPECT_NE(
+      told().find("Errors of the tracking simulation, before and after rmse of range red. chi2 "
+                  "free-running rmse fitted, fit: velocity baseline 0.25 m/s 3 % 1.5 "
+                  "0.5 m/s "),
+      std::string::npos)
       << told();
   run_result.scores[0].signals[0].tracking.reset();
   EXPECT_NE(told().find("Errors of the free-running simulation, before and after rmse of range "
-                        "red. chi2 fitted, fit: velocity declared 0.5 m/s 0 % 0 Missing force"),
+                        "red. chi2 fitted, fit: velocity baseline 0.5 m/s 0 % 0 Missing force"),
             std::string::npos)
       << told();
 }
@@ -673,8 +674,8 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
   expect_finite(json, "");
 
   for (const char* part :
-       {"  declared  unit\n", "\n  accepted  coulomb_friction ", "\n  refused ",
-        "\n  judged, validate: velocity\n    declared ", "\n    + coulomb_friction ",
+       {"  baseline  unit\n", "\n  accepted  coulomb_friction ", "\n  rejected ",
+        "\n  judged, validate: velocity\n    baseline ", "\n    + coulomb_friction ",
         "Missing force on the arm, before and after"})
     EXPECT_NE(found.text.find(part), std::string::npos) << part << " in\n" << found.text;
 

@@ -50,12 +50,12 @@ const union = ([a, b], [c, d]) => [Math.min(a, c), Math.max(b, d)];
 class Chart {
   /** linked is told of zooms and cursors: zoom(chart, x), point(chart, x). */
   static async of(figure, spec, columns, linked) {
-    const series = await ShortlistEntry.all(spec.series.map(async ({label, role, style, x, y, minus}) => {
-      const [xs, ys] = await ShortlistEntry.all([columns.values(x), columns.values(y, minus)]);
+    const series = await Promise.all(spec.series.map(async ({label, role, style, x, y, minus}) => {
+      const [xs, ys] = await Promise.all([columns.values(x), columns.values(y, minus)]);
       const drawn = style ?? (spec.kind === "points" ? "dots" : "line");
       return {label, role, style: drawn, xs, ys, sorted: isSorted(xs), shown: true};
     }));
-    const events = await ShortlistEntry.all((spec.events ?? []).map(async ({kind, text, at}) =>
+    const events = await Promise.all((spec.events ?? []).map(async ({kind, text, at}) =>
         Array.from(await columns.values(at), (time) => ({at: time, kind, text}))));
     return new Chart(figure, spec, series, events.flat(), linked);
   }

@@ -77,7 +77,7 @@ class Columns {
 
   async values(index, less) {
     const key = `${index} ${less}`;
-    const columns = await ShortlistEntry.all([index, less].map((i) => i !== undefined && this.column(i)));
+    const columns = await Promise.all([index, less].map((i) => i !== undefined && this.column(i)));
     if (!this.arrays.has(key)) this.arrays.set(key, valuesOf(...columns));
     return this.arrays.get(key);
   }

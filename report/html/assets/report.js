@@ -49,7 +49,7 @@ class Report {
     const decoded = new Columns(columns);
     const problems = [];
     for (const spec of charts) {
-      await new ShortlistEntry((go) => setTimeout(go));
+      await new Promise((go) => setTimeout(go));
       const figure = document.getElementById(spec.id);
       if (!figure) continue;
       try {

@@ -83,7 +83,7 @@ async function pngOf(chart) {
     canvas.width = 2 * image.width;
     canvas.height = 2 * image.height;
     canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
-    return await new ShortlistEntry((done) => canvas.toBlob(done, "image/png"));
+    return await new Promise((done) => canvas.toBlob(done, "image/png"));
   } finally {
     URL.revokeObjectURL(url);
   }

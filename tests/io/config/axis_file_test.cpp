@@ -312,7 +312,7 @@ TEST_F(AxisFileTest, EveryMistakeIsNamedWithItsPlace) {
            "27:14: unknown key 'scale'; known keys: gain, bias, lag, delay, noise"},
           {"  period: 4 ms", "  perod: 4 ms", "29:3: unknown key 'perod'; did you mean 'period'?"},
           // Kinds of values.
-          {"name: test axis", "name:", "1:1: name must be a text, not empty"},
+          {"name: test axis", "name:", "1:1: name must be text, not empty"},
           {"current_source", "curent_source",
            "2:8: drive must be one of velocity_loop, current_source, force_source, not "
            "'curent_source'; did you mean 'current_source'?"},

@@ -342,8 +342,8 @@ TEST(ConfigNode, ReadsTexts) {
   EXPECT_EQ(value_of("abc", string), "abc");
   EXPECT_EQ(value_of("'null'", string), "null");
   EXPECT_EQ(value_of("12", string), "12");
-  EXPECT_EQ(complaint("''", string), "x must be a text, not empty");
-  EXPECT_EQ(complaint("[a]", string), "x must be a text, not a list");
+  EXPECT_EQ(complaint("''", string), "x must be text, not empty");
+  EXPECT_EQ(complaint("[a]", string), "x must be text, not a list");
 }
 
 TEST(ConfigNode, ReadsChoices) {

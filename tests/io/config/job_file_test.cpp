@@ -257,7 +257,8 @@ TEST_F(JobFileTest, TrimLeavesOutWhatComesAfter) {
   EXPECT_EQ(recording.measurements.front().values.size(), 10u);
   EXPECT_EQ(
       errors(with_lines("    trim: {from: 1 s}\n")),
-      "job.yaml:4:11: 0 samples of 14, from -0.008 s to 0.064 s, are left: at least 10 must be");
+      "job.yaml:4:11: only 0 samples of 14, from -0.008 s to 0.064 s, remain: at least 10 are "
+      "needed");
   EXPECT_EQ(errors(with_lines("    trim: {from: 1, until: 2 s}\n")),
             "job.yaml:4:18: from needs a unit, for example '1 s'\n"
             "job.yaml:4:21: unknown key 'until'; known keys: from, to");
@@ -393,9 +394,11 @@ TEST_F(JobFileTest, UnscoredInitialSamplesMustLeaveSomeToScore) {
       with_lines("    score_initial_samples: false\n    initial_samples: 13\n");
   EXPECT_FALSE(read(text).job.recordings.front().score_initial_samples);
   EXPECT_EQ(errors(replaced(text, "13", "14")),
-            "job.yaml:5:22: 14 initial samples that are not scored leave nothing of 14 to score");
+            "job.yaml:5:22: with 14 unscored initial samples, nothing of the 14 samples is left to "
+            "score");
   EXPECT_EQ(errors(replaced(text, "    initial_samples: 13\n", "")),
-            "job.yaml:3:5: 20 initial samples that are not scored leave nothing of 14 to score");
+            "job.yaml:3:5: with 20 unscored initial samples, nothing of the 14 samples is left to "
+            "score");
 }
 
 TEST_F(JobFileTest, AccelerationAtRestIsLeftOutUnlessKept) {
@@ -421,7 +424,7 @@ TEST_F(JobFileTest, AccelerationAtRestIsLeftOutUnlessKept) {
   }
   EXPECT_TRUE(read(with("keep")).job.recordings.front().measurements[1].counts(150));
   EXPECT_EQ(errors(with("drop")),
-            "job.yaml:4:27: acceleration_at_standstill must be one of exclude, keep, not 'drop'");
+            "job.yaml:4:33: acceleration_at_standstill must be one of exclude, keep, not 'drop'");
 }
 
 TEST_F(JobFileTest, OverridesHoldForTheirRecording) {
@@ -618,11 +621,11 @@ TEST_F(JobFileTest, RecordingsMayBeInAnotherFolder) {
 }
 
 TEST_F(JobFileTest, MistakesInTheAxisFileAreThoseOfTheJob) {
-  EXPECT_EQ(errors_with("mass.yaml", "none.yaml"), "job.yaml:1:7: there is no axis file none.yaml");
+  EXPECT_EQ(errors_with("mass.yaml", "none.yaml"),
+            "job.yaml:1:7: axis file none.yaml does not exist");
   EXPECT_EQ(errors_with("axis: mass.yaml\n", ""),
             "job.yaml:1:1: key 'axis' is missing in the file");
-  EXPECT_EQ(errors_with("mass.yaml", "[mass.yaml]"),
-            "job.yaml:1:7: axis must be a text, not a list");
+  EXPECT_EQ(errors_with("mass.yaml", "[mass.yaml]"), "job.yaml:1:7: axis must be text, not a list");
   folder_.write("mass.yaml", replaced(kMass, "4 kg", "4"));
   EXPECT_EQ(errors(std::string(kJob) + "fit: {starts: 0}\n"),
             "mass.yaml:6:6: M needs a unit, for example '4 kg'\n"
@@ -718,14 +721,13 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
            // How to fit.
            {"free:\n", "fit: {threads: 2}\nfree:\n",
             "8:7: unknown key 'threads'; known keys: observer, initial_observer_gain, loss, "
-            "huber_width, "
-            "max_iterations, starts, seed, spread, step"},
+            "huber_width, max_iterations, starts, seed, spread, step"},
            {"free:\n", "fit: {observer: loose}\nfree:\n",
             "8:17: observer must be continuation, none, or a fixed gain such as {fixed: 300 1/s}"},
            {"free:\n", "fit: {observer:}\nfree:\n",
             "8:7: observer must be continuation, none, or a fixed gain such as {fixed: 300 1/s}"},
            {"free:\n", "fit: {observer: none, initial_observer_gain: 3 1/s}\nfree:\n",
-            "8:39: initial_observer_gain needs observer: continuation"},
+            "8:46: initial_observer_gain needs observer: continuation"},
            {"free:\n", "fit: {observer: {fixd: 3 1/s}}\nfree:\n",
             "8:18: unknown key 'fixd'; did you mean 'fixed'?"},
            {"free:\n", "fit: {observer: {fixed: 3}}\nfree:\n",
@@ -745,18 +747,16 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
 // The signal that holds the simulation to the end is taken to be on time.
 TEST_F(JobFileTest, RefusesALateSignalThatHoldsTheSimulation) {
   const std::string fixed = std::string(kJob) + "fit: {observer: {fixed: 300 1/s}}\n";
-  const std::string message =
-      "a fixed coupling holds the simulation to the recorded velocity as if that had no ";
+  const std::string message = "a fixed observer gain assumes that the recorded velocity has no ";
   EXPECT_EQ(errors(replaced(fixed, "M: {}", "velocity.delay: {}")),
             "job.yaml:9:19: " + message +
-                "delay: leave velocity.delay out and fit T_d, which delays the whole motion, or "
-                "use observer: continuation");
+                "delay: remove velocity.delay and fit T_d, which delays the whole motion, or use "
+                "observer: continuation");
   EXPECT_EQ(
       errors(replaced(fixed, "M: {}", "velocity.lag: {}")),
-      "job.yaml:9:17: " + message + "lag: leave velocity.lag out and use observer: continuation");
-  EXPECT_EQ(
-      errors(replaced(fixed, "    signals:", "    set: {velocity.lag: 1 ms}\n    signals:")),
-      "job.yaml:7:7: " + message + "lag: leave velocity.lag out and use observer: continuation");
+      "job.yaml:9:17: " + message + "lag: remove velocity.lag and use observer: continuation");
+  EXPECT_EQ(errors(replaced(fixed, "    signals:", "    set: {velocity.lag: 1 ms}\n    signals:")),
+            "job.yaml:7:7: " + message + "lag: remove velocity.lag and use observer: continuation");
   EXPECT_NO_THROW(read(replaced(fixed, "M: {}", "position.delay: {}")));
   EXPECT_NO_THROW(read(replaced(kJob, "M: {}", "velocity.delay: {}")));
 }

@@ -241,9 +241,10 @@ TEST_F(OutputFolderTest, LeavesNothingBelowARegularFile) {
 }
 
 TEST_F(OutputFolderTest, LeavesNothingWhenTheFolderCannotBeMade) {
-  EXPECT_EQ(error_in(kTooLong), "results not written to " + kTooLong + ": File name too long");
+  EXPECT_EQ(error_in(kTooLong),
+            "results could not be written to " + kTooLong + ": File name too long");
   EXPECT_EQ(error_in("new/" + kTooLong),
-            "results not written to new/" + kTooLong + ": File name too long");
+            "results could not be written to new/" + kTooLong + ": File name too long");
   EXPECT_EQ(folder_.names(), Names{});
 }
 

@@ -287,7 +287,7 @@ describe("the synthetic report", {skip: !own && "another page is tested"}, () =>
     await over.scrollIntoViewIfNeeded();
     const box = await over.boundingBox();
     await page.mouse.move(box.x + 0.37 * box.width, box.y + 50);
-    const [at, measured] = await ShortlistEntry.all(["#velocity-0 .at", "#velocity-0 .value >> nth=0"]
+    const [at, measured] = await Promise.all(["#velocity-0 .at", "#velocity-0 .value >> nth=0"]
                                                  .map((s) => page.locator(s).textContent()));
     const time = at.split(" ")[1];
     const i = decimals(data.columns[0]).indexOf(Number(time));
@@ -363,7 +363,7 @@ describe("the synthetic report", {skip: !own && "another page is tested"}, () =>
     await page.close();
     await open({}, pathToFileURL(file).href);
     assert.ok(await page.locator("#velocity-0 > svg").isVisible());
-    assert.match(await page.locator(".quiet").textContent(), /still pictures/);
+    assert.match(await page.locator(".quiet").textContent(), /static pictures/);
     assert.equal(await page.locator("#velocity-1 > svg").isVisible(), false);
   });
 
