@@ -1,11 +1,11 @@
-// Ending early what takes long.
+// Early termination of long computations.
 #pragma once
 
 #include <atomic>
 
 namespace axisfit {
 
-/// Set from outside, as by a signal handler: what is under way ends soon.
+/// Set from outside, for instance by a signal handler: the computation then ends soon.
 using StopFlag = std::atomic<bool>;
 
 inline bool is_set(const StopFlag* flag) {

@@ -7,12 +7,12 @@
 
 namespace axisfit {
 
-/// Number of threads for a wish of `wanted`; zero means as many as the machine has.
+/// Number of threads if `wanted` are requested; zero means as many as the machine has.
 int thread_count(int wanted);
 
 /// For as long as it lives, parallel_for() on this thread has `threads` threads to spread its work
-/// over, this one included; 0 as for thread_count(). Inside of such work the same threads are
-/// shared: there another crew is none.
+/// over, this one included; 0 as for thread_count(). Nested work shares the same threads: another
+/// crew has no effect there.
 class Crew {
  public:
   explicit Crew(int threads);
@@ -27,9 +27,9 @@ class Crew {
 };
 
 /// Calls work(i) for every i below `count`, on all threads of the crew that have nothing else to
-/// do, in no particular order; without a crew on this one. Work may call it in turn: who has come
-/// to the end of the outer loop helps with the inner ones. The first exception is thrown on when
-/// all that was begun has ended.
+/// do, in no particular order; without a crew on this one. Work may call it in turn: threads that
+/// have finished the outer loop help with the inner ones. The first exception is rethrown when all
+/// calls that were begun have ended.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& work);
 
 }  // namespace axisfit

@@ -1,4 +1,4 @@
-// Text from elsewhere that goes into messages and files of lines.
+// Text from user files for messages and line-based files.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Work that may end its process.
+// Work that may crash its process.
 #pragma once
 
 #include <functional>
@@ -7,8 +7,8 @@
 
 namespace axisfit {
 
-/// What `work` returns, done in a process of its own; nothing if that process dies. Other threads
-/// do not exist there: the work must need nothing that they might hold. Throws std::system_error
+/// What `work` returns, run in a separate process; nothing if that process dies. Other threads do
+/// not exist there: the work must not need locks that they might own. Throws std::system_error
 /// where there can be no other process.
 std::optional<std::string> run_in_subprocess(const std::function<std::string()>& work);
 

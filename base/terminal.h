@@ -1,4 +1,4 @@
-// What a terminal gets beyond plain text. Pipes and files never get any of it.
+// Formatting for terminals. Pipes and files get plain text.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace axisfit {
 /// Whether a file descriptor is a terminal that can clear a line and set type: TERM is not dumb.
 bool is_terminal(int file);
 
-/// The same, and nobody asked by NO_COLOR (no-color.org) to have no colours.
+/// The same, and NO_COLOR (no-color.org) is not set.
 bool takes_colour(int file);
 
 /// Columns of the terminal; without one those of COLUMNS, or 80.

@@ -1,9 +1,9 @@
-// The equations of one mode as what they are without smooth forces: affine,
+// The equations of one mode, which are affine without smooth forces,
 //
 //   y' = A y + B w
 //
-// in the state y and the inputs w. A and B are read off the one description that there is,
-// equations.h, as are the guards in guards.h.
+// in the state y and the inputs w. A and B are evaluated from the only implementation, equations.h,
+// as are the guards in guards.h.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What drives the axis: a set-velocity voltage that is held between switching instants.
+// The input of the axis: a set-velocity voltage that is constant between switching instants.
 #pragma once
 
 #include <vector>

@@ -2,7 +2,7 @@
 //
 // Every 5 ms it reads the encoder on the motor shaft and writes the set-velocity voltage U, held
 // until the next sample. Every 80 ms it receives a track point (position and speed) from the master
-// unit. The paper gives the periods and says that the law combines position, velocity and
+// unit. The paper gives the periods and states that the law combines position, velocity and
 // integrated position; the form and the gains are assumed:
 //
 //   U = clip((k_ff v_ref + k_p e + k_i T_s sum e) 10 V/(m/s), -limit, limit),  e = reference -

@@ -1,13 +1,13 @@
-// The guards of one mode in the course of a step, and whether one is met there.
+// The guards of one mode during a step, and whether one crosses zero.
 //
 // Without smooth forces a guard is affine in the state y and the inputs w, G y + H w, and so it is
 // at any instant within a step in what the step begins with:
 //
 //   g(t) = g(0) + G Psi(t) f + (G Xi(t) r + H t) s
 //
-// (propagator.h; f = y', r and s the ramps and slopes of the observer's target). So a step of any
-// length is looked at as closely as its fastest oscillation asks for, at the cost of one product
-// with a matrix.
+// (propagator.h; f = y', r and s the ramps and slopes of the observer's target). So the guards of a
+// step of any length are evaluated as densely as its fastest oscillation requires, at the cost of
+// one product with a matrix.
 #pragma once
 
 #include <array>

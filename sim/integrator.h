@@ -1,19 +1,21 @@
 // Integration of the axis through its modes, with located events that carry derivatives.
 //
-// Method. Within a mode the system is affine but for the smooth forces of effects, so the affine
-// part is propagated exactly (propagator.h) and the rest by the classical Runge-Kutta method in the
-// moving frame of the affine part, with its value at the start of the step frozen into that part:
-// a constant rest is exact too. Stiffness of the current loop or the gear does not limit the step.
+// Method. Within a mode the system is affine except for the smooth forces of effects. The affine
+// part is propagated exactly (propagator.h), the smooth forces by the classical Runge-Kutta method
+// in the moving frame of the affine part. Their value at the start of the step belongs to the
+// affine part, so that constant forces are exact too. Stiffness of the current loop or the gear
+// does not limit the step.
 //
-// Events. Every step is first tried on plain values, and all guards of the mode are looked at: at
-// instants that are close against the mode's fastest oscillation, by a cubic through values and
-// rates between them, and halfway where that turns much. A step that meets one is cut in halves
-// until one that is short enough for the Taylor series leads across the guard, where Newton's
-// method ends the search. Then the step is taken in T, and the crossing time is corrected by
-// -g / g' in T: the event time carries its derivatives, and so does every length that is measured
-// from it. After each event, and after each switch of the command, steps grow again from a short
-// one, so that fast transients are resolved and what they set off is seen. Where all is affine,
-// guards are looked at as linear forms (guards.h), and steps grow to the interval of the readings.
+// Events. Every step is first tried on plain values, and all guards of the mode are evaluated: at
+// instants that are close compared with the period of the mode's fastest oscillation, by a cubic
+// through values and rates between them, and halfway where the cubic is strongly curved. A step in
+// which a guard changes sign is halved until it is short enough for the Taylor series, on which
+// Newton's method ends the search. Then the step is taken in T, and the crossing time is corrected
+// by -g / g' in T: the event time carries its derivatives, and so does every length that is
+// measured from it. After each event, and after each switch of the command, steps grow again from a
+// short one, so that fast transients and the events that they cause are resolved. Where everything
+// is affine, guards are evaluated as linear forms (guards.h), and steps grow to the interval of the
+// readings.
 //
 // Limits. Derivatives are those of a fixed sequence of transversal events; where two events
 // coincide or a guard is touched without crossing, they are one-sided. The smooth forces must not

@@ -1,4 +1,4 @@
-// Motions to run an axis through.
+// Motions of an axis.
 #pragma once
 
 #include <cstdint>

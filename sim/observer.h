@@ -1,7 +1,7 @@
-// The term that ties a simulation to a measurement.
+// The observer: a correction term that makes a simulation track a measurement.
 //
-// It gives the fit its convergence (a simulation that follows the data cannot drift into a wrong
-// minimum) and the diagnosis its missing force (the force that had to be added).
+// The fit converges because of it (a simulation that tracks the data cannot drift into a wrong
+// minimum), and it measures the missing force (the force that it adds).
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace axisfit {
 
-/// How firmly the simulated axis is held to the measured one. All zero: free running.
+/// The gains of the observer. All zero: free-running.
 struct Observer {
   /// 1/s. y1' += velocity (v - y1), v the measured velocity of the arm.
   double velocity = 0.0;
@@ -31,8 +31,7 @@ struct Observer {
   static Observer of_position(double rate) { return {0.0, 2.0 * rate, rate * rate}; }
 };
 
-/// What the simulation is held to, at one instant: measured arm velocity m/s and encoder position
-/// m.
+/// The target of the observer at one instant: measured arm velocity m/s and encoder position m.
 template <class T>
 struct TargetOf {
   T velocity{0.0};
@@ -51,8 +50,8 @@ using Target = TargetOf<double>;
 /// (s, increasing), and that is right in the mean.
 ///
 /// The chord over an interval h is off by f'' h^2 / 12 on average, towards the inside of the curve:
-/// a simulation that is held to it firmly reads as if it were lighter. Weighted by a hat over the
-/// two intervals beside a sample, h1 and h2, chords are off by f'' (h1^3 + h2^3) / 24, and
+/// a simulation that tracks chords at a high gain accelerates like a lighter arm. Weighted by a hat
+/// over the two intervals beside a sample, h1 and h2, chords are off by f'' (h1^3 + h2^3) / 24, and
 /// corners that are lower by d by d (h1 + h2) / 2. So d = f'' (h1^2 - h1 h2 + h2^2) / 12, with f''
 /// from divided differences: for even sampling a twelfth of the second difference.
 std::vector<double> target_corners(std::span<const double> times, std::span<const double> values);

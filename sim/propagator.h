@@ -6,12 +6,12 @@
 //   y(t + h) = y + Psi(h) f(y) + Xi(h) s        (exact)
 //
 // however stiff A is, and without error where f is zero. Psi and Xi come from their Taylor series
-// at the shortest length and from doubling: with E = exp(hA) - I, E(2h) = 2E + E E,
-// Psi(2h) = 2 Psi + E Psi and Xi(2h) = 2 Xi + E Xi + h Psi. (E = A Psi, but that product cancels
-// badly when A is stiff.) The slope s is a sum of two given vectors r, ramps, or zero, so that Xi
-// is only needed times these. The lengths are made when they are asked for; all of them are kept:
-// they are what the location of events needs, see integrator.h. Literature: N. J. Higham, Functions
-// of Matrices, SIAM 2008, chapter 10.
+// at the shortest length and from doubling: with E = exp(hA) - I, E(2h) = 2E + E E, Psi(2h) = 2 Psi
+// + E Psi and Xi(2h) = 2 Xi + E Xi + h Psi. (E = A Psi, but that product cancels badly when A is
+// stiff.) The slope s is a sum of two given vectors r, ramps, or zero, so that Xi is only needed
+// times these. The matrices of a length are computed when first needed, and all are kept for the
+// location of events, see integrator.h. Literature: N. J. Higham, Functions of Matrices, SIAM 2008,
+// chapter 10.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// The description of one scalar of the model: the only place where its name, unit and range stand.
-// Reading, bounds, tables, CSV headers and JSON are all made from it.
+// The description of one scalar of the model: the only place that has its name, unit and range.
+// Reading, bounds, tables, CSV headers and JSON use it.
 #pragma once
 
 #include <limits>

@@ -1,9 +1,9 @@
-// The instruments of a recording: what they read at its samples, with their lags and delays.
+// The readings of the instruments at the samples of a recording, with their lags and delays.
 //
-// Neither acts on the axis, so both are applied to the readings afterwards. That needs them at more
-// instants than the samples where an instrument has one: there every interval is cut in pieces, and
-// between them the reading is taken as linear. The lag's response to that is exact, and regular at
-// a lag of zero.
+// Neither acts on the axis, so both are applied to the readings afterwards. An instrument with a
+// lag or delay is therefore read at more instants than the samples: every interval is divided, and
+// the reading is taken as linear in between. The lag's response to that is exact, and regular at a
+// lag of zero.
 #pragma once
 
 #include <algorithm>

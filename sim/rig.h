@@ -1,4 +1,4 @@
-// A test rig: an axis, its controller, and instruments that sample, err and are noisy.
+// A test rig: an axis, its controller, and instruments with sampling, errors and noise.
 #pragma once
 
 #include <array>

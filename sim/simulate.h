@@ -1,4 +1,4 @@
-// The axis along a command, read at given instants.
+// The simulation of an axis over a command, with readings at given instants.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace axisfit {
 
-/// What a tracking simulation is held to: measured values at the instants of the simulation, those
-/// of a curve as target_corners(). A series that the observer does not use may be empty.
+/// The target of a tracking simulation: measured values at the instants of the simulation, those of
+/// a smooth curve from target_corners(). A series that the observer does not use may be empty.
 struct TargetSeries {
   std::span<const double> velocity;  ///< m/s
   std::span<const double> position;  ///< m
@@ -31,8 +31,8 @@ struct SimulationResult {
 };
 
 /// Options for a simulation that is compared with a recording, with budgets that such a simulation
-/// keeps to by far: less than one event per sample, and a hundred steps for each sample and each
-/// `step` (s). Parameters with which the axis chatters or swings faster are none to go on from.
+/// stays far below: less than one event per sample, and a hundred steps for each sample and each
+/// `step` (s). Parameters with which the axis chatters or oscillates faster are rejected.
 inline IntegratorOptions recording_options(std::span<const double> times, double step) {
   const double samples = static_cast<double>(times.size());
   constexpr double kMost = 1e15;  // fits a long

@@ -30,7 +30,7 @@ enum class InitialState {
 enum class NoiseSource {
   given,
   differences,  ///< of the samples, see noise.h
-  standstill,   ///< what the instrument shows at rest, see rest.h
+  standstill,   ///< what the instrument shows at rest, see standstill.h
   fit,          ///< estimated together with the parameters, see estimate_with_noise
 };
 
@@ -41,7 +41,7 @@ struct Measurement {
   double sigma = 0.0;          ///< standard deviation of its noise, > 0
   NoiseSource noise = NoiseSource::differences;
   bool fitted = true;  ///< false: compared and reported, not part of the fit
-  /// Samples that are neither fitted nor judged, see rest.h; empty: none.
+  /// Samples that are neither fitted nor judged, see standstill.h; empty: none.
   std::vector<bool> excluded;
 
   bool counts(std::size_t sample) const { return excluded.empty() || !excluded[sample]; }
@@ -59,7 +59,7 @@ struct Recording {
   /// Samples at the start from which an initial state is taken.
   std::size_t initial_samples = 20;
   bool score_initial_samples = true;        ///< false: errors are reported without them
-  bool acceleration_at_standstill = false;  ///< whether it counts while the arm rests, see rest.h
+  bool acceleration_at_standstill = false;  ///< see standstill.h
   /// Samples of a recording to be fitted that are only judged, as if they were another recording;
   /// empty: none.
   std::vector<bool> held_out;

@@ -1,5 +1,5 @@
-// What a recording shows by itself, before any model is asked: how it is sampled, what its signals
-// cover, and whether they agree with one another.
+// Checks of a recording without a model: its sampling, the ranges of its signals, and whether they
+// are consistent.
 #pragma once
 
 #include <optional>
@@ -27,8 +27,8 @@ struct ValueCheck {
   double low = 0.0, high = 0.0;
   double noise = 0.0;       ///< white part, from differences (noise.h)
   double resolution = 0.0;  ///< step between the values; zero: none
-  /// The longest run of equal values that neither a rest of the arm nor rounding explains: a sensor
-  /// that hangs. Zero samples where there is none.
+  /// The longest run of equal values that neither standstill nor rounding explains: a stuck sensor.
+  /// Zero samples where there is none.
   std::size_t stuck = 0;
   double stuck_at = 0.0;  ///< s, where it begins
   /// Samples at exactly the lowest or the highest value while the arm moves, more than noise would
@@ -44,7 +44,7 @@ inline constexpr double kSameUnit = 0.14;
 /// How a recorded rate compares with the rate of change of another signal.
 struct RateRatio {
   double ratio = 0.0;        ///< rate = ratio * d(values)/dt
-  double correlation = 0.0;  ///< between the changes that the two tell of, -1 to 1
+  double correlation = 0.0;  ///< between the changes in the two, -1 to 1
 
   /// Whether the one is the rate of the other at all, whatever the factor. Then noise makes the
   /// ratio wrong by no more than some 10 %.
@@ -58,11 +58,10 @@ struct RateRatio {
 std::optional<RateRatio> rate_ratio(std::span<const double> times, std::span<const double> values,
                                     std::span<const double> rate);
 
-/// How firmly to hold a simulation to the recording (a fixed observer gain, job.h) so that what its
-/// model lacks shows: at this rate a hundredth of the acceleration that the axis usually has would
-/// move it by ten times the noise. A firmer hold hides more and feeds the noise into the
-/// simulation; a looser one lets it drift. 1/s to the velocity, or where that is empty rad/s to the
-/// position.
+/// A fixed observer gain (job.h) at which missing physics shows: a hundredth of the usual
+/// acceleration of the axis then moves the simulation by ten times the noise. A higher gain hides
+/// more and feeds the noise into the simulation; a lower one lets it drift. 1/s to the velocity, or
+/// where that is empty rad/s to the position.
 double suggested_observer_gain(std::span<const double> times, std::span<const double> position,
                                std::span<const double> velocity);
 

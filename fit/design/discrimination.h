@@ -1,4 +1,4 @@
-// What would tell two models apart that explain the same recordings.
+// The experiment that discriminates between two models which explain the same recordings.
 #pragma once
 
 #include "fit/design/experiment.h"

@@ -1,4 +1,4 @@
-// The next recording: which motion would tell most of what the recordings so far leave open.
+// The next experiment: the motion that is expected to improve the least determined parameter most.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@ MachineLimits complete_limits(const Job& job, const FitResult& fit);
 /// Whether a place (m) and a speed (m/s) of the arm are within complete limits.
 bool is_within(const MachineLimits& limits, double position, double velocity);
 
-/// A motion from rest, and for how long.
+/// A motion from standstill, and its duration.
 struct Experiment {
   Motion motion;
   double duration = 0.0;  ///< s
@@ -27,8 +27,8 @@ struct Experiment {
 
 /// Steps, levels, sines, chirps, pseudo-random sequences, each at several amplitudes up to the
 /// voltage and either way, and moves up to the travel and the speed where the axis has a
-/// set-velocity input. Limits are complete; whether a motion keeps to them is for its simulation to
-/// say.
+/// set-velocity input. Limits are complete; only the simulation of a motion shows whether it stays
+/// within them.
 std::vector<Experiment> candidate_motions(const Structure& structure, const MachineLimits& limits,
                                           double duration);
 

@@ -1,4 +1,4 @@
-// What recordings will tell of the free parameters, before they are fitted or even made.
+// Forecast of the standard errors, before recordings are fitted or even made.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@ namespace axisfit {
 
 /// Were the axis as `values` say, and the noise white and of the stated size.
 struct Forecast {
-  bool finite = false;              ///< false: the simulation does not get through
+  bool finite = false;              ///< false: the simulation does not finish
   Uncertainty uncertainty;          ///< that the fit will have
   Identifiability identifiability;  ///< of the parameters
   /// How much of each parameter the series show: rms change of the simulated signal, in units of

@@ -1,4 +1,4 @@
-// How long a fit will take.
+// Run-time estimate of a fit.
 #pragma once
 
 #include "fit/data/job.h"

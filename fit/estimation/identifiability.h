@@ -1,4 +1,4 @@
-// What recordings can tell of the parameters together, and what they cannot.
+// Identifiability: what the recordings determine about the parameters jointly.
 #pragma once
 
 #include <string>
@@ -12,7 +12,8 @@ namespace axisfit {
 /// A direction in the space of the parameters along which the recordings hardly change.
 struct WeakDirection {
   double singular_value = 0.0;
-  /// Change of u, of unit length, by parameter; what is below a tenth of the largest is left out.
+  /// Change of u, of unit length, by parameter; components below a tenth of the largest are
+  /// omitted.
   struct Part {
     std::size_t parameter = 0;
     double change = 0.0;

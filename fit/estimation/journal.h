@@ -1,11 +1,10 @@
-// What long work keeps of itself, so that it can go on after it was ended.
+// Solutions that a long run stores, so that it can be resumed.
 //
 // A fit, a multistart, a profile and the search for effects are long because they solve many
-// least-squares problems, one after another and side by side. Each solution follows from its
-// problem alone, and everything else from the solutions. A run that finds the solutions of an
-// earlier one therefore ends where that one would have ended, digit for digit, whatever the number
-// of threads; and what the problem was is told by the problem itself, so that nothing stale is
-// ever taken for its solution.
+// least-squares problems, one after another and in parallel. Each solution depends on its problem
+// alone, and everything else on the solutions. A run that finds the solutions of an earlier one
+// therefore ends with the same digits, whatever the number of threads. A solution is looked up by
+// a hash of its complete problem, so that a stale one is never used.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// Likelihood profiles: how well the data can still be followed with one parameter held elsewhere.
+// Likelihood profiles: the deviance with one parameter fixed away from its estimate and all others
+// refitted.
 #pragma once
 
 #include <functional>
@@ -17,7 +18,7 @@ struct ProfilePoint {
 struct ProfileEnd {
   double value = 0.0;  ///< in the parameter's unit
   /// The deviance stays below the threshold up to the parameter's bound, which `value` is then, or
-  /// for as far as the simulation gets through.
+  /// for as far as the simulation finishes.
   bool open = false;
 };
 
@@ -40,7 +41,8 @@ struct Profile {
 
 /// Profiles of some parameters of a usable fit of the job: from the estimate outwards to either
 /// side, all other parameters fitted anew at every point. Sides are independent of each other, and
-/// spread over the job's threads. `progress` is told how many of how many sides are done.
+/// spread over the job's threads. `progress` is called with the number of sides done and of all
+/// sides.
 std::vector<Profile> profiles(const Job& job, const FitResult& fit,
                               std::span<const std::size_t> parameters,
                               const RunContext& context = {});

@@ -18,7 +18,7 @@ enum class ParameterVerdict {
 
 /// What the data say of the i-th parameter beyond its value.
 struct ParameterUncertainty {
-  bool at_bound = false;        ///< held by a bound; it has no standard error
+  bool at_bound = false;        ///< at a bound; it has no standard error
   bool determined = false;      ///< false: the data leave it open, alone or together with others
   bool weak = false;            ///< determined, but to no more than its order of magnitude
   double standard_error = 0.0;  ///< in the quantity's unit; 0 unless determined

@@ -1,4 +1,4 @@
-// The colour of a residual: how its samples depend on their neighbours.
+// The autocovariance of a residual: how its samples depend on their neighbours.
 #pragma once
 
 #include <span>

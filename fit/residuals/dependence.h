@@ -1,9 +1,9 @@
-// What the residual of a signal depends on, though it should not.
+// Dependence: variables that the residual of a signal depends on, though it should not.
 //
-// A simulation that has everything leaves noise, which knows nothing of the axis. In a fit of the
-// simulation error colour alone does not accuse: a wrong friction leaves a slow residual, but so
-// does the noise of a process that the model rightly does not follow. Dependence on what drives the
-// axis, or on where it is, does.
+// A complete model leaves only noise, which is independent of the axis. In a fit of the simulation
+// error, colour alone is no evidence: a wrong friction leaves a slow residual, but so does process
+// noise, which the model is right not to follow. Dependence on the input or the state of the axis
+// is evidence.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// The drift of a residual: the bias of a gauge that warms up, a gear that runs in.
+// The drift of a residual, as of an instrument that warms up or a gear that runs in.
 #pragma once
 
 #include <cmath>

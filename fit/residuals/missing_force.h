@@ -1,8 +1,8 @@
-// The force that the model lacks, seen through the observer.
+// The missing force: the force that the model lacks, measured by the observer.
 //
-// A simulation that is held to the recording needs a force for it wherever the model alone would go
-// elsewhere: M y1' of the observer (observer.h). Below the bandwidth of the hold that is the force
-// on the arm that the model lacks, together with what noise the measurement feeds in.
+// The observer adds a force, M y1', wherever the model alone would deviate from the recording
+// (observer.h). Below the bandwidth of the observer this is the force on the arm that the model
+// lacks, plus the noise of the measurement.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
-// Single bad samples of a residual: spikes and dropouts of a sensor or of its transmission.
+// Outliers: isolated bad samples of a residual, spikes and dropouts of a sensor or its
+// transmission.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +15,8 @@ namespace axisfit {
 ///
 /// What a wrong model leaves is no outlier. Steps, slow errors and oscillations have neighbours
 /// that go along, or out to the other side; a sample is one only where its own neighbours stay
-/// within a third of its deviation. What is over within three samples cannot be told from bad ones.
+/// within a third of its deviation. An event shorter than three samples cannot be distinguished
+/// from bad ones.
 ///
 /// Values are finite and evenly spaced in time. The series has its own scale: nothing is found in
 /// fewer than 30 samples, nor among the first two and the last two, where a spike is not seen to

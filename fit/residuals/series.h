@@ -1,4 +1,4 @@
-// Residuals of one signal of one recording, and what is asked of every such series.
+// Residuals of one signal of one recording, and the tests of such a series.
 #pragma once
 
 #include <algorithm>
@@ -34,9 +34,9 @@ struct ResidualSeries : SeriesKey {
   double allowance = 0.0;
 };
 
-/// The residuals that a fit is judged by: of the simulation in the way it was fitted, free running
-/// or held at a fixed observer gain. A signal that is only compared is left out, and so is
-/// everything of a recording whose simulation did not finish.
+/// The residuals by which a fit is assessed: of the simulation as it was fitted, free-running or
+/// with a fixed observer gain. Signals that are only compared are omitted, and so are recordings
+/// whose simulation did not finish.
 std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& result);
 
 /// Mean square.
@@ -54,7 +54,8 @@ void allow_for_parameters(const Job& job, const FitResult& result,
 
 /// Whether a series shows no more than its noise: a mean square within 5 % of one, or within four
 /// standard errors for as many independent samples as it has, the allowance four times. Where the
-/// noise was estimated from the series itself, its size tells nothing: then, whether it is white.
+/// noise was estimated from the series itself, its size carries no information: then, whether it is
+/// white.
 bool is_explained(const ResidualSeries& series);
 
 }  // namespace axisfit

@@ -1,4 +1,4 @@
-// Pictures of a residual's colour: over lag, over frequency, and over the wave number along the
+// Autocorrelation and spectra of a residual: over lag, frequency, and the wave number along the
 // stroke.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What a model can lack: the effects among which the residual's cause is sought.
+// The catalogue: all candidates that a model may lack.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// A model with one effect more, refitted.
+// A model extended by one effect and refitted.
 #pragma once
 
 #include <optional>

@@ -17,8 +17,8 @@ namespace axisfit {
 ///
 /// Throws Interrupted when the stop flag is set.
 ///
-/// A spectrum in space. The response to the force is that of a rigid axis held by the observer:
-/// good enough to find a period, not to judge it.
+/// A spectrum in space. The response to the force is that of a rigid axis with the observer:
+/// accurate enough to find a period, not to assess it.
 std::vector<double> periods_in(const Recording& recording, const SimulatedRecording& simulation,
                                const Observer& observer, const Eigen::VectorXd& residuals,
                                const Eigen::MatrixXd& basis, std::size_t most, bool of_drive,

@@ -1,9 +1,9 @@
-// Which effect would explain the residual: the score test of every candidate at strength zero.
+// The score test of every candidate at strength zero: which effect would explain the residual.
 //
-// The simulation is held to the data at a moderate observer gain, so that it stays on the measured
-// path although the model lacks something, and the free parameters are fitted there. With r the
-// whitened residuals, J their Jacobian, D the derivatives with respect to a candidate's strengths
-// and P the projection off the columns of J, the candidate would lower the sum of squares by
+// The simulation tracks the data at a moderate observer gain, so that it stays on the measured path
+// although the model lacks something, and the free parameters are fitted there. With r the whitened
+// residuals, J their Jacobian, D the derivatives with respect to a candidate's strengths and P the
+// projection off the columns of J, the candidate would lower the sum of squares by
 //
 //   gain = | projection of P r on the columns of P D |^2
 //
@@ -28,7 +28,7 @@ struct Score {
 };
 
 struct ScoreTest {
-  bool usable = false;  ///< false: the simulation could not be held to the data
+  bool usable = false;  ///< false: the tracking simulation has no finite residuals
   double sum_of_squares = 0.0;
   std::vector<Candidate> candidates;
   std::vector<Score> scores;  ///< of every candidate and setting, the largest gain first

@@ -1,9 +1,9 @@
-// Closing the loop: from the residual of a fit to the effect that the model lacks.
+// Effect selection: from the residual of a fit to the effects that the model lacks.
 //
 // Round by round: score every absent effect (score.h), refit with each of the few most likely ones,
-// put them through the gate (gate.h), keep the best. Then accepted effects are exchanged for their
-// rivals, and taken away again one by one, to see whether they are needed. What no effect of the
-// catalogue explains is drawn as a curve without a name.
+// apply the acceptance test (acceptance.h), keep the best. Then accepted effects are swapped on
+// trial for their rivals, and removed one by one on trial (backward elimination). What no effect of
+// the catalogue explains is fitted by a force curve.
 #pragma once
 
 #include <optional>

@@ -6,8 +6,8 @@
 
 namespace axisfit {
 
-/// Torque on the motor that repeats with its angle, whatever the current: cogging of the magnets,
-/// a pinion out of centre. `order` periods per turn.
+/// Torque on the motor that is periodic in its angle and independent of the current: cogging of the
+/// magnets, an eccentric pinion. `order` periods per turn.
 ///
 ///   T = T_s sin(order y2) + T_c cos(order y2)
 template <class T>

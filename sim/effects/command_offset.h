@@ -4,7 +4,7 @@
 
 namespace axisfit {
 
-/// A voltage that the drive adds to its command: an amplifier's offset.
+/// A voltage that the drive adds to its command: the offset of an amplifier.
 template <class T>
 struct CommandOffset {
   static constexpr std::string_view name = "command_offset";

@@ -4,8 +4,8 @@
 
 namespace axisfit {
 
-/// A force on the arm that never changes: gravity on a vertical axis (-M g, when positive is up),
-/// or the offset of a drive.
+/// A constant force on the arm: gravity on a vertical axis (-M g, when positive is up), or the
+/// offset of a drive.
 template <class T>
 struct ConstantForce {
   static constexpr std::string_view name = "constant_force";

@@ -5,9 +5,9 @@
 namespace axisfit {
 
 /// Dry friction of the arm with true sticking: it opposes the velocity with the force F_c, and at
-/// rest holds against any force up to F_c.
+/// standstill holds against any force up to F_c.
 ///
-/// Source: C. A. de Coulomb (1785); at rest a Filippov problem like (6).
+/// Source: C. A. de Coulomb (1785); at standstill a Filippov problem like (6).
 template <class T>
 struct CoulombFriction {
   static constexpr std::string_view name = "coulomb_friction";

@@ -10,11 +10,11 @@
 
 namespace axisfit {
 
-/// The variable over which a curve is drawn.
+/// The variable of a force curve.
 enum class CurveOver { velocity, position, motor_angle, time };
 
-/// A force on the arm that is a smooth curve of one variable: an effect without a name, for what no
-/// other effect explains.
+/// A force curve: a force on the arm that is a smooth function of one variable, for what no named
+/// effect explains.
 ///
 /// A cubic spline with the 16 coefficients c1 ... c16 on equally spaced knots: with u running from
 /// 0 to 1 between `from` and `to`, F is the sum of c_k b(13 u - k + 4), b the uniform cubic

@@ -6,12 +6,12 @@
 
 namespace axisfit {
 
-/// Presliding hysteresis: after each turn the friction builds up over a short travel, as the
+/// Presliding hysteresis: after each reversal the friction builds up over a short travel, as the
 /// asperities of the surfaces bend before they slip,
 ///
 ///   F = F_d z,  dz/dy0 = (direction - z) / l_d,
 ///
-/// stiffness F_d / l_d at the turn. Between two turns z is known in closed form from the travel
+/// stiffness F_d / l_d at the reversal. Between two reversals z has a closed form in the travel
 /// since the first of them, so that no fast state has to be integrated. It starts at z = 0.
 ///
 /// Source: P. R. Dahl (1968); the friction of LuGre (Canudas de Wit et al., IEEE TAC 40, 1995)

@@ -5,13 +5,12 @@
 namespace axisfit {
 
 /// Friction that differs between the two directions: by dF_c in its dry part and by dB_a in its
-/// viscous part, added in the positive direction and taken off in the negative one.
+/// viscous part, added in the positive direction and subtracted in the negative one.
 ///
-/// dF_c alone acts like a constant force of -dF_c, sliding or sticking: no record tells the two
-/// apart, and only a force measured at rest, without friction, would. It is here for models that
-/// are known to have it.
-/// Source: as in A. Janot, M. Gautier and M. Brunot, EMPS (2019), who give each direction a viscous
-/// and a Coulomb coefficient of its own.
+/// dF_c alone acts like a constant force of -dF_c, sliding or sticking: no recording of the motion
+/// separates the two, only a force measured at standstill, without friction. It is here for
+/// machines that are known to have it. Source: as in A. Janot, M. Gautier and M. Brunot, EMPS
+/// (2019), who give each direction a viscous and a Coulomb coefficient of its own.
 template <class T>
 struct DirectionalFriction {
   static constexpr std::string_view name = "directional_friction";

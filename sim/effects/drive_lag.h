@@ -5,7 +5,7 @@
 namespace axisfit {
 
 /// A power stage that follows its input (V_c, or the command of a force source) with the time
-/// constant T_l. At zero it follows at once.
+/// constant T_l. At zero it follows without delay.
 template <class T>
 struct DriveLag {
   static constexpr std::string_view name = "drive_lag";

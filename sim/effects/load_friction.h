@@ -4,8 +4,8 @@
 
 namespace axisfit {
 
-/// Dry friction in proportion to the force that the gear transmits, mu per newton of tooth
-/// pressure; for a rigid transmission, per newton of drive force.
+/// Dry friction proportional to the force that the gear transmits, mu per newton of tooth pressure;
+/// for a rigid transmission, per newton of drive force.
 ///
 /// Source: load-dependent friction of gears and screws, e.g. P. Hamon, M. Gautier and P. Garrec,
 /// IROS 2010.

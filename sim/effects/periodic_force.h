@@ -7,8 +7,8 @@
 
 namespace axisfit {
 
-/// A force on the arm that repeats along the stroke: rack pitch, rollers of a guide, magnets of a
-/// linear motor.
+/// A force on the arm that is periodic along the stroke: rack pitch, rollers of a guide, magnets of
+/// a linear motor.
 ///
 ///   F = F_s1 sin(q) + F_c1 cos(q) + F_s2 sin(2 q) + F_c2 cos(2 q),  q = 2 pi y0 / period
 template <class T>

@@ -4,8 +4,7 @@
 
 namespace axisfit {
 
-/// Drag that grows with the square of the velocity, -c y1 |y1|: air, or a lubricant that is
-/// churned.
+/// Drag that grows with the square of the velocity, -c y1 |y1|: air, or churned lubricant.
 template <class T>
 struct QuadraticDrag {
   static constexpr std::string_view name = "quadratic_drag";

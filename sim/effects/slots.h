@@ -1,10 +1,10 @@
-// Where an effect can act on the axis, and what it sees of it.
+// Where an effect can act on the axis, and which variables it can use.
 //
 // Slots that keep the equations affine within a mode are plain numbers: an effect adds to them in
 //
 //   void add_to(Slots<T>& slots) const;
 //
-// and they cost next to nothing. Any other force is a smooth function of one instant,
+// and they cost very little. Any other force is a smooth function of one instant,
 //
 //   T arm_force(const Instant<T>&) const;       N on the arm, positive in its positive direction
 //   T friction_curve(const Instant<T>&) const;  N against the arm's motion, with sticking

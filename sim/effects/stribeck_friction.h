@@ -6,9 +6,9 @@
 
 namespace axisfit {
 
-/// Dry friction that changes at low speed: F_st exp(-|y1| / v_st) on top of all other dry friction,
-/// at rest too. Positive for the Stribeck effect, where a lubricating film builds up with speed;
-/// negative where friction is less at low speed.
+/// Dry friction that changes at low speed: F_st exp(-|y1| / v_st) in addition to all other dry
+/// friction, also at standstill. Positive for the Stribeck effect, where a lubricating film builds
+/// up with speed; negative where friction is lower at low speed.
 ///
 /// Source: R. Stribeck (1902); the exponential form is that of A. Tustin (1947), see B.
 /// Armstrong-Helouvry et al., Automatica 30 (1994).

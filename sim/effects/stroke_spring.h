@@ -5,7 +5,7 @@
 namespace axisfit {
 
 /// A spring along the stroke that pulls the arm to position zero with k_s per metre: a cable chain,
-/// a hose. One that pulls elsewhere has a constant force beside it.
+/// a hose. A spring with another origin needs a constant force in addition.
 template <class T>
 struct StrokeSpring {
   static constexpr std::string_view name = "stroke_spring";

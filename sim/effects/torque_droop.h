@@ -4,8 +4,8 @@
 
 namespace axisfit {
 
-/// Torque constant that falls with the current, K_m (1 - c_i |y6|): armature reaction and saturated
-/// iron.
+/// Torque constant that decreases with the current, K_m (1 - c_i |y6|): armature reaction and
+/// saturated iron.
 template <class T>
 struct TorqueDroop {
   static constexpr std::string_view name = "torque_droop";
