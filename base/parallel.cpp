@@ -22,36 +22,36 @@ struct Loop {
 };
 
 /// Where this thread is.
-thread_local Crew::Members* crew = nullptr;
+thread_local ThreadPool::Impl* pool = nullptr;
 thread_local int depth = 0;
 
 }  // namespace
 
-class Crew::Members {
+class ThreadPool::Impl {
  public:
-  explicit Members(int threads) : most_(static_cast<std::size_t>(threads - 1)) { crew = this; }
-  ~Members() {
+  explicit Impl(int threads) : most_(static_cast<std::size_t>(threads - 1)) { pool = this; }
+  ~Impl() {
     {
       const std::lock_guard lock(mutex_);
-      dismissed_ = true;
+      ended_ = true;
     }
     changed_.notify_all();
-    helpers_.clear();
-    crew = nullptr;
+    threads_.clear();
+    pool = nullptr;
   }
 
   void run(std::size_t count, const std::function<void(std::size_t)>& work) {
     Loop loop{work, count, depth};
     std::unique_lock lock(mutex_);
     const auto place = loops_.insert(loops_.end(), &loop);
-    hire(count - 1);
+    start_threads(count - 1);
     changed_.notify_all();
-    while (loop.next < loop.count) take(loop, lock);
+    while (loop.next < loop.count) do_next(loop, lock);
     // Only what lies deeper is worth a delay of this loop's end. Nor can two threads then wait for
     // each other: whatever a thread waits for lies deeper than all that it is in the midst of.
     while (loop.running > 0)
       if (Loop* inner = open_loop(loop.depth + 1))
-        take(*inner, lock);
+        do_next(*inner, lock);
       else
         changed_.wait(lock);
     loops_.erase(place);
@@ -59,12 +59,12 @@ class Crew::Members {
   }
 
  private:
-  void help() {
-    crew = this;
+  void serve() {
+    pool = this;
     std::unique_lock lock(mutex_);
-    while (!dismissed_) {
+    while (!ended_) {
       if (Loop* loop = open_loop(0)) {
-        take(*loop, lock);
+        do_next(*loop, lock);
         continue;
       }
       ++idle_;
@@ -73,11 +73,11 @@ class Crew::Members {
     }
   }
 
-  /// Helpers for so many pieces, as far as nobody is idle.
-  void hire(std::size_t pieces) {
+  /// Threads for so many pieces, as far as none are idle.
+  void start_threads(std::size_t pieces) {
     try {
-      for (std::size_t i = idle_; i < pieces && helpers_.size() < most_; ++i)
-        helpers_.emplace_back([this] { help(); });
+      for (std::size_t i = idle_; i < pieces && threads_.size() < most_; ++i)
+        threads_.emplace_back([this] { serve(); });
     } catch (const std::exception&) {
       // The system has no more threads to give: it takes longer with those there are.
     }
@@ -91,7 +91,7 @@ class Crew::Members {
   }
 
   /// Does the next piece of a loop. Locked before and after.
-  void take(Loop& loop, std::unique_lock<std::mutex>& lock) {
+  void do_next(Loop& loop, std::unique_lock<std::mutex>& lock) {
     const std::size_t i = loop.next++;
     ++loop.running;
     lock.unlock();
@@ -115,23 +115,23 @@ class Crew::Members {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::list<Loop*> loops_;
-  bool dismissed_ = false;
-  std::size_t most_, idle_ = 0;  ///< of the helpers
-  std::vector<std::jthread> helpers_;
+  bool ended_ = false;
+  std::size_t most_, idle_ = 0;  ///< of the threads
+  std::vector<std::jthread> threads_;
 };
 
 int thread_count(int wanted) {
   return wanted > 0 ? wanted : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-Crew::Crew(int threads) {
-  if (crew == nullptr) members_ = std::make_unique<Members>(thread_count(threads));
+ThreadPool::ThreadPool(int threads) {
+  if (pool == nullptr) impl_ = std::make_unique<Impl>(thread_count(threads));
 }
 
-Crew::~Crew() = default;
+ThreadPool::~ThreadPool() = default;
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& work) {
-  if (crew != nullptr && count > 1) return crew->run(count, work);
+  if (pool != nullptr && count > 1) return pool->run(count, work);
   for (std::size_t i = 0; i < count; ++i) work(i);
 }
 

@@ -12,22 +12,22 @@ int thread_count(int wanted);
 
 /// For as long as it lives, parallel_for() on this thread has `threads` threads to spread its work
 /// over, this one included; 0 as for thread_count(). Nested work shares the same threads: another
-/// crew has no effect there.
-class Crew {
+/// pool has no effect there.
+class ThreadPool {
  public:
-  explicit Crew(int threads);
-  ~Crew();
-  Crew(const Crew&) = delete;
-  Crew& operator=(const Crew&) = delete;
+  explicit ThreadPool(int threads);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
 
-  class Members;
+  class Impl;
 
  private:
-  std::unique_ptr<Members> members_;
+  std::unique_ptr<Impl> impl_;
 };
 
-/// Calls work(i) for every i below `count`, on all threads of the crew that have nothing else to
-/// do, in no particular order; without a crew on this one. Work may call it in turn: threads that
+/// Calls work(i) for every i below `count`, on all threads of the pool that have nothing else to
+/// do, in no particular order; without a pool on this one. Work may call it in turn: threads that
 /// have finished the outer loop help with the inner ones. The first exception is rethrown when all
 /// calls that were begun have ended.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& work);

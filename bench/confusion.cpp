@@ -355,7 +355,7 @@ int main(int argc, char** argv) {
 
   std::vector<Outcome> outcomes(cases.size());
   std::mutex mutex;
-  const Crew crew(threads);
+  const ThreadPool pool(threads);
   parallel_for(cases.size(), [&](std::size_t i) {
     outcomes[i] = run(cases[i], *paper, seed);
     const std::lock_guard lock(mutex);

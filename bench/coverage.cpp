@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
   const std::optional<Rig> rig = read_axis_file(axis_path, diagnostics);
   diagnostics.throw_if_any();
 
-  const Crew crew(threads);
+  const ThreadPool pool(threads);
   bool met = true;
   fmt::print("| scenario | parameter | fits | contain the truth | rms error / standard error |\n");
   fmt::print("|---|---|---|---|---|\n");

@@ -64,7 +64,7 @@ Discrimination discriminate(const EffectSelection& selection, const UndecidedPai
     trials.push_back({nullptr, &experiment,
                       commands_of(experiment, rivals.with_chosen, job.controller, times), times});
 
-  const Crew crew(job.options.threads);
+  const ThreadPool pool(job.options.threads);
   std::vector<Discrimination> found(trials.size());
   parallel_for(trials.size(), [&](std::size_t i) {
     context.check_stop();

@@ -64,7 +64,7 @@ std::vector<Linearization> sensitivities_of(const std::vector<Experiment>& candi
   const Model<double> model = fitted_model(next, fit);
   const ParameterSpace space(next);
   const Eigen::VectorXd u = space.internal(values_of(fit));
-  const Crew crew(next.options.threads);
+  const ThreadPool pool(next.options.threads);
   std::vector<Linearization> sensitivities(candidates.size());
   std::mutex mutex;
   int done = 0;

@@ -174,7 +174,7 @@ std::vector<double> draw_start(const Job& job, int start) {
 }
 
 FitResult estimate(const Job& job, const RunContext& context) {
-  const Crew crew(job.options.threads);
+  const ThreadPool pool(job.options.threads);
   const ParameterSpace space(job);
   std::vector<StartRun> trials = run_starts(job, space, context);
   const bool interrupted =

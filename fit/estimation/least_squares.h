@@ -38,13 +38,13 @@ struct SolveResult {
   std::string message;  ///< the solver's own reason to stop
 };
 
-/// Minimises the costs and the space's priors from u, within the space's bounds. A crew evaluates
-/// costs side by side; the result does not depend on it.
+/// Minimises the costs and the space's priors from u, within the space's bounds. The thread pool
+/// evaluates costs side by side; the result does not depend on it.
 SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u,
                      const SolveOptions& options);
 
-/// Of the costs, which a crew evaluates side by side, and the space's priors. All rows are one
-/// series.
+/// Of the costs, which the thread pool evaluates side by side, and the space's priors. All rows are
+/// one series.
 Linearization linearize(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u);
 
 }  // namespace axisfit

@@ -126,7 +126,7 @@ class Walk {
 
 std::vector<Profile> profiles(const Job& job, const FitResult& fit,
                               std::span<const std::size_t> parameters, const RunContext& context) {
-  const Crew crew(job.options.threads);
+  const ThreadPool pool(job.options.threads);
   std::vector<Side> sides(2 * parameters.size());
   std::mutex mutex;
   int done = 0;

@@ -80,7 +80,7 @@ SearchScales scales_of(const Job& job, const ParameterSpace& space, const Eigen:
 
 ScoreTest score_test(const Job& job, const std::vector<double>& values, double rate, bool curves,
                      const RunContext& context) {
-  const Crew crew(job.options.threads);
+  const ThreadPool pool(job.options.threads);
   ScoreTest test;
   const ParameterSpace space(job);
   SolveOptions options;

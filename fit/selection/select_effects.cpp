@@ -523,7 +523,7 @@ SelectionVerdict EffectSelector::verdict() const {
 
 EffectSelection select_effects(const Job& job, const FitResult& first,
                                const SelectionOptions& options, const RunContext& context) {
-  const Crew crew(job.options.threads);
+  const ThreadPool pool(job.options.threads);
   return EffectSelector(job, first, options, context).run();
 }
 

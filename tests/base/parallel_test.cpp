@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 std::vector<int> numbers(int threads) {
   std::vector<int> list(100, 0);
-  const Crew crew(threads);
+  const ThreadPool pool(threads);
   parallel_for(10, [&](std::size_t i) {
     parallel_for(10, [&](std::size_t k) { list[10 * i + k] += static_cast<int>(10 * i + k); });
   });
@@ -38,9 +38,9 @@ TEST(Parallel, WithoutACrewIsALoop) {
 TEST(Parallel, ACrewWithinAnotherSharesItsThreads) {
   std::atomic<int> at_work = 0, most = 0;
   const auto at_most = std::chrono::steady_clock::now() + 60s;  // for who would wait for ever
-  const Crew crew(2);
+  const ThreadPool pool(2);
   parallel_for(4, [&](std::size_t) {
-    const Crew none(8);
+    const ThreadPool none(8);
     parallel_for(8, [&](std::size_t) {
       const int now = ++at_work;
       for (int known = most; now > known && !most.compare_exchange_weak(known, now);) continue;
@@ -55,7 +55,7 @@ TEST(Parallel, ACrewWithinAnotherSharesItsThreads) {
 // Each of the two pieces of the inner loop waits until the other has begun.
 TEST(Parallel, WhoHasNothingLeftHelpsWithinTheLastPiece) {
   for (const std::size_t pieces : {1, 2, 5}) {
-    const Crew crew(2);
+    const ThreadPool pool(2);
     parallel_for(pieces, [&](std::size_t i) {
       if (i + 1 < pieces) return;
       std::this_thread::sleep_for(5ms);  // the others are at their end by now
@@ -67,7 +67,7 @@ TEST(Parallel, WhoHasNothingLeftHelpsWithinTheLastPiece) {
 
 TEST(Parallel, AnExceptionEndsItsLoopAndIsThrownOnce) {
   for (const int threads : {1, 2, 4}) {
-    const Crew crew(threads);
+    const ThreadPool pool(threads);
     std::atomic<int> begun = 0;
     EXPECT_THROW(parallel_for(100'000,
                               [&](std::size_t i) {
@@ -79,7 +79,7 @@ TEST(Parallel, AnExceptionEndsItsLoopAndIsThrownOnce) {
                               }),
                  std::runtime_error);
     EXPECT_LT(begun, 50'000) << threads;
-    // The crew goes on.
+    // The pool goes on.
     std::atomic<int> sum = 0;
     parallel_for(10, [&](std::size_t i) { sum += static_cast<int>(i); });
     EXPECT_EQ(sum, 45);
@@ -97,7 +97,7 @@ int leaves(int depth) {
 TEST(Parallel, NestedLoopsComeToTheirEnd) {
   const int expected = leaves(8);
   for (const int threads : {2, 3, 8}) {
-    const Crew crew(threads);
+    const ThreadPool pool(threads);
     for (int turn = 0; turn < 20; ++turn) ASSERT_EQ(leaves(8), expected) << threads;
   }
 }

@@ -113,7 +113,7 @@ TEST(LeastSquares, IsTheSameSideBySide) {
   std::vector<Linearization> linear;
   for (const int threads : {1, 3}) {
     std::vector<Asked> asked(3);
-    const Crew crew(threads);
+    const ThreadPool pool(threads);
     const ParameterSpace space = two_parameters();
     solved.push_back(minimize(space, costs_of(asked), Eigen::Vector2d(3.0, 3.0), {}));
     linear.push_back(linearize(space, costs_of(asked), solved.back().u));
