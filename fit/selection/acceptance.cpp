@@ -66,6 +66,13 @@ double bic_difference(const std::vector<ResidualSeries>& best, std::size_t best_
                     std::log(std::max(2.0, samples));
 }
 
+bool is_clearly_worse(double bic_difference) { return bic_difference > 2.0 * std::log(100.0); }
+
+bool is_needed(const Improvement& gain, std::size_t parameters) {
+  const double price = static_cast<double>(parameters) * std::log(std::max(2.0, gain.samples));
+  return gain.comparable && gain.fit_gain > price && gain.p_value < kChance;
+}
+
 Determination determination(const Job& job, const FitResult& result, const Candidate& candidate,
                             const std::vector<ResidualSeries>& residuals) {
   Determination d;

@@ -33,6 +33,9 @@ Improvement improvement(const std::vector<ResidualSeries>& before,
 double bic_difference(const std::vector<ResidualSeries>& best, std::size_t best_parameters,
                       const std::vector<ResidualSeries>& other, std::size_t other_parameters);
 
+/// Whether a difference of that is ground for a preference: odds of more than a hundred to one.
+bool is_clearly_worse(double bic_difference);
+
 /// What the fit says of a candidate's own parameters, the last of the job's.
 struct Determination {
   /// Sum of squares that would be lost with strengths of zero, in units as above: the square of
@@ -49,6 +52,11 @@ Determination determination(const Job& job, const FitResult& result, const Candi
 
 /// How probable it may be that an effect helps by chance on what was not fitted.
 constexpr double kChance = 1e-3;
+
+/// Whether an accepted effect is needed beside those that were accepted later. `gain` is what it
+/// does to the model without it: more to the fit than the price of its parameters by Schwarz's
+/// criterion, and more than chance to what was not fitted.
+bool is_needed(const Improvement& gain, std::size_t parameters);
 
 /// A test that a candidate failed.
 struct Rejection {

@@ -15,10 +15,6 @@
 namespace axisfit {
 namespace {
 
-/// Advantages below this, in units of the sum of squares, are no ground for a preference: two
-/// natural logarithms of a hundred.
-constexpr double kIndistinguishable = 9.2;
-
 class EffectSelector {
  public:
   EffectSelector(const Job& job, const FitResult& first, const SelectionOptions& options,
@@ -101,7 +97,7 @@ class EffectSelector {
     search_named();
     eliminate_backward();
     const double loss = loss_of(appended.models.back(), current());
-    if (loss > 0.0 && (appends || loss > kIndistinguishable)) restore(appended);
+    if (loss > 0.0 && (appends || is_clearly_worse(loss))) restore(appended);
   }
 
   /// By how much b explains the recordings worse than a, parameters counted.
@@ -110,7 +106,7 @@ class EffectSelector {
                           residual_series(b.job, b.fit), b.job.free.size());
   }
   static bool is_better(const SelectionStep& a, const SelectionStep& b) {
-    return a.fit.usable && loss_of(a, b) > kIndistinguishable;
+    return a.fit.usable && is_clearly_worse(loss_of(a, b));
   }
 
   /// Several effects that are large hide each other: a simulation that runs free drifts away from
@@ -239,7 +235,7 @@ class EffectSelector {
     for (ExtendedModel* e : contenders)
       if (best != nullptr && !e->rejection &&
           e->candidate.parameters() < best->candidate.parameters() &&
-          bic_advantage(*best, *e) < kIndistinguishable)
+          !is_clearly_worse(bic_advantage(*best, *e)))
         best = e;
     for (ExtendedModel* e : contenders) record_trial(*e, best);
     if (best == nullptr) return false;
@@ -248,7 +244,7 @@ class EffectSelector {
     for (const ExtendedModel* e : contenders) {
       if (e == best || !e->fit.usable || !e->gain.comparable) continue;
       // Rivals are seen again when all else is explained.
-      if (bic_advantage(*best, *e) > kIndistinguishable) continue;
+      if (is_clearly_worse(bic_advantage(*best, *e))) continue;
       accepted.rivals.push_back({e->candidate, candidate_values(e->job, e->fit, e->candidate)});
     }
     accepted_.push_back(std::move(accepted));
@@ -325,20 +321,14 @@ class EffectSelector {
     for (std::size_t a = 0; a < accepted_.size() && accepted_.size() > 1;) {
       report_progress("is " + accepted_[a].candidate.name + " necessary?");
       SelectionStep reduced = without(a);
-      ExtendedModel with;
-      with.candidate = accepted_[a].candidate;
-      with.residuals = residual_series(current().job, current().fit);
-      const auto before = residual_series(reduced.job, reduced.fit);
-      const Improvement gain = improvement(before, with.residuals);
-      const double bic_penalty =
-          static_cast<double>(with.candidate.parameters()) * std::log(std::max(2.0, gain.samples));
-      const bool needed = !reduced.fit.usable || (gain.comparable && gain.fit_gain > bic_penalty &&
-                                                  gain.p_value < kChance);
-      if (needed) {
+      const Candidate& candidate = accepted_[a].candidate;
+      const Improvement gain = improvement(residual_series(reduced.job, reduced.fit),
+                                           residual_series(current().job, current().fit));
+      if (!reduced.fit.usable || is_needed(gain, candidate.parameters())) {
         ++a;
         continue;
       }
-      if (EffectTrial* trial = trial_of(with.candidate)) {
+      if (EffectTrial* trial = trial_of(candidate)) {
         trial->decision = Decision::rejected;
         trial->reason = Reason::not_needed;
       }
@@ -427,11 +417,11 @@ class EffectSelector {
         if (present) continue;
         if (only_record) {
           const bool simpler = e.candidate.parameters() <= accepted.candidate.parameters();
-          if (loss < kIndistinguishable && simpler)
+          if (!is_clearly_worse(loss) && simpler)
             rival_pairs_.push_back({a, e.candidate, fitted_model(e.job, e.fit)});
           continue;
         }
-        if (loss > -kIndistinguishable) continue;
+        if (!is_clearly_worse(-loss)) continue;
         const auto before = residual_series(reduced.job, reduced.fit);
         judge(e, before);
         if (e.rejection) continue;

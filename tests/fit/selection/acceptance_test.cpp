@@ -108,6 +108,38 @@ TEST(ImprovementTest, OfNothingIsNone) {
   EXPECT_EQ(gain.validate_percent, 0.0);
 }
 
+TEST(AcceptanceTest, OddsOfAHundredToOneAreClear) {
+  EXPECT_FALSE(is_clearly_worse(-20.0));
+  EXPECT_FALSE(is_clearly_worse(9.0));
+  EXPECT_TRUE(is_clearly_worse(9.5));
+}
+
+TEST(AcceptanceTest, AnEffectIsNeededForMoreThanThePriceOfItsParameters) {
+  Improvement gain;
+  gain.comparable = true;
+  gain.samples = 1000.0;  // ln 1000 = 6.9
+  gain.p_value = 1e-9;
+  gain.fit_gain = 13.0;
+  EXPECT_TRUE(is_needed(gain, 1));
+  EXPECT_FALSE(is_needed(gain, 2));
+  gain.fit_gain = 14.5;
+  EXPECT_TRUE(is_needed(gain, 2));
+}
+
+TEST(AcceptanceTest, AnEffectIsNotNeededWhereChanceExplainsWhatItPredicts) {
+  Improvement gain;
+  gain.comparable = true;
+  gain.samples = 1000.0;
+  gain.fit_gain = 100.0;
+  gain.p_value = 0.5 * kChance;
+  EXPECT_TRUE(is_needed(gain, 1));
+  gain.p_value = 2.0 * kChance;
+  EXPECT_FALSE(is_needed(gain, 1));
+  gain.p_value = 0.0;
+  gain.comparable = false;
+  EXPECT_FALSE(is_needed(gain, 1));
+}
+
 // An effect that a fit to other noise has found changes the prediction without knowledge of this
 // noise: it makes things worse on average, and better by chance in at most as many cases as said.
 TEST(ImprovementTest, PValueOfChanceIsHonest) {
