@@ -1,9 +1,10 @@
 #include "init/force_balance.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "base/linear_algebra.h"
 
 namespace axisfit {
 namespace {
@@ -52,8 +53,7 @@ std::optional<ForceBalance> force_balance(std::span<const double> times,
   Eigen::VectorXd size = terms.colwise().norm();
   if (!(size.minCoeff() > 0.0) || !(impulses.norm() > 0.0)) return std::nullopt;
   const Eigen::MatrixXd scaled = terms * size.cwiseInverse().asDiagonal();
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(scaled);
-  solver.setThreshold(1e-6);
+  const LeastSquaresSolver solver(scaled, 1e-6);
   if (solver.rank() < static_cast<Eigen::Index>(kTerms)) return std::nullopt;
   const Eigen::VectorXd scaled_terms = solver.solve(impulses);
   const Eigen::VectorXd found = scaled_terms.cwiseQuotient(size);

@@ -1,10 +1,10 @@
 #include "fit/design/experiment.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 
+#include "base/linear_algebra.h"
 #include "base/parallel.h"
 #include "fit/estimation/residual.h"
 #include "fit/estimation/solve.h"
@@ -113,7 +113,8 @@ Linearization joined(const Linearization& first, const Linearization& second) {
 /// Standard errors, of u, from normal equations. An error of one is no knowledge.
 Eigen::VectorXd errors_of(Eigen::MatrixXd normal) {
   normal.diagonal().array() += 1.0;
-  return normal.inverse().diagonal().cwiseSqrt();
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(normal.rows(), normal.cols());
+  return LeastSquaresSolver(normal).solve(one).diagonal().cwiseSqrt();
 }
 
 /// The normal equations of a fit, every series worth what its residual says.

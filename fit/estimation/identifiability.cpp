@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+
+#include "base/linear_algebra.h"
 
 namespace axisfit {
 namespace {
@@ -31,9 +32,9 @@ Identifiability identifiability(const ParameterSpace& space, const Eigen::Vector
       result.without_influence.push_back(static_cast<std::size_t>(k));
   }
   if (seen.empty()) return result;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(at.jacobian(Eigen::all, seen), Eigen::ComputeThinV);
-  const Eigen::VectorXd& s = svd.singularValues();
-  const Eigen::MatrixXd& v = svd.matrixV();
+  const SingularValues svd = singular_values(at.jacobian(Eigen::all, seen));
+  const Eigen::VectorXd& s = svd.values;
+  const Eigen::MatrixXd& v = svd.right;
   result.singular_values.assign(s.begin(), s.end());
   // Standard error of g'u in all directions but one.
   const auto error_without = [&](Eigen::Index m, const Eigen::VectorXd& g) {

@@ -1,7 +1,8 @@
 #include "fit/estimation/initial_state.h"
 
-#include <Eigen/QR>
 #include <algorithm>
+
+#include "base/linear_algebra.h"
 
 namespace axisfit {
 namespace {
@@ -20,7 +21,7 @@ std::pair<double, double> start_of(const std::vector<double>& times,
     a.row(i) << 1.0, t, t * t, t * t * t;
     b[i] = values[static_cast<std::size_t>(i)];
   }
-  const Eigen::VectorXd c = a.colPivHouseholderQr().solve(b);
+  const Eigen::VectorXd c = LeastSquaresSolver(a).solve(b);
   return {c[0], c[1] / span};
 }
 

@@ -1,12 +1,12 @@
 #include "fit/estimation/uncertainty.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>
 
 #include "base/distributions.h"
+#include "base/linear_algebra.h"
 #include "fit/residuals/autocovariance.h"
 
 namespace axisfit {
@@ -20,9 +20,7 @@ class NormalInverse {
     Eigen::MatrixXd scaled = j;
     for (Eigen::Index k = 0; k < j.cols(); ++k)
       scaled.col(k) /= length_[k] > 0.0 ? length_[k] : 1.0;
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinV);
-    const Eigen::VectorXd& s = svd.singularValues();
-    const Eigen::MatrixXd& v = svd.matrixV();
+    const auto [s, v] = singular_values(scaled);
     constexpr double kRounding = 1e-9, kPart = 0.1;
     undetermined_.assign(static_cast<std::size_t>(j.cols()), false);
     matrix_.setZero(j.cols(), j.cols());

@@ -1,10 +1,10 @@
 #include "fit/residuals/series.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "base/linear_algebra.h"
 #include "fit/estimation/solve.h"
 
 namespace axisfit {
@@ -78,10 +78,9 @@ void allow_for_parameters(const Job& job, const FitResult& result,
   // undetermined parameter must not excuse everything.
   Eigen::VectorXd length = fitted.jacobian.colwise().norm().cwiseMax(1e-300);
   const Eigen::MatrixXd scaled = fitted.jacobian * length.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled.transpose() * scaled);
-  Eigen::MatrixXd root = eigen.eigenvectors();
+  auto [size, root] = singular_values(scaled);
   for (Eigen::Index k = 0; k < root.cols(); ++k)
-    root.col(k) *= eigen.eigenvalues()[k] > 1e-6 ? 1.0 / std::sqrt(eigen.eigenvalues()[k]) : 0.0;
+    root.col(k) *= size[k] > 1e-3 ? 1.0 / size[k] : 0.0;
   const Eigen::MatrixXd shown = unfitted.jacobian * length.cwiseInverse().asDiagonal() * root;
   const double excess = std::max(1.0, result.reduced_chi_square);
   for (const SeriesRows& rows : unfitted.series)

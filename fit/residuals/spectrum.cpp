@@ -1,6 +1,5 @@
 #include "fit/residuals/spectrum.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -8,6 +7,8 @@
 #include <numbers>
 #include <numeric>
 #include <unsupported/Eigen/FFT>
+
+#include "base/linear_algebra.h"
 
 namespace axisfit {
 namespace {
@@ -66,9 +67,8 @@ Spectrum spatial_spectrum(std::span<const double> values, std::span<const double
     const Eigen::ArrayXd phase = kTurn * wave * (x - low);
     Eigen::MatrixX3d columns(n, 3);
     columns << phase.cos(), phase.sin(), Eigen::ArrayXd::Ones(n);
-    const Eigen::Vector3d fitted = (columns.transpose() * columns)
-                                       .completeOrthogonalDecomposition()
-                                       .solve(columns.transpose() * y.matrix());
+    const Eigen::Vector3d fitted =
+        LeastSquaresSolver(columns.transpose() * columns).solve(columns.transpose() * y.matrix());
     spectrum.wave.push_back(wave);
     spectrum.size.push_back(std::hypot(fitted[0], fitted[1]));
   }

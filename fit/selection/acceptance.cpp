@@ -1,11 +1,11 @@
 #include "fit/selection/acceptance.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "base/distributions.h"
+#include "base/linear_algebra.h"
 
 namespace axisfit {
 namespace {
@@ -115,10 +115,7 @@ Determination determination(const Job& job, const FitResult& result, const Candi
                                     static_cast<Eigen::Index>(strengths)) *
                  zero;
   Eigen::VectorXd residual = shown;
-  if (others.cols() > 0) {
-    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(others);
-    residual -= others * solver.solve(shown);
-  }
+  if (others.cols() > 0) residual -= others * LeastSquaresSolver(others).solve(shown);
   d.distinct = shown.squaredNorm() > 0.0 ? residual.squaredNorm() / shown.squaredNorm() : 0.0;
   for (const SeriesRows& rows : at.series)
     if (const auto* series = find_series(residuals, {rows.recording, rows.measurement, true}))

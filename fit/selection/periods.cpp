@@ -1,11 +1,11 @@
 #include "fit/selection/periods.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 
+#include "base/linear_algebra.h"
 #include "sim/sampling.h"
 
 namespace axisfit {
@@ -81,7 +81,7 @@ std::vector<double> periods_in(const Recording& recording, const SimulatedRecord
     columns -= basis * (basis.transpose() * columns);
     const Eigen::Matrix2d gram = columns.transpose() * columns;
     const Eigen::Vector2d right = columns.transpose() * residual;
-    const Eigen::Vector2d solution = gram.completeOrthogonalDecomposition().solve(right);
+    const Eigen::Vector2d solution = LeastSquaresSolver(gram).solve(right);
     spectrum.push_back({1.0 / wave, right.dot(solution)});
   }
   std::vector<Line> peaks;

@@ -1,9 +1,9 @@
 #include "fit/selection/score.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "base/linear_algebra.h"
 #include "base/parallel.h"
 #include "fit/estimation/continuation.h"
 #include "fit/estimation/residual.h"
@@ -36,10 +36,8 @@ Eigen::MatrixXd basis_of(const Eigen::MatrixXd& a) {
   Eigen::MatrixXd scaled = a;
   for (Eigen::Index k = 0; k < a.cols(); ++k)
     if (const double length = a.col(k).norm(); length > 0.0) scaled.col(k) /= length;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
-  qr.setThreshold(1e-9);
-  if (qr.rank() == 0) return nothing;
-  return qr.householderQ() * Eigen::MatrixXd::Identity(a.rows(), qr.rank());
+  const LeastSquaresSolver solver(scaled, 1e-9);
+  return solver.rank() == 0 ? nothing : solver.basis();
 }
 
 SearchScales scales_of(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
@@ -103,7 +101,7 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
     for (const auto& setting : test.candidates[c].settings)
       test.scores.push_back({c, setting, {}, tracking_values, 0.0});
 
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> base_solver(base.jacobian);
+  const LeastSquaresSolver base_solver(base.jacobian);
   const Job fixed = fixed_at(job, tracking_values);
   parallel_for(test.scores.size(), [&](std::size_t i) {
     context.check_stop();
@@ -123,8 +121,7 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
       // What is left of a column is rounding where the free parameters do the same.
       for (Eigen::Index k = 0; k < columns.cols(); ++k)
         if (columns.col(k).norm() < 1e-4 * derivatives.col(k).norm()) return;
-      const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(columns);
-      const Eigen::VectorXd step = solver.solve(-residual);
+      const Eigen::VectorXd step = LeastSquaresSolver(columns).solve(-residual);
       if (!step.allFinite()) return;
       const std::vector<double> reached = strengths.values(u + step);
       for (std::size_t k = 0; k < reached.size(); ++k) {
