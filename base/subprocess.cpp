@@ -1,16 +1,29 @@
 #include "base/subprocess.h"
 
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <fstream>
 #include <string_view>
 #include <system_error>
 
 namespace axisfit {
 namespace {
+
+/// Allows this process so many bytes more than it has. Where the system does not tell how many that
+/// is, there is no limit.
+void limit_memory(std::size_t more) {
+  std::size_t size = 0, resident = 0, shared = 0, text = 0, library = 0, data = 0;
+  if (!(std::ifstream("/proc/self/statm") >> size >> resident >> shared >> text >> library >> data))
+    return;
+  const rlim_t most = data * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + more;
+  const rlimit limit{most, most};
+  ::setrlimit(RLIMIT_DATA, &limit);
+}
 
 /// Does the work as the other process, which ends here.
 [[noreturn]] void run_and_exit(const std::function<std::string()>& work, int pipe) {
@@ -42,7 +55,8 @@ std::string read_all(int pipe) {
 
 }  // namespace
 
-std::optional<std::string> run_in_subprocess(const std::function<std::string()>& work) {
+std::optional<std::string> run_in_subprocess(const std::function<std::string()>& work,
+                                             std::size_t memory) {
   const auto fail = [] {
     throw std::system_error(errno, std::generic_category(), "cannot start another process");
   };
@@ -56,6 +70,7 @@ std::optional<std::string> run_in_subprocess(const std::function<std::string()>&
   }
   if (child == 0) {
     ::close(ends[0]);
+    limit_memory(memory);
     run_and_exit(work, ends[1]);
   }
   ::close(ends[1]);

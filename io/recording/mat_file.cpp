@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -19,7 +20,6 @@
 #include "base/plain_text.h"
 #include "base/subprocess.h"
 #include "base/suggest.h"
-#include "io/recording/mat_sizes.h"
 
 namespace axisfit {
 namespace {
@@ -53,7 +53,6 @@ void keep_first_complaint(int /*level*/, char* message) {
 std::string in_variable(const std::string& name) { return "variable " + in_quotes(name) + ": "; }
 
 MatHandle open_mat(const std::string& path) {
-  check_mat_sizes(path);
   MatHandle mat(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
   if (mat == nullptr) {
     throw RecordingError(path, 0,
@@ -224,6 +223,7 @@ MatFile read_in_process(const std::string& path) {
   const MatHandle handle = open_mat(path);
 
   MatFile mat{path, {}, {}};
+  std::string last;  // variable that was read
   bool empty = true;
   while (const Variable variable{Mat_VarReadNext(handle.get())}) {
     empty = false;
@@ -232,21 +232,15 @@ MatFile read_in_process(const std::string& path) {
     if (name.empty() && variable->class_type != MAT_C_OPAQUE) continue;
     if (!complaint.empty()) throw_damaged(path, in_variable(name));
     append(mat, name, *variable);
+    last = name;
   }
   if (watch.has_changed()) throw RecordingError(path, 0, FileWatch::kMessage);
-  if (!complaint.empty()) throw_damaged(path, "");
+  if (!complaint.empty())
+    throw_damaged(path, last.empty() ? "" : "in or after variable " + in_quotes(last) + ": ");
   if (empty) {
     throw RecordingError(path, 0, "contains no variables; it may be truncated or not a MAT-file");
   }
   return mat;
-}
-
-/// Version 7.3, which libmatio leaves to HDF5.
-bool is_hdf5(const std::string& path) {
-  std::array<char, 128> header{};
-  std::ifstream(path, std::ios::binary).read(header.data(), header.size());
-  const std::string_view end(header.data() + 124, 4);
-  return end == std::string_view("\0\2IM", 4) || end == std::string_view("\2\0MI", 4);
 }
 
 using Json = nlohmann::json;
@@ -280,21 +274,27 @@ MatFile unpacked(const std::string& path, const Json& json) {
   return mat;
 }
 
-/// Reads in a process of its own: HDF5 1.10 follows what a damaged file says until it crashes.
+/// Reads in a process of its own, of limited memory: HDF5 1.10 follows what a damaged file says
+/// until it crashes, and libmatio makes room for whatever a file states before it looks how much
+/// there is.
 MatFile read_in_subprocess(const std::string& path) {
-  const std::optional<std::string> reply = run_in_subprocess([&] {
-    try {
-      return packed(read_in_process(path));
-    } catch (const RecordingError& error) {
-      std::string text;
-      Json::to_msgpack({{"refused", std::string(error.what()).substr(sanitized(path).size() + 2)}},
-                       text);
-      return text;
-    }
-  });
+  // Compressed columns of one value shrink to a thousandth, those of an instrument to a third.
+  constexpr std::size_t kLeast = std::size_t{512} << 20, kPerByte = 64;
+  const std::optional<std::string> reply = run_in_subprocess(
+      [&] {
+        try {
+          return packed(read_in_process(path));
+        } catch (const RecordingError& error) {
+          std::string text;
+          Json::to_msgpack(
+              {{"refused", std::string(error.what()).substr(sanitized(path).size() + 2)}}, text);
+          return text;
+        }
+      },
+      kLeast + kPerByte * std::filesystem::file_size(path));
   if (!reply)
     throw RecordingError(path, 0,
-                         "the file is damaged: HDF5 cannot read it; save or copy it again");
+                         "the file is damaged: libmatio cannot read it; save or copy it again");
   const Json json = Json::from_msgpack(*reply);
   if (json.contains("refused")) throw RecordingError(path, 0, json.at("refused"));
   return unpacked(path, json);
@@ -307,7 +307,7 @@ MatFile read_mat(const std::string& path) {
   if (open_recording(path).peek() == std::ifstream::traits_type::eof()) {
     throw RecordingError(path, 0, "the file is empty; save or copy it again");
   }
-  return is_hdf5(path) ? read_in_subprocess(path) : read_in_process(path);
+  return read_in_subprocess(path);
 }
 
 Table select(const MatFile& mat, std::span<const std::string> names) {

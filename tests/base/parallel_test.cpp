@@ -6,8 +6,12 @@
 #include <chrono>
 #include <latch>
 #include <stdexcept>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
+
+#include "base/subprocess.h"
 
 namespace axisfit {
 namespace {
@@ -100,6 +104,30 @@ TEST(Parallel, NestedLoopsComeToTheirEnd) {
     const ThreadPool pool(threads);
     for (int turn = 0; turn < 20; ++turn) ASSERT_EQ(leaves(8), expected) << threads;
   }
+}
+
+// Where the system has no room for another thread's stack.
+TEST(Parallel, GoesOnWithoutMoreThreads) {
+  const auto work = [] {
+    std::latch end(1);
+    std::vector<std::jthread> all;
+    bool refused = false;
+    while (!refused && all.size() < 100) {
+      try {
+        all.emplace_back([&] { end.wait(); });
+      } catch (const std::system_error&) {
+        refused = true;
+      }
+    }
+    std::atomic<int> sum = 0;
+    {
+      const ThreadPool pool(4);
+      parallel_for(10, [&](std::size_t i) { sum += static_cast<int>(i); });
+    }
+    end.count_down();
+    return std::string(refused ? "refused " : "granted ") + std::to_string(sum);
+  };
+  EXPECT_EQ(run_in_subprocess(work, std::size_t{4} << 20), "refused 45");
 }
 
 }  // namespace
