@@ -42,7 +42,7 @@ void add_coloured_noise(Recording& recording, std::mt19937_64& generator) {
   constexpr double kColour = 0.9;
   for (Measurement& m : recording.measurements) {
     double noise = normal(generator);
-    for (double& x : m.values) {
+    for (double& x : m.values.edit()) {
       x += m.sigma * noise;
       noise = kColour * noise + std::sqrt(1.0 - kColour * kColour) * normal(generator);
     }

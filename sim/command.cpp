@@ -7,8 +7,7 @@ Schedule schedule_from_samples(const std::vector<double>& times,
   Schedule schedule;
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (i > 0 && values[i] == schedule.values.back()) continue;
-    schedule.times.push_back(times[i]);
-    schedule.values.push_back(values[i]);
+    schedule.append(times[i], values[i]);
   }
   return schedule;
 }

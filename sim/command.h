@@ -3,13 +3,20 @@
 
 #include <vector>
 
+#include "base/samples.h"
+
 namespace axisfit {
 
 /// A piecewise constant command: `values[k]` (V) from `times[k]` (s) on, later by the delay T_d of
 /// the axis. Before the first instant the command is zero.
 struct Schedule {
-  std::vector<double> times;  ///< increasing
-  std::vector<double> values;
+  Samples times;  ///< increasing
+  Samples values;
+
+  void append(double time, double value) {
+    times.edit().push_back(time);
+    values.edit().push_back(value);
+  }
 };
 
 /// The schedule of a command column: one entry wherever the value changes.

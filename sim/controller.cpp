@@ -48,9 +48,8 @@ Schedule simulate_controlled(
       if (!axis.advance_to(acting)) return written;
       if (written.times.size() == static_cast<std::size_t>(n)) {  // time to sample
         const double position = model.axis.r_g * axis.state()[2];
-        written.times.push_back(sampling);
-        written.values.push_back(unit.sample(
-            n, encoder_reading(position, model.axis.r_g, settings.counts_per_revolution)));
+        written.append(sampling, unit.sample(n, encoder_reading(position, model.axis.r_g,
+                                                                settings.counts_per_revolution)));
       }
       if (written.times.back() + model.axis.T_d <= value_of(axis.time())) {  // time to act
         axis.set_command(written.values.back());

@@ -19,8 +19,7 @@ struct ScheduleOf {
     for (long n = 0;; ++n) {
       const double t = static_cast<double>(n) * interval;
       if (n > 0 && t >= duration * (1.0 - 1e-12)) return schedule;
-      schedule.times.push_back(t);
-      schedule.values.push_back(value(t));
+      schedule.append(t, value(t));
     }
   }
 
@@ -30,10 +29,8 @@ struct ScheduleOf {
   }
   Schedule operator()(const LevelsMotion& m) const {
     Schedule schedule;
-    for (std::size_t i = 0; i < m.levels.size(); ++i) {
-      schedule.times.push_back(static_cast<double>(i) * m.hold);
-      schedule.values.push_back(m.levels[i]);
-    }
+    for (std::size_t i = 0; i < m.levels.size(); ++i)
+      schedule.append(static_cast<double>(i) * m.hold, m.levels[i]);
     return schedule;
   }
   Schedule operator()(const SineMotion& m) const {

@@ -37,8 +37,8 @@ enum class NoiseSource {
 /// One measured signal of a recording, in SI units.
 struct Measurement {
   Signal signal = Signal::velocity;
-  std::vector<double> values;  ///< one per sample
-  double sigma = 0.0;          ///< standard deviation of its noise, > 0
+  Samples values;      ///< one per sample
+  double sigma = 0.0;  ///< standard deviation of its noise, > 0
   NoiseSource noise = NoiseSource::differences;
   bool fitted = true;  ///< false: compared and reported, not part of the fit
   /// Samples that are neither fitted nor judged, see standstill.h; empty: none.
@@ -52,8 +52,8 @@ struct Recording {
   std::string name;  ///< short, unique within the job
   std::string file;  ///< as the user wrote it
   Role role = Role::fit;
-  std::vector<double> times;  ///< s, increasing, at least two
-  Schedule command;           ///< V
+  Samples times;     ///< s, increasing, at least two
+  Schedule command;  ///< V
   std::vector<Measurement> measurements;
   InitialState initial_state = InitialState::given;
   /// Samples at the start from which an initial state is taken.

@@ -34,6 +34,10 @@ class Hash {
     return *this;
   }
 
+  Hash& operator<<(const Samples& samples) {
+    return *this << static_cast<const std::vector<double>&>(samples);
+  }
+
   ProblemKey key() const {
     const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
     return {hash.high64, hash.low64};

@@ -25,7 +25,8 @@ SimulationResult run(const Job& job, const Recording& recording, const Model<T>&
     const Measurement* m = observer.active() ? recording.find(signal) : nullptr;
     if (m == nullptr) return std::vector<double>{};
     const bool curved = signal == Signal::position || curved_velocity;
-    return recorder.refined(curved ? target_corners(recording.times, m->values) : m->values);
+    if (!curved) return recorder.refined(m->values);
+    return recorder.refined(target_corners(recording.times, m->values));
   };
   const std::vector<double> velocity = series(Signal::velocity),
                             position = series(Signal::position);

@@ -163,7 +163,7 @@ class RecordingReader {
     // step on.
     if (constexpr double kDay = 86400.0; std::abs(times->front()) > kDay) {
       for (double& t : command_times) t -= times->front();
-      for (double& t : recording.times) t -= times->front();
+      for (double& t : recording.times.edit()) t -= times->front();
     }
     recording.command = schedule_from_samples(command_times, commands);
     if (recording.times.size() < 10) {

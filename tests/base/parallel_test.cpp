@@ -58,7 +58,7 @@ TEST(Parallel, ACrewWithinAnotherSharesItsThreads) {
 
 // Each of the two pieces of the inner loop waits until the other has begun.
 TEST(Parallel, WhoHasNothingLeftHelpsWithinTheLastPiece) {
-  for (const std::size_t pieces : {1, 2, 5}) {
+  for (const std::size_t pieces : {1u, 2u, 5u}) {
     const ThreadPool pool(2);
     parallel_for(pieces, [&](std::size_t i) {
       if (i + 1 < pieces) return;

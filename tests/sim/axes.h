@@ -95,8 +95,7 @@ inline Schedule staircase_command() {
   Schedule schedule;
   for (int k = 0; k < 200; ++k) {
     const double t = 0.005 * k;
-    schedule.times.push_back(t);
-    schedule.values.push_back(t < 0.3 ? 20.0 * t : t < 0.9 ? 6.0 - 15.0 * (t - 0.3) : 0.0);
+    schedule.append(t, t < 0.3 ? 20.0 * t : t < 0.9 ? 6.0 - 15.0 * (t - 0.3) : 0.0);
   }
   return schedule;
 }

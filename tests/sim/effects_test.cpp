@@ -141,7 +141,7 @@ TEST_P(EveryEffect, HasADerivativeAtStrengthZero) {
     Experiment experiment = to_and_fro(variant, !is_friction() && !is_lag());
     // In motion to the end: an arm that comes to rest ever more slowly sticks, as friction goes to
     // zero, ever later.
-    experiment.command.values.back() = 2.0;
+    experiment.command.values.edit().back() = 2.0;
     if (is_lag()) {
       // A lag is like a delay where it is short against all else. Here nothing is as fast as the
       // differences, as limits, a fast preamplifier or friction at a jump of the force would be.

@@ -119,8 +119,7 @@ TEST(DryFriction, HoldsUpToItsLevelAndNotBeyond) {
   // A staircase of 1 N every 10 ms: the step beyond 20 N sets the mass in motion, at its instant.
   Schedule ramp;
   for (int k = 0; k < 40; ++k) {
-    ramp.times.push_back(0.01 * k);
-    ramp.values.push_back(k + 0.5);
+    ramp.append(0.01 * k, k + 0.5);
   }
   const double start = 0.20;
   for (const double t : {0.0, 0.05, 0.195, 0.2}) {

@@ -159,7 +159,7 @@ TEST(Integrator, Mirrors) {
   add_effect<QuadraticDrag>(model).c = 50.0;
   add_effect<CoulombFriction>(model).F_c = 10.0;
   Schedule mirrored = level_command();
-  for (double& value : mirrored.values) value = -value;
+  for (double& value : mirrored.values.edit()) value = -value;
   const auto times = instants(1000, 1e-3);
   const auto there = run(model, level_command(), times);
   auto back = run(model, mirrored, times);

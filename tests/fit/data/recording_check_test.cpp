@@ -28,11 +28,11 @@ Recording moving() {
   std::tie(position.sigma, velocity.sigma, acceleration.sigma) = std::tuple(1e-5, 2e-3, 0.05);
   for (std::size_t i = 0; i < kSamples; ++i) {
     const double t = kInterval * static_cast<double>(i), phase = kRate * t;
-    recording.times.push_back(t);
-    position.values.push_back(0.1 * std::sin(phase) + 1e-5 * noise(generator));
-    velocity.values.push_back(0.1 * kRate * std::cos(phase) + 2e-3 * noise(generator));
-    acceleration.values.push_back(-0.1 * kRate * kRate * std::sin(phase) + 9.81 +
-                                  0.05 * noise(generator));
+    recording.times.edit().push_back(t);
+    position.values.edit().push_back(0.1 * std::sin(phase) + 1e-5 * noise(generator));
+    velocity.values.edit().push_back(0.1 * kRate * std::cos(phase) + 2e-3 * noise(generator));
+    acceleration.values.edit().push_back(-0.1 * kRate * kRate * std::sin(phase) + 9.81 +
+                                         0.05 * noise(generator));
   }
   recording.command = {{0.0, 0.5, 1.0}, {2.0, -3.0, 1.0}};
   recording.measurements = {position, velocity, acceleration};
@@ -122,7 +122,7 @@ TEST(RecordingCheckTest, ASoundRecordingHasNothingWrong) {
 
 TEST(RecordingCheckTest, FindsASensorThatHangs) {
   Recording recording = moving();
-  std::vector<double>& velocity = recording.measurements[1].values;
+  std::vector<double>& velocity = recording.measurements[1].values.edit();
   for (std::size_t i = 1100; i < 1160; ++i) velocity[i] = velocity[1100];
   const ValueCheck check = check_recording(recording).measurements[1];
   EXPECT_EQ(check.stuck, 60u);
@@ -132,7 +132,7 @@ TEST(RecordingCheckTest, FindsASensorThatHangs) {
 
 TEST(RecordingCheckTest, FindsASensorOutOfItsRange) {
   Recording recording = moving();
-  for (double& a : recording.measurements[2].values) a = std::min(a, 15.0);
+  for (double& a : recording.measurements[2].values.edit()) a = std::min(a, 15.0);
   const ValueCheck check = check_recording(recording).measurements[2];
   EXPECT_GT(check.clipped, 100u);
   EXPECT_EQ(check.clipped_at, 15.0);
@@ -142,7 +142,8 @@ TEST(RecordingCheckTest, ARestIsNeitherHangingNorClipped) {
   Recording recording = moving();
   for (std::size_t i = 1500; i < kSamples; ++i)
     for (Measurement& m : recording.measurements)
-      m.values[i] = m.signal == Signal::position ? recording.measurements[0].values[1499] : 0.0;
+      m.values.edit()[i] =
+          m.signal == Signal::position ? recording.measurements[0].values[1499] : 0.0;
   for (const ValueCheck& values : check_recording(recording).measurements) {
     EXPECT_EQ(values.stuck, 0u);
     EXPECT_EQ(values.clipped, 0u);

@@ -51,10 +51,10 @@ Recording recorded(double moving, const std::vector<Phase>& rests, std::uint64_t
   for (std::size_t k = 0; k < kSamples; ++k) {
     const double t = kStep * static_cast<double>(k);
     const double v = velocity_at(t, moving, rests);
-    recording.times.push_back(t);
-    velocity.values.push_back(v + kVelocityNoise * normal(generator));
-    position.values.push_back(y + kPositionNoise * normal(generator));
-    acceleration.values.push_back(0.05 * normal(generator));
+    recording.times.edit().push_back(t);
+    velocity.values.edit().push_back(v + kVelocityNoise * normal(generator));
+    position.values.edit().push_back(y + kPositionNoise * normal(generator));
+    acceleration.values.edit().push_back(0.05 * normal(generator));
     y += v * kStep;
   }
   recording.measurements = {velocity, position, acceleration};
@@ -115,7 +115,7 @@ TEST(Rest, IsNotAShortPauseNorATurn) {
   EXPECT_EQ(share(at_standstill(pause), {0.0, 2.0}), 0.0);
   Recording turn = recorded(0.0, {});
   for (std::size_t k = 0; k < kSamples; ++k)
-    turn.measurements[0].values[k] += 2.0 * (turn.times[k] - 1.0);
+    turn.measurements[0].values.edit()[k] += 2.0 * (turn.times[k] - 1.0);
   EXPECT_EQ(share(at_standstill(turn), {0.0, 2.0}), 0.0);
   // As long as twice the window it counts.
   const Recording standstill = recorded(0.2, {{1.0, 1.1}});
@@ -127,8 +127,8 @@ TEST(Rest, IsUnknownWithoutVelocityAndPosition) {
       without(without(recorded(0.0, {}), Signal::velocity), Signal::position);
   EXPECT_TRUE(at_standstill(recording).empty());
   Recording shorter = recorded(0.0, {});
-  shorter.times.resize(40);
-  for (Measurement& m : shorter.measurements) m.values.resize(40);
+  shorter.times.edit().resize(40);
+  for (Measurement& m : shorter.measurements) m.values.edit().resize(40);
   EXPECT_TRUE(at_standstill(shorter).empty());
 }
 
@@ -167,8 +167,8 @@ TEST(Rest, OfTheCleanRecordingComesAfterItsStep) {
 TEST(NoiseAtRest, IsWhatTheInstrumentsShowThere) {
   Recording recording = recorded(0.1, {{0.3, 0.9}, {1.4, 2.0}});
   // An offset that differs between rests is no noise, nor is motion.
-  for (std::size_t k = 1000; k < kSamples; ++k) recording.measurements[2].values[k] += 3.0;
-  for (std::size_t k = 0; k < 250; ++k) recording.measurements[2].values[k] *= 10.0;
+  for (std::size_t k = 1000; k < kSamples; ++k) recording.measurements[2].values.edit()[k] += 3.0;
+  for (std::size_t k = 0; k < 250; ++k) recording.measurements[2].values.edit()[k] *= 10.0;
   EXPECT_NEAR(noise_at_standstill(recording, recording.measurements[2]), 0.05, 0.05 * 0.1);
   EXPECT_NEAR(noise_at_standstill(recording, recording.measurements[0]), kVelocityNoise,
               0.1 * kVelocityNoise);
@@ -181,8 +181,8 @@ TEST(NoiseAtRest, IsTheSampleStandardDeviation) {
   Recording recording;
   Measurement acceleration = measurement(Signal::acceleration, 1.0);
   for (std::size_t k = 0; k < kFew; ++k) {
-    recording.times.push_back(kStep * static_cast<double>(k));
-    acceleration.values.push_back(k % 2 == 0 ? 1.0 : 3.0);
+    recording.times.edit().push_back(kStep * static_cast<double>(k));
+    acceleration.values.edit().push_back(k % 2 == 0 ? 1.0 : 3.0);
   }
   recording.measurements = {
       measurement(Signal::velocity, kVelocityNoise, std::vector<double>(kFew, 0.0)), acceleration};

@@ -86,7 +86,7 @@ TEST(Continuation, LeavesWhatAFirmHoldDoesNotShowWhereItIs) {
     Measurement& m = job.recordings[0].measurements[0];
     m.sigma = 1.0;  // m/s
     Normal normal(seed);
-    for (double& v : m.values) v += m.sigma * normal();
+    for (double& v : m.values.edit()) v += m.sigma * normal();
     job.free = {free_parameter("V_L", 10.0)};
     const ContinuationResult result = one_continuation(job);
     EXPECT_NEAR(std::exp(result.last.u[0]), 8.0, 1.5) << seed;

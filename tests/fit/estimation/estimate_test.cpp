@@ -25,11 +25,11 @@ Job slide_in_few_samples() {
   job.recordings.pop_back();
   Recording& r = job.recordings[0];
   const std::vector<double> times = r.times, values = r.measurements[0].values;
-  r.times.clear();
-  r.measurements[0].values.clear();
+  r.times.edit().clear();
+  r.measurements[0].values.edit().clear();
   for (std::size_t i = 0; i < times.size(); i += 80) {
-    r.times.push_back(times[i]);
-    r.measurements[0].values.push_back(values[i]);
+    r.times.edit().push_back(times[i]);
+    r.measurements[0].values.edit().push_back(values[i]);
   }
   return job;
 }
@@ -158,7 +158,7 @@ TEST(Estimate, RefusesAModelThatCannotBeSimulated) {
 
 TEST(Estimate, RefusesAFitThatIsNoBetterThanAConstant) {
   Job job = example_job();
-  for (double& v : job.recordings[0].measurements[0].values) v = -v;  // a wrong sign
+  for (double& v : job.recordings[0].measurements[0].values.edit()) v = -v;  // a wrong sign
   const FitResult result = estimate(job);
   EXPECT_FALSE(result.usable) << result.message;
   EXPECT_EQ(result.verdict, (FitVerdict{.kind = FitVerdict::Kind::signal_not_followed,
@@ -170,7 +170,7 @@ TEST(Estimate, RefusesAFitThatIsNoBetterThanAConstant) {
 TEST(Estimate, RefusesAHopelessFitUnlessTheNoiseIsKnownToBeLarge) {
   Job job = slide_in_few_samples();
   Measurement& m = job.recordings[0].measurements[0];
-  for (double& v : m.values) v = -v;
+  for (double& v : m.values.edit()) v = -v;
   m.sigma = 10.0;
   EXPECT_TRUE(estimate(job).usable);
   m.noise = NoiseSource::fit;
@@ -194,7 +194,7 @@ TEST(Estimate, LeavesOutInitialSamplesThatAreNotScored) {
   judged.role = Role::validate;
   judged.initial_samples = 3;
   Measurement& m = judged.measurements[0];
-  for (std::size_t i = 0; i < judged.initial_samples; ++i) m.values[i] += 1.0;  // m/s
+  for (std::size_t i = 0; i < judged.initial_samples; ++i) m.values.edit()[i] += 1.0;  // m/s
   const auto rmse = [&](bool scored) {
     judged.score_initial_samples = scored;
     const FitResult result = estimate(job);

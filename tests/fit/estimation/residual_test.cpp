@@ -141,8 +141,8 @@ Job job_with_outliers() {
   Job job = two_recordings(slide(), slide(), {"M", "B_a"}, 6.0, {Signal::velocity});
   job.recordings.pop_back();
   Measurement& m = job.recordings[0].measurements[0];
-  m.values[300] += 100.0 * m.sigma;
-  m.values[700] -= 50.0 * m.sigma;
+  m.values.edit()[300] += 100.0 * m.sigma;
+  m.values.edit()[700] -= 50.0 * m.sigma;
   job.options.huber_width = 3.0;
   return job;
 }
@@ -202,12 +202,11 @@ std::pair<double, double> errors_when_held(const Model<double>& truth, Signal si
   const int samples = static_cast<int>(std::lround(kDuration / interval));
   std::mt19937_64 generator(1);
   for (int i = 0; i <= samples; ++i)
-    recording.times.push_back(interval * (i + jitter * (2.0 * uniform(generator) - 1.0)));
+    recording.times.edit().push_back(interval * (i + jitter * (2.0 * uniform(generator) - 1.0)));
   for (int i = 0; i * kStair < kDuration; ++i) {
     const double t = (i + 0.5) * kStair;
-    recording.command.times.push_back(i * kStair);
-    recording.command.values.push_back(4.0 *
-                                       std::sin(2.0 * std::numbers::pi * (1.0 + 4.0 * t) * t));
+    recording.command.append(i * kStair,
+                             4.0 * std::sin(2.0 * std::numbers::pi * (1.0 + 4.0 * t) * t));
   }
   Measurement& m = recording.measurements.emplace_back();
   m.signal = signal;
@@ -215,7 +214,7 @@ std::pair<double, double> errors_when_held(const Model<double>& truth, Signal si
   m.noise = NoiseSource::given;
   simulate(truth, recording.command, recording.times,
            [&](std::size_t, const Integrator<double>& axis) {
-             m.values.push_back(
+             m.values.edit().push_back(
                  reading(axis.equations(), signal, axis.mode(), axis.state(), axis.input()));
            });
   job.free = {free_parameter("M", 1.3 * truth.axis.M), free_parameter("B_a", 1.5 * truth.axis.B_a)};

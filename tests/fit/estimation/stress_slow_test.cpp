@@ -16,9 +16,9 @@ Job anywhere_job(std::uint64_t draw) {
   Job job = paper;
   constexpr std::size_t kSamples = 101;
   for (Recording& r : job.recordings) {
-    r.times.resize(kSamples);
+    r.times.edit().resize(kSamples);
     for (Measurement& m : r.measurements) {
-      m.values.resize(kSamples);
+      m.values.edit().resize(kSamples);
       if (!m.excluded.empty()) m.excluded.resize(kSamples);
     }
   }

@@ -59,8 +59,8 @@ class ResidualSeriesTest : public testing::Test {
     Recording& r = job_.recordings.emplace_back();
     r.times = instants(9, 0.1);
     Measurement& m = r.measurements.emplace_back();
-    m.values.resize(10);
-    std::iota(m.values.begin(), m.values.end(), 10.0);
+    m.values.edit().resize(10);
+    std::iota(m.values.edit().begin(), m.values.edit().end(), 10.0);
     m.sigma = 2.0;
     SimulatedRecording& p = result_.recordings.emplace_back().free_running;
     p.finished = true;

@@ -23,7 +23,7 @@ class PeriodsTest : public testing::Test {
     Measurement& m = recording_.measurements.emplace_back();
     m.signal = Signal::acceleration;
     m.sigma = kSigma;
-    m.values.assign(kSamples, 0.0);
+    m.values.edit().assign(kSamples, 0.0);
     for (std::size_t i = 0; i < kSamples; ++i) {
       Sample& sample = prediction_.samples.emplace_back();
       sample.position = kStroke * static_cast<double>(i) / (kSamples - 1);
