@@ -83,7 +83,7 @@ class ThreadPool::Impl {
     }
   }
 
-  /// Of the loops with something left to begin that are no less deep than `least` the first.
+  /// The first loop at this depth or deeper that has pieces left to begin; null if there is none.
   Loop* open_loop(int least) const {
     const auto found = std::ranges::find_if(
         loops_, [&](const Loop* loop) { return loop->next < loop->count && loop->depth >= least; });

@@ -1,5 +1,5 @@
-// What a run of fit-params finds: the fit, what it leaves unexplained, and the models on the way to
-// explaining that. Text and JSON are made from it.
+// What a run of fit-params finds: the fit, what it leaves unexplained, and the models that were
+// tried to explain that. Text and JSON are made from it.
 #pragma once
 
 #include <optional>

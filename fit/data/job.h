@@ -100,10 +100,10 @@ struct FreeParameter {
 /// not positive. Throws std::invalid_argument for an unknown name.
 FreeParameter free_parameter(std::string_view name, double initial);
 
-/// How the simulation is held to the data while it is fitted, see observer.h.
+/// How the simulation is made to track the data while it is fitted, see observer.h.
 enum class ObserverMode {
-  continuation,  ///< firmly at first, then ever more loosely, at last not at all
-  fixed,         ///< at one rate to the end: a prediction-error fit
+  continuation,  ///< with a high observer gain at first, then ever lower ones, at last zero
+  fixed,         ///< with one gain to the end: a prediction-error fit
   none,          ///< never: plain least squares on the free-running simulation
 };
 

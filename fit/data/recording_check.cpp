@@ -34,7 +34,7 @@ RateRatio compared(Eigen::VectorXd a, Eigen::VectorXd b, bool about_means) {
   return {std::copysign(size_b / size_a, correlation), correlation};
 }
 
-/// The longest run of equal values while the arm does not rest.
+/// The longest run of equal values while the arm moves.
 void find_stuck(const Recording& recording, const std::vector<double>& values,
                 const std::vector<bool>& standstill, ValueCheck& check) {
   const auto moves = [&](std::size_t i) { return standstill.empty() || !standstill[i]; };
@@ -66,7 +66,7 @@ void find_stuck(const Recording& recording, const std::vector<double>& values,
   check.stuck_at = recording.times[at];
 }
 
-/// Samples that stay at the end of the range while the arm does not rest.
+/// Samples that stay at the end of the range while the arm moves.
 void find_clipped(const std::vector<double>& values, const std::vector<bool>& standstill,
                   ValueCheck& check) {
   // A constant signal, or one whose noise is below its rounding, may well stay at its extreme.

@@ -31,7 +31,7 @@ std::vector<bool> at_standstill(const Recording& recording) {
       still[i] = high - low < 8.0 * position->sigma;
     }
   }
-  // The ends go with their neighbours; a rest lasts.
+  // The ends follow their neighbours: a standstill lasts longer than a window.
   for (std::size_t i = 0; i < kHalf; ++i) {
     still[i] = still[kHalf];
     still[n - 1 - i] = still[n - 1 - kHalf];

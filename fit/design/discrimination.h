@@ -19,7 +19,7 @@ struct Discrimination {
 /// recordings, with the signals that they lack, and the family of experiments within the limits
 /// (completed as for suggest_experiment, by the final fit). Differences are counted in the job's
 /// noise of a signal, or, where it has none, in thousandths of its range. The models are taken as
-/// fitted: that their parameters may be fitted anew makes the difference smaller.
+/// fitted; refitting them to the new recording would make the difference smaller.
 Discrimination discriminate(const EffectSelection& selection, const UndecidedPair& rivals,
                             const RunContext& context = {});
 

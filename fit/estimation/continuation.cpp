@@ -61,7 +61,7 @@ class Continuation {
     return solved;
   }
 
-  /// What was found while held at `rate`, reported.
+  /// Reports what was found while tracking with the gain `rate`.
   SolveResult solve_tracking(const Eigen::VectorXd& start, double rate) {
     SolveResult tracking = solve_stage(start, rate, false);
     report();
@@ -133,7 +133,7 @@ class Continuation {
   const ParameterSpace& space_;
   const std::function<void(const Stage&)>& progress_;
   const RunContext& context_;
-  std::vector<VisitedMinimum> visited_;  ///< minima on the way, of all paths
+  std::vector<VisitedMinimum> visited_;  ///< minima met, of all paths
   std::vector<Stage> stages_;
   int iterations_ = 0;
 };
@@ -178,7 +178,7 @@ ContinuationResult run_continuation(const Job& job, const ParameterSpace& space,
     const auto explained = [&](double reduced_cost) {
       return result.last.usable && result.last.reduced_cost < reduced_cost;
     };
-    std::optional<double> known;  // cost of the best end when it is held again
+    std::optional<double> known;  // cost of the best end when it tracks again
     const auto accept_if_better = [&](SolveResult solved) {
       if (result.last.usable && !(solved.usable && solved.cost < result.last.cost)) return;
       const bool same_end = result.last.usable && solved.cost > 0.99 * result.last.cost;
@@ -198,14 +198,13 @@ ContinuationResult run_continuation(const Job& job, const ParameterSpace& space,
         accept_if_better(continuation.run(track_with_best(), rate));
     };
     follow(start, rate);
-    // Where the end does not explain the data, begin anew. Less firmly: a firm hold feeds the noise
-    // of the measurement into the simulation, which can bias what the data hardly show beyond
-    // return.
+    // Where the end does not explain the data, start again from a lower gain: a high one feeds the
+    // measurement noise into the simulation, which can bias weakly determined parameters for good.
     if (!explained(kExplained) && job.options.attempts > 1) follow(start, rate / 5.0);
-    // And from elsewhere: even held firmly, a controller that saturates has local minima. That
-    // shows while it is held, so that only a start which is better there has to be followed.
-    // One that cannot even be simulated costs little: there the moves go on for longer.
-    // Several that end where the best did confirm it.
+    // And from elsewhere: even while tracking, a controller that saturates has local minima. They
+    // show there already, so that only a start with a lower tracking cost has to be followed. One
+    // that cannot even be simulated costs little: then more perturbations are tried. Several that
+    // end where the best did confirm it.
     constexpr int kPerturbations = 8, kFirstPerturbations = 16, kConfirmed = 3;
     int confirmed = 0;
     for (int attempt = 2; attempt < job.options.attempts; ++attempt) {

@@ -165,7 +165,7 @@ class BoundConstraints {
       if (fixed_[i]) continue;
       const bool outwards = u_[i] <= lower_[i] ? gradient[i] > 0.0 : gradient[i] < 0.0;
       const bool hold = at_bound(i) && outwards;
-      constexpr int kChanges = 4;  // held and let go twice
+      constexpr int kChanges = 4;  // fixed and freed twice
       if (hold == pinned_[i] || ++changes_[i] > kChanges) continue;
       pinned_[i] = hold;
       changed = true;
@@ -247,8 +247,8 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
 
   // The solver projects steps onto the bounds: one that leads beyond a bound moves the other
   // parameters as if it had got there, and at a bound it gets no further. So a parameter that is
-  // pushed against its bound is held there while the others are fitted, and let go when it is not
-  // pushed any more.
+  // pushed against its bound is fixed there while the others are fitted, and freed as soon as the
+  // gradient points inwards.
   BoundConstraints point(space, options.fixed, u, problem);
   if (point.any_at_bound()) point.review();
   for (;;) {

@@ -35,13 +35,13 @@ struct Profile {
   std::vector<ProfilePoint> points;  ///< by value, the estimate among them
   double threshold = 0.0;
   ProfileEnd lower, upper;
-  /// The best fit met on the way, where it is better than the one that was to be examined.
+  /// The best fit found while profiling, if it is better than the one being profiled.
   std::optional<StartResult> better;
 };
 
 /// Profiles of some parameters of a usable fit of the job: from the estimate outwards to either
-/// side, all other parameters fitted anew at every point. Sides are independent of each other, and
-/// spread over the job's threads. `progress` is called with the number of sides done and of all
+/// side, with all other parameters refitted at every point. Sides are independent of each other,
+/// and spread over the job's threads. `progress` is called with the number of sides done and of all
 /// sides.
 std::vector<Profile> profiles(const Job& job, const FitResult& fit,
                               std::span<const std::size_t> parameters,

@@ -58,9 +58,10 @@ Drift drift(std::span<const double> times, std::span<const double> values) {
     correlation_length = time;
   }
 
-  // Of noise that is coloured, a line takes the slowest with it: the rest has too little variance
-  // and too short a memory. Three more degrees of freedom make up for the latter (the bias of an
-  // autoregression's coefficient, of the order of one over the number of samples).
+  // A line fitted to coloured noise absorbs its slowest part, so that the residual has too little
+  // variance and too short an autocorrelation time. Three more degrees of freedom make up for the
+  // latter (the bias of an autoregression's coefficient, of the order of one over the number of
+  // samples).
   const double independent = static_cast<double>(n) / correlation_length;
   const double degrees_of_freedom = independent - 2.0 - 3.0 * (1.0 - 1.0 / correlation_length);
   if (!(degrees_of_freedom >= 1.0)) return result;

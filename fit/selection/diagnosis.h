@@ -13,7 +13,8 @@ namespace axisfit {
 struct SuspectedEffect {
   Candidate candidate;
   std::vector<double> shapes, strengths;  ///< as the score test sees them
-  double fraction = 0.0;  ///< of the sum of squares of the held simulation, that it would explain
+  double fraction =
+      0.0;  ///< of the sum of squares of the tracking simulation that it would explain
 };
 
 struct Diagnosis {

@@ -12,7 +12,7 @@ namespace axisfit {
 namespace {
 
 /// What the recorded signals show of a force f(t) = exp(i q(t)) on a rigid axis of unit mass that
-/// is held by the observer, whitened, in the order of RecordingCost.
+/// tracks the data by the observer, whitened, in the order of RecordingCost.
 Eigen::VectorXcd response(const Recording& recording, const std::vector<std::complex<double>>& f,
                           const Observer& observer) {
   const std::size_t n = recording.times.size();

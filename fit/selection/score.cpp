@@ -132,7 +132,7 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
       if (!(gain > score.gain)) return;
       score.gain = gain;
       score.strengths = reached;
-      // The free parameters give way to the effect; no further than a linear step can be believed.
+      // The free parameters adapt to the effect, no further than a linear step can be trusted.
       const Eigen::VectorXd way = base_solver.solve(-(base.residuals + derivatives * step));
       score.values = space.values(tracking.u + way.cwiseMax(-0.7).cwiseMin(0.7));
     };

@@ -72,9 +72,9 @@ class EffectSelector {
 
   SelectionStep& current() { return result_.models.back(); }
 
-  /// Named effects as long as one passes. Where they do not suffice, once more while the simulation
-  /// is held, and then with a curve before them: of what is in no catalogue, named effects may have
-  /// imitated a part.
+  /// Adds named effects as long as one passes. If they do not suffice, tries again while the
+  /// simulation tracks the data, and then with a curve first: named effects may have imitated part
+  /// of something that is in no catalogue.
   void search() {
     search_named();
     if (explained()) return;
@@ -109,10 +109,10 @@ class EffectSelector {
     return a.fit.usable && is_clearly_worse(loss_of(a, b));
   }
 
-  /// Several effects that are large hide each other: a simulation that runs free drifts away from
-  /// the data whatever is added, and little can be told from what is left. Held to the data it
-  /// stays near. So they are looked for, and judged, by a simulation that is held to the end, and
-  /// are let go together; what is not needed then is taken away.
+  /// Several large effects mask each other: the free-running simulation drifts away from the data
+  /// whichever of them is added, and its residual says little. A simulation that tracks the data
+  /// stays near them. So the effects are found and judged while tracking, and then refitted
+  /// together free-running; backward elimination removes those that are not needed there.
   void search_tracking() {
     const SelectionStep declared = result_.models.front();
     if (declared.job.options.observer != ObserverMode::continuation) return;
@@ -338,7 +338,7 @@ class EffectSelector {
     }
   }
 
-  /// The models on the way anew, after one was taken away or exchanged: the last is given.
+  /// Refits the intermediate models after an effect was removed or swapped; the last one is given.
   void rebuild(SelectionStep last) {
     std::vector<SelectionStep> models;
     models.push_back(std::move(result_.models.front()));
@@ -357,7 +357,7 @@ class EffectSelector {
     result_.models = std::move(models);
   }
 
-  /// Every accepted effect in turn gives way to a rival: whether that explains more.
+  /// Replaces the first accepted effect that has a clearly better rival.
   bool try_swap() {
     if (accepted_.empty() || swapped_) return false;
     swapped_ = true;

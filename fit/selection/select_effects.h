@@ -50,7 +50,7 @@ struct EffectTrial {
   Improvement improvement;                  ///< against the model before it
 };
 
-/// One model on the way: the declared one, and one after each accepted effect.
+/// One intermediate model: the declared one, and one after each accepted effect.
 struct SelectionStep {
   std::string added;  ///< the effect; empty for the declared model
   Job job;

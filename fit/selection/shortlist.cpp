@@ -34,7 +34,7 @@ std::vector<ShortlistEntry> best_of(const ScoreTest& test, std::size_t length) {
   return taken;
 }
 
-/// Fits each while it is held at `rate`, and keeps those that may yet turn out the best.
+/// Fits each while tracking with the gain `rate`, and keeps those that may yet turn out the best.
 std::vector<ShortlistEntry> screened(const Job& job, std::vector<ShortlistEntry> list, double rate,
                                      const RunContext& context) {
   constexpr std::size_t kKept = 3;

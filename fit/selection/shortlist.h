@@ -21,9 +21,9 @@ struct Shortlist {
 
 /// The best by score_test() at every rate of score_gains(), about `length` of each, from a fit with
 /// the given values of the free parameters; those of the catalogue or, with `curves`, those without
-/// a name. Those of a rate are then fitted with the simulation still held at it, which is quick:
-/// what is far behind there is dropped, and the others start from there. The thread pool shares the
-/// work.
+/// a name. Those of a rate are then fitted while the simulation still tracks with it, which is
+/// quick: what is far behind there is dropped, and the others start from there. The thread pool
+/// shares the work.
 Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curves, int length,
                     const RunContext& context = {});
 

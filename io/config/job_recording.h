@@ -18,8 +18,8 @@ const Section& recording_keys();
 Recording read_recording(const ConfigNode& node, const Rig& rig, ObserverMode observer,
                          const std::string& data_directory);
 
-/// Why a fixed observer gain leaves a quantity no part in a recording: the lag or delay of the
-/// signal that the simulation is held to. Empty where it has one.
+/// Why a quantity has no influence on a recording under a fixed observer gain: it is the lag or the
+/// delay of the signal that the simulation tracks. Empty where it has influence.
 std::string ignored_by_observer(const QuantityEntry& entry, ObserverMode observer,
                                 const Recording& recording);
 

@@ -4,14 +4,14 @@
 namespace axisfit {
 namespace {
 
-TEST(KillingSlow, TwoHundredTimesAMultistart) {
+TEST(KillingSlowTest, TwoHundredTimesAMultistart) {
   const TempFolder folder;
   write_recordings(folder);
   folder.write("job.yaml", fit_job("{starts: 8}"));
   Killing(folder, "job.yaml").kill(200);
 }
 
-TEST(KillingSlow, TwoHundredTimesALoop) {
+TEST(KillingSlowTest, TwoHundredTimesALoop) {
   const TempFolder folder;
   write_rubbing_mass(folder);
   folder.write("job.yaml", rubbing_job());

@@ -30,7 +30,7 @@ Recorded recorded(const Model<double>& model, const Schedule& command,
 }
 
 /// Observer force at every instant, N.
-std::vector<double> coupling_forces(const Model<double>& model, const Schedule& command,
+std::vector<double> observer_forces(const Model<double>& model, const Schedule& command,
                                     std::span<const double> times, const Observer& observer,
                                     const Recorded& data) {
   std::vector<double> forces;
@@ -99,7 +99,7 @@ TEST(Observer, DoesNothingToAModelThatIsRight) {
     for (const double dt : {2e-4, 1e-4, 0.5e-4}) {
       const auto times = instants(static_cast<std::size_t>(std::lround(0.4 / dt)), dt);
       const Recorded data = recorded(model, step_command(), times);
-      const double force = rms(coupling_forces(model, step_command(), times, observer, data));
+      const double force = rms(observer_forces(model, step_command(), times, observer, data));
       std::cout << "dt " << dt << ": " << force << " N\n";
       EXPECT_LT(force, 0.02 * 408.0);
       if (before > 0.0) {
@@ -117,7 +117,7 @@ TEST(Observer, StaysOnAMotionThatIsALineBetweenSamplesExactly) {
   const Schedule command{{0.0}, {24.0}};
   const Recorded data = recorded(model, command, times);
   for (const double force :
-       coupling_forces(model, command, times, Observer::of_velocity(1000.0, false), data))
+       observer_forces(model, command, times, Observer::of_velocity(1000.0, false), data))
     ASSERT_NEAR(force, 0.0, 1e-10);
 }
 
@@ -129,7 +129,7 @@ TEST(Observer, ForceConvergesToWhatTheModelLacks) {
   const Recorded data = recorded(truth, step_command(), times);
   // An arm held to a velocity has the missing force after some time constants, as far as the rest
   // of it (the motor behind the teeth) has settled; one held to position needs the motor as well.
-  const auto forces = coupling_forces(paper_axis(), step_command(), times,
+  const auto forces = observer_forces(paper_axis(), step_command(), times,
                                       Observer::of_velocity(200.0, false), data);
   double mean = 0.0;
   for (std::size_t k = 300; k < 500; ++k) mean += forces[k] / 200.0;
@@ -143,7 +143,7 @@ TEST(Observer, ForceConvergesToWhatTheModelLacks) {
   add_effect<ConstantForce>(pushed).F_0 = F;
   const Recorded line = recorded(pushed, push, times);
   const auto approach =
-      coupling_forces(mass, push, times, Observer::of_velocity(50.0, false), line);
+      observer_forces(mass, push, times, Observer::of_velocity(50.0, false), line);
   for (std::size_t k = 0; k < times.size(); ++k)
     ASSERT_NEAR(approach[k], F * (1.0 - std::exp(-50.0 * times[k])), 1e-9 * F);
 }
@@ -174,7 +174,7 @@ TEST(Observer, SeesThroughTheInstruments) {
   model.initial[1] = 0.4;
   const Recorded data = recorded(model, command, times);
   for (const Observer& observer : kCouplings)
-    for (const double force : coupling_forces(model, command, times, observer, data))
+    for (const double force : observer_forces(model, command, times, observer, data))
       ASSERT_NEAR(force, 0.0, 1e-9);
 }
 

@@ -5,9 +5,9 @@
 namespace axisfit {
 namespace {
 
-TEST(HardshipSlowTest, AnyAxisEndsInFiniteReadingsOrIsGivenUp) { expect_endured(300, 10'000); }
+TEST(StressSlowTest, AnyAxisEndsInFiniteReadingsOrIsGivenUp) { expect_endured(300, 10'000); }
 
-TEST(HardshipSlowTest, HalfAMillionEventsInARowDoNotChatter) {
+TEST(StressSlowTest, HalfAMillionEventsInARowDoNotChatter) {
   // One event in a hundred thousand leaves the guard behind it below zero by rounding, and rising,
   // to fall again within the next step.
   Diagnostics diagnostics;

@@ -3,7 +3,7 @@
 namespace axisfit {
 namespace {
 
-TEST(HardshipTest, AnyAxisEndsInFiniteReadingsOrIsGivenUp) { expect_endured(0, 300); }
+TEST(StressTest, AnyAxisEndsInFiniteReadingsOrIsGivenUp) { expect_endured(0, 300); }
 
 }  // namespace
 }  // namespace axisfit

@@ -56,7 +56,7 @@ TEST(SamplingTest, TellsGapsFromJitter) {
   EXPECT_LT(sampling(moving().times).jitter, 1e-9);
 }
 
-TEST(TellingCouplingTest, ShowsAHundredthOfTheAccelerationAboveTheNoise) {
+TEST(SuggestedObserverGainTest, ShowsAHundredthOfTheAccelerationAboveTheNoise) {
   const Recording recording = moving();
   const auto &position = recording.measurements[0].values,
              &velocity = recording.measurements[1].values;

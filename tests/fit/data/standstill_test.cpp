@@ -76,7 +76,7 @@ double share(const std::vector<bool>& standstill, Phase phase) {
 /// Half of the window in which the mean is taken.
 constexpr double kHalf = 12 * kStep;
 
-TEST(Rest, IsFoundByTheVelocityOrElseThePosition) {
+TEST(Standstill, IsFoundByTheVelocityOrElseThePosition) {
   const std::vector<Phase> rests{{0.0, 0.3}, {0.8, 1.2}, {1.7, 2.0}};
   const Recording both = recorded(0.2, rests);
   for (const Recording& recording :
@@ -92,14 +92,14 @@ TEST(Rest, IsFoundByTheVelocityOrElseThePosition) {
   }
 }
 
-TEST(Rest, IsHardlyEverMissedUnderNoise) {
+TEST(Standstill, IsHardlyEverMissedUnderNoise) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Recording recording = recorded(0.0, {}, seed);
     EXPECT_GT(share(at_standstill(recording), {0.0, 2.0}), 0.97) << seed;
   }
 }
 
-TEST(Rest, IsNotSlowMotion) {
+TEST(Standstill, IsNotSlowMotion) {
   // Less than the noise of one sample, more than that of the mean over 25.
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Recording recording = recorded(1.3 * kVelocityNoise, {}, seed);
@@ -110,7 +110,7 @@ TEST(Rest, IsNotSlowMotion) {
   }
 }
 
-TEST(Rest, IsNotAShortPauseNorATurn) {
+TEST(Standstill, IsNotAShortPauseNorATurn) {
   const Recording pause = recorded(0.2, {{1.0, 1.04}});
   EXPECT_EQ(share(at_standstill(pause), {0.0, 2.0}), 0.0);
   Recording turn = recorded(0.0, {});
@@ -122,7 +122,7 @@ TEST(Rest, IsNotAShortPauseNorATurn) {
   EXPECT_GT(share(at_standstill(standstill), {1.0 + kHalf, 1.1 - kHalf}), 0.99);
 }
 
-TEST(Rest, IsUnknownWithoutVelocityAndPosition) {
+TEST(Standstill, IsUnknownWithoutVelocityAndPosition) {
   const Recording recording =
       without(without(recorded(0.0, {}), Signal::velocity), Signal::position);
   EXPECT_TRUE(at_standstill(recording).empty());
@@ -132,7 +132,7 @@ TEST(Rest, IsUnknownWithoutVelocityAndPosition) {
   EXPECT_TRUE(at_standstill(shorter).empty());
 }
 
-TEST(Rest, LeavesOutTheAccelerationAlone) {
+TEST(Standstill, LeavesOutTheAccelerationAlone) {
   Recording recording = recorded(0.2, {{1.0, 2.0}});
   exclude_acceleration_at_standstill(recording);
   for (const Measurement& m : recording.measurements) {
@@ -144,7 +144,7 @@ TEST(Rest, LeavesOutTheAccelerationAlone) {
   EXPECT_TRUE(unknown.measurements[0].counts(1500));
 }
 
-TEST(Rest, OfTheCleanRecordingComesAfterItsStep) {
+TEST(Standstill, OfTheCleanRecordingComesAfterItsStep) {
   const Table table = read_csv(std::string(AXISFIT_TESTDATA) + "/clean-fit.csv");
   Recording recording;
   recording.times = table.columns[0].values;

@@ -21,7 +21,7 @@ Job sampled(std::initializer_list<double> intervals, Signal signal) {
   return job;
 }
 
-TEST(CouplingRate, BeginsAsFirmAsTheSamplingAllows) {
+TEST(ObserverGains, BeginsAsFirmAsTheSamplingAllows) {
   Job job = sampled({2e-3}, Signal::velocity);
   EXPECT_NEAR(initial_observer_gain(job), 500.0, 1e-9);
   job.recordings[0].measurements.emplace_back().signal = Signal::position;
@@ -31,13 +31,13 @@ TEST(CouplingRate, BeginsAsFirmAsTheSamplingAllows) {
   EXPECT_EQ(initial_observer_gain(job), 70.0);
 }
 
-TEST(CouplingRate, IsThatOfTheCoarsestRecordingToBeFitted) {
+TEST(ObserverGains, IsThatOfTheCoarsestRecordingToBeFitted) {
   Job job = sampled({2e-3, 4e-3, 8e-3}, Signal::velocity);
   job.recordings[2].role = Role::validate;
   EXPECT_NEAR(initial_observer_gain(job), 250.0, 1e-9);
 }
 
-TEST(CouplingRate, EndsAtZeroUnlessItIsFixed) {
+TEST(ObserverGains, EndsAtZeroUnlessItIsFixed) {
   Job job = sampled({2e-3}, Signal::velocity);
   EXPECT_EQ(final_observer_gain(job), 0.0);
   job.options.observer = ObserverMode::none;
@@ -52,7 +52,8 @@ ContinuationResult one_continuation(Job job) {
   return run_continuation(job, space, space.internal(draw_start(job, 0)));
 }
 
-// An axis that lacks much loses the data when it is let go: by leaps, if it were in great steps.
+// A model that lacks much leaves the data when the observer gain falls: by leaps, if in large
+// steps.
 TEST(Continuation, TakesShorterStepsWhereTheSimulationWouldLoseTheData) {
   Model<double> truth = slide();
   add_effect<CoulombFriction>(truth).F_c = 60.0;

@@ -232,7 +232,7 @@ Model<double> rubbing_slide() {
 }
 
 // Chords between the samples would make M heavier by 1.8 % at 4 ms and 0.44 % at 2 ms.
-TEST(HeldFirmly, ToAnExactPositionFindsTheTruthToFourthOrder) {
+TEST(StrongObserver, ToAnExactPositionFindsTheTruthToFourthOrder) {
   const auto [mass, friction] = errors_when_held(rubbing_slide(), Signal::position, 100.0, 4e-3);
   const auto [finer_mass, finer_friction] =
       errors_when_held(rubbing_slide(), Signal::position, 100.0, 2e-3);
@@ -244,7 +244,7 @@ TEST(HeldFirmly, ToAnExactPositionFindsTheTruthToFourthOrder) {
   EXPECT_NEAR(friction / finer_friction, 16.0, 2.0);
 }
 
-TEST(HeldFirmly, FindsItInUnevenSamplesToo) {
+TEST(StrongObserver, FindsItInUnevenSamplesToo) {
   const auto [mass, friction] =
       errors_when_held(rubbing_slide(), Signal::position, 100.0, 4e-3, 0.3);
   std::cout << "M " << mass << ", B_a " << friction << "\n";
@@ -253,14 +253,14 @@ TEST(HeldFirmly, FindsItInUnevenSamplesToo) {
 }
 
 // Chords would make B_a smaller by 9.8 %.
-TEST(HeldFirmly, ToAnExactVelocityFindsTheTruth) {
+TEST(StrongObserver, ToAnExactVelocityFindsTheTruth) {
   const auto [mass, friction] = errors_when_held(motor_axis(), Signal::velocity, 200.0, 2e-3);
   std::cout << "M " << mass << ", B_a " << friction << "\n";
   EXPECT_LT(std::abs(mass), 1e-3);
   EXPECT_LT(std::abs(friction), 1e-2);
 }
 
-TEST(CouplingFor, TakesVelocityThenPosition) {
+TEST(ObserverForRecording, TakesVelocityThenPosition) {
   Recording recording;
   EXPECT_FALSE(observer_for(recording, 100.0).active());
   const auto add = [&](Signal signal) { recording.measurements.emplace_back().signal = signal; };

@@ -34,7 +34,7 @@ Job anywhere_job(std::uint64_t draw) {
   return job;
 }
 
-TEST(HardshipSlowTest, AFitFromAnywhereEndsWithAVerdict) {
+TEST(StressSlowTest, AFitFromAnywhereEndsWithAVerdict) {
   for (std::uint64_t draw = 0; draw < 100; ++draw) {
     SCOPED_TRACE(draw);
     const FitResult fit = estimate(anywhere_job(draw));

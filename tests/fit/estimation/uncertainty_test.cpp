@@ -230,14 +230,14 @@ TEST_F(UncertaintyTest, NamesWhatNoSignalShows) {
   EXPECT_EQ(seen.singular_values.size(), 2u);
 }
 
-TEST(Colour, OfWhiteNoiseIsNone) {
+TEST(ColouredResiduals, OfWhiteNoiseIsNone) {
   int with = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed)
     with += modelled_autocovariance(Normal(seed).values(1000)).size() > 1 ? 1 : 0;
   EXPECT_LE(with, 5);
 }
 
-TEST(Colour, IsThatOfTheProcess) {
+TEST(ColouredResiduals, IsThatOfTheProcess) {
   for (const double c : {-0.5, 0.5, 0.95}) {
     const auto g = modelled_autocovariance(coloured(c, 20000, 3));
     ASSERT_GT(g.size(), 5u);

@@ -155,7 +155,7 @@ TEST(ImprovementTest, PValueOfChanceIsHonest) {
   EXPECT_LE(below, kTrials / 20);
 }
 
-TEST(DisadvantageTest, IsWhatTheOtherExplainsLess) {
+TEST(BicDifferenceTest, IsWhatTheOtherExplainsLess) {
   const auto best = pair(noise(1), noise(2));
   const auto other = pair(with_wave(noise(1), 0.5), with_wave(noise(2), 0.5));
   // Two series with a mean square of 1 / 8 each.
@@ -165,19 +165,19 @@ TEST(DisadvantageTest, IsWhatTheOtherExplainsLess) {
   EXPECT_EQ(bic_difference(best, 3, best, 3), 0.0);
 }
 
-TEST(DisadvantageTest, PricesParametersByTheNumberOfSamples) {
+TEST(BicDifferenceTest, PricesParametersByTheNumberOfSamples) {
   const auto same = pair(noise(1), noise(2));
   const double price = std::log(2.0 * kSamples);
   EXPECT_NEAR(bic_difference(same, 3, same, 5), 2.0 * price, 0.02 * price);
   EXPECT_NEAR(bic_difference(same, 5, same, 3), -2.0 * price, 0.02 * price);
 }
 
-TEST(DisadvantageTest, OfAModelThatFailsIsInfinite) {
+TEST(BicDifferenceTest, OfAModelThatFailsIsInfinite) {
   const auto both = pair(noise(1), noise(2));
   EXPECT_EQ(bic_difference(both, 3, {series(true, noise(1))}, 3), INFINITY);
 }
 
-TEST(DisadvantageTest, CorrelatedResidualsCountLess) {
+TEST(BicDifferenceTest, CorrelatedResidualsCountLess) {
   const auto best = pair(held_for_five(noise(1)), held_for_five(noise(2)));
   const auto other = pair(with_wave(best[0].values, 0.5), with_wave(best[1].values, 0.5));
   EXPECT_NEAR(bic_difference(best, 3, other, 3), 2.0 * kSamples / 8.0 / 5.0, 0.03 * kSamples);

@@ -26,7 +26,7 @@ void put_bump_into(Model<double>& model, double size) {
   curve.to = 0.4;
 }
 
-TEST(CloseLoopOnTheSlide, DrawsACurveOfAForceThatIsInNoCatalogue) {
+TEST(SelectEffectsOnTheSlide, DrawsACurveOfAForceThatIsInNoCatalogue) {
   Model<double> truth = slide();
   put_bump_into(truth, 15.0);
   const EffectSelection selection = close(two_recordings(truth, slide(), {"M", "B_a"}));
@@ -34,7 +34,7 @@ TEST(CloseLoopOnTheSlide, DrawsACurveOfAForceThatIsInNoCatalogue) {
   expect_found(selection, "M", 20.0);
 }
 
-TEST(CloseLoopOnTheSlide, AddsNoMoreThanIsAllowed) {
+TEST(SelectEffectsOnTheSlide, AddsNoMoreThanIsAllowed) {
   Model<double> truth = slide();
   hidden_effect_named("coulomb_friction").put_into(truth);
   hidden_effect_named("added_mass").put_into(truth);
@@ -44,7 +44,7 @@ TEST(CloseLoopOnTheSlide, AddsNoMoreThanIsAllowed) {
   EXPECT_LE(accepted(select_effects(job, estimate(job), options)).size(), 1u);
 }
 
-TEST(CloseLoopOnTheSlide, FindsThreeEffects) {
+TEST(SelectEffectsOnTheSlide, FindsThreeEffects) {
   Model<double> truth = slide();
   for (const char* name : {"coulomb_friction", "stroke_spring", "drive_lag"})
     hidden_effect_named(name).put_into(truth);
@@ -91,7 +91,7 @@ TEST_P(OnThePapersAxis, OneUndeclaredEffectIsAcceptedAlone) {
 INSTANTIATE_TEST_SUITE_P(EverySlot, OnThePapersAxis, testing::ValuesIn(paper_secrets()),
                          [](const auto& one) { return one.param.label(); });
 
-TEST(CloseLoopOnThePapersAxis, AddsNothingForNoiseThatIsLargerThanStated) {
+TEST(SelectEffectsOnThePapersAxis, AddsNothingForNoiseThatIsLargerThanStated) {
   Job job = paper_job(paper_axis(), {"B_a", "k_g", "T_p"});
   for (Recording& r : job.recordings)
     for (Measurement& m : r.measurements) m.sigma *= 0.7;

@@ -37,9 +37,9 @@ TEST_P(OneUndeclaredEffect, IsAcceptedAlone) {
 INSTANTIATE_TEST_SUITE_P(EverySlot, OneUndeclaredEffect, testing::ValuesIn(hidden_effects(false)),
                          [](const auto& one) { return one.param.label(); });
 
-class AnEffectWithATwin : public testing::TestWithParam<HiddenEffect> {};
+class SelectEffectsTwin : public testing::TestWithParam<HiddenEffect> {};
 
-TEST_P(AnEffectWithATwin, IsLeftUndecided) {
+TEST_P(SelectEffectsTwin, IsLeftUndecided) {
   const HiddenEffect& secret = GetParam();
   Job job = secret.job();
   job.limits = {-0.5, 0.5, 1.0, 10.0};
@@ -64,10 +64,10 @@ TEST_P(AnEffectWithATwin, IsLeftUndecided) {
   EXPECT_EQ(selection.result.job.free.size(), secret.free.size());
 }
 
-INSTANTIATE_TEST_SUITE_P(EverySlot, AnEffectWithATwin, testing::ValuesIn(hidden_effects(true)),
+INSTANTIATE_TEST_SUITE_P(EverySlot, SelectEffectsTwin, testing::ValuesIn(hidden_effects(true)),
                          [](const auto& one) { return one.param.label(); });
 
-TEST(CloseLoop, AddsNothingToAModelThatHasEverything) {
+TEST(SelectEffects, AddsNothingToAModelThatHasEverything) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const EffectSelection selection = close(two_recordings(
         slide(), slide(), {"M", "B_a"}, 6.0, {Signal::velocity, Signal::acceleration}, seed));
@@ -80,7 +80,7 @@ TEST(CloseLoop, AddsNothingToAModelThatHasEverything) {
 }
 
 // The gate, and not only the size of the residual, keeps effects out.
-TEST(CloseLoop, AddsNothingForNoiseThatIsLargerThanStated) {
+TEST(SelectEffects, AddsNothingForNoiseThatIsLargerThanStated) {
   Job job = two_recordings(slide(), slide(), {"M", "B_a"});
   for (Recording& r : job.recordings)
     for (Measurement& m : r.measurements) m.sigma *= 0.7;
@@ -96,7 +96,7 @@ TEST(CloseLoop, AddsNothingForNoiseThatIsLargerThanStated) {
   }
 }
 
-TEST(CloseLoop, HoldsOutBlocksWhereThereIsNothingToValidate) {
+TEST(SelectEffects, HoldsOutBlocksWhereThereIsNothingToValidate) {
   const HiddenEffect secret = hidden_effect_named("coulomb_friction");
   Job job = secret.job();
   job.recordings.pop_back();
@@ -119,7 +119,7 @@ TEST(CloseLoop, HoldsOutBlocksWhereThereIsNothingToValidate) {
   }
 }
 
-TEST(CloseLoop, FindsTwoEffects) {
+TEST(SelectEffects, FindsTwoEffects) {
   Model<double> truth = slide();
   hidden_effect_named("coulomb_friction").put_into(truth);
   hidden_effect_named("added_mass").put_into(truth);
@@ -134,7 +134,7 @@ TEST(CloseLoop, FindsTwoEffects) {
   expect_found(selection, "B_a", 30.0);
 }
 
-TEST(CloseLoop, AddsNoMoreThanIsAllowed) {
+TEST(SelectEffects, AddsNoMoreThanIsAllowed) {
   const Job job = hidden_effect_named("coulomb_friction").job();
   SelectionOptions options;
   options.max_effects = 0;
@@ -143,7 +143,7 @@ TEST(CloseLoop, AddsNoMoreThanIsAllowed) {
   EXPECT_FALSE(selection.explained);
 }
 
-TEST(CloseLoop, KeepsWhatIsAcceptedWhenItIsStopped) {
+TEST(SelectEffects, KeepsWhatIsAcceptedWhenItIsStopped) {
   const Job job = hidden_effect_named("drive_lag").job();
   const FitResult fit = estimate(job);
   StopFlag stop = false;
@@ -165,7 +165,7 @@ TEST(CloseLoop, KeepsWhatIsAcceptedWhenItIsStopped) {
   }
 }
 
-TEST(CloseLoop, IsTheSameForAnyNumberOfThreads) {
+TEST(SelectEffects, IsTheSameForAnyNumberOfThreads) {
   Job job = hidden_effect_named("drive_lag").job();
   const FitResult fit = estimate(job);
   job.options.threads = 1;
@@ -189,7 +189,7 @@ TEST(CloseLoop, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(values_of(one.result.fit), values_of(two.result.fit));
 }
 
-TEST(CloseLoop, TellsWhatItDoes) {
+TEST(SelectEffects, TellsWhatItDoes) {
   const Job job = hidden_effect_named("coulomb_friction").job();
   std::set<std::string> phases;
   std::vector<double> best;
@@ -203,7 +203,7 @@ TEST(CloseLoop, TellsWhatItDoes) {
   EXPECT_GT(best.front(), 2.0 * best.back());  // of the model so far
 }
 
-TEST(CloseLoop, NeedsAUsableFit) {
+TEST(SelectEffects, NeedsAUsableFit) {
   const Job job = hidden_effect_named("coulomb_friction").job();
   FitResult fit = estimate(job);
   fit.usable = false;
