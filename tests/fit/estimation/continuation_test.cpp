@@ -79,7 +79,7 @@ TEST(Continuation, TakesShorterStepsWhereTheSimulationWouldLoseTheData) {
 // The limit of a drive hardly shows under a firm hold and so much noise, which here would drive it
 // to where it is never reached: from there no free run finds back.
 TEST(Continuation, LeavesWhatAFirmHoldDoesNotShowWhereItIs) {
-  for (const std::uint64_t seed : {1, 3}) {
+  for (const std::uint64_t seed : {1u, 3u}) {
     Job job;
     job.model = motor_axis();
     job.recordings = {

@@ -178,7 +178,7 @@ TEST(RecordingCost, HuberJacobianIsThatOfDifferences) {
   for (Eigen::Index k = 0; k < 2; ++k) {
     const Eigen::VectorXd step = kStep * Eigen::Vector2d::Unit(k);
     const Evaluated above = evaluate(cost, u + step), below = evaluate(cost, u - step);
-    for (const std::size_t i : {100, 300, 700}) {
+    for (const std::size_t i : {100u, 300u, 700u}) {
       const double difference = (above.residuals[i] - below.residuals[i]) / (2.0 * kStep);
       const double derivative = e.jacobian[2 * i + static_cast<std::size_t>(k)];
       EXPECT_GT(std::abs(difference), 0.1) << i;

@@ -186,8 +186,8 @@ TEST_F(UncertaintyTest, ADirectionIsWeakFromAnErrorOfOne) {
 }
 
 TEST_F(UncertaintyTest, NamesWhatIsSeenOfTwoParameters) {
-  for (const std::size_t i : {0, 1}) job_.free[i].logarithmic = true;
-  for (const std::size_t i : {0, 1}) job_.free[i].lower = 1e-6;
+  for (const std::size_t i : {0u, 1u}) job_.free[i].logarithmic = true;
+  for (const std::size_t i : {0u, 1u}) job_.free[i].lower = 1e-6;
   linear_.jacobian.col(1) = -linear_.jacobian.col(0);
   const Identifiability seen = known({std::log(6.0), std::log(2.0), 0.0});
   ASSERT_EQ(seen.weak.size(), 1u);
@@ -205,8 +205,8 @@ TEST_F(UncertaintyTest, NamesWhatIsSeenOfTwoParameters) {
 
 // Where neither the ratio nor the product is seen, none is claimed.
 TEST_F(UncertaintyTest, ClaimsNoCombinationThatAnotherWeakDirectionHides) {
-  for (const std::size_t i : {0, 1}) job_.free[i].logarithmic = true;
-  for (const std::size_t i : {0, 1}) job_.free[i].lower = 1e-6;
+  for (const std::size_t i : {0u, 1u}) job_.free[i].logarithmic = true;
+  for (const std::size_t i : {0u, 1u}) job_.free[i].lower = 1e-6;
   linear_.jacobian.col(1) = -linear_.jacobian.col(0);
   linear_.jacobian.leftCols(2) *= 1e-6 * kWhite;
   const Identifiability seen = known({std::log(6.0), std::log(2.0), 0.0});
