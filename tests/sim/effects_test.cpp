@@ -217,7 +217,7 @@ TEST(EffectsInPairs, HaveASmoothPartThatIsAllThatIsNotAffine) {
             Mode mode;
             mode.sliding = static_cast<std::int8_t>(sliding);
             mode.contact = equations.parts().has.has_backlash ? 1 : 0;
-            const Input<double> input{3.0, {}, 0.4, {0.01, 2.0}};
+            const Input<double> input{3.0, {}, 0.4, {0.01, {{2.0}}}};
             const State<double> all = equations.rate(mode, y, input);
             const State<double> affine = equations.rate(mode, y, input, Terms::affine);
             const State<double> smooth = equations.smooth_rate(mode, y, input);
