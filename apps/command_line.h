@@ -1,14 +1,24 @@
 // What the command lines of the programs share.
 #pragma once
 
+#include <fcntl.h>
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
 #include <csignal>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <new>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "base/plain_text.h"
 #include "base/suggest.h"
 #include "base/text_table.h"
 #include "base/version.h"
@@ -47,35 +57,106 @@ class NarrowHelp : public CLI::Formatter {
   }
 };
 
+/// What is wrong with a number on the command line; empty where nothing is. In full, decimal and
+/// finite: the library's own reading takes a leading zero for octal, and not-a-number for in range.
+template <class T>
+std::string number_error(const std::string& text, T lower, T upper, const char* kind, T& value) {
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error == std::errc() && stop == end && value >= lower && value <= upper) return "";
+  return fmt::format("{} is not {} from {} to {}", in_quotes(text), kind, lower, upper);
+}
+
+inline CLI::Validator number(double lower, double upper) {
+  return {[=](std::string& text) {
+            double value = 0.0;
+            return number_error(text, lower, upper, "a number", value);
+          },
+          ""};
+}
+
+/// Takes leading zeros away.
+template <class T = int>
+CLI::Validator whole_number(T lower, T upper = std::numeric_limits<T>::max()) {
+  return {[=](std::string& text) {
+            T value = 0;
+            const std::string error = number_error(text, lower, upper, "a whole number", value);
+            if (error.empty()) text = fmt::format("{}", value);
+            return error;
+          },
+          ""};
+}
+
+/// As a script gives a name where a variable of it is not set.
+inline const CLI::Validator kNotEmpty{
+    [](std::string& text) { return std::string(text.empty() ? "the name is empty" : ""); }, ""};
+
+/// Nobody reads standard output, or its disk is full.
+struct OutputError : std::runtime_error {
+  explicit OutputError(int error)
+      : std::runtime_error("cannot write to standard output"), broken_pipe(error == EPIPE) {}
+  bool broken_pipe;
+};
+
+/// A text for standard output. Throws OutputError.
+inline void print(const std::string& text) {
+  errno = 0;
+  if (!(std::cout << text).flush()) throw OutputError(errno);
+}
+
+/// A text for standard error, of which nothing controls the terminal.
+inline void print_error(const std::string& text) { std::cerr << sanitized_lines(text); }
+
+/// Without it, the first files that are opened would take the places of standard streams that are
+/// closed, and messages would be written into them. What is opened instead cannot be written to or
+/// read from either.
+inline void occupy_standard_streams() {
+  for (const int stream : {0, 1, 2})
+    if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF)
+      ::open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY);  // takes the lowest that is free
+}
+
 /// Parses the command line and returns what `work` does: the exit code. Mistakes of the user, in
 /// the command line or told by an exception, end with their message on standard error and
 /// kBadInput.
 template <class Work>
 int run_program(CLI::App& app, int argc, char** argv, Work&& work) {
+  occupy_standard_streams();
   app.formatter(std::make_shared<NarrowHelp>());
   app.set_version_flag("--version", std::string("axisfit ") + version());
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (app.exit(error) == 0) return 0;
+    std::ostringstream message;
+    if (app.exit(error, std::cout, message) == 0) return 0;
+    print_error(message.str());
     std::vector<std::string> options;
     for (const CLI::Option* option : app.get_options())
       for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
     for (const std::string& unknown : app.remaining())
       if (const std::string meant = closest_match(unknown, options);
           unknown.starts_with("-") && !meant.empty())
-        std::cerr << "Did you mean " << meant << "?\n";
+        print_error("Did you mean " + meant + "?\n");
     return kBadInput;
   }
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of writing like another
+  // A file that may not grow, or a pipe that nobody reads, is an error of writing like another.
+  std::signal(SIGXFSZ, SIG_IGN);
+  const auto on_broken_pipe = std::signal(SIGPIPE, SIG_IGN);
   try {
     return work();
+  } catch (const OutputError& error) {
+    if (error.broken_pipe) {  // as `head` leaves it: no mistake of anybody's
+      std::signal(SIGPIPE, on_broken_pipe);
+      std::raise(SIGPIPE);
+    }
+    print_error(fmt::format("{}\n", error.what()));
+    return kBadInput;
   } catch (const std::bad_alloc&) {
     std::cerr
         << "out of memory: this needs more than the machine has or a limit (ulimit -v) allows\n";
     return kBadInput;
   } catch (const std::exception& error) {  // ConfigError's text has a line for each mistake
-    std::cerr << error.what() << '\n';
+    print_error(fmt::format("{}\n", error.what()));
     return kBadInput;
   }
 }

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -36,11 +35,11 @@ namespace {
 
 using namespace axisfit;
 
-constexpr const char* kResultFile = "result.json";
-constexpr const char* kAxisFile = "fitted.yaml";
-constexpr const char* kResidualsFile = "residuals.csv";
-constexpr const char* kReportFile = "report.html";
-constexpr const char* kMotionFile = "next-motion.yaml";
+const ResultName kResultFile{"result.json", "\"axisfit\": \""};
+const ResultName kAxisFile{"fitted.yaml", "# Fitted by axisfit "};
+const ResultName kResidualsFile{"residuals.csv", "recording,time_s,"};
+const ResultName kReportFile{"report.html", "<meta name=\"generator\" content=\"axisfit "};
+const ResultName kMotionFile{"next-motion.yaml", "# Suggested by axisfit "};
 
 enum ExitCode {  // besides kBadInput
   kUsable = 0,
@@ -59,7 +58,12 @@ void stop_on_signals() {
   action.sa_handler = [](int signal) {
     if (stop_flag.exchange(true)) end_by_signal(signal);
   };
-  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    struct sigaction inherited = {};
+    sigaction(signal, nullptr, &inherited);
+    // Who starts a run in the background of a script, or by nohup, does not want it to be stopped.
+    if (inherited.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
 }
 
 void stop_after(double seconds) {
@@ -120,11 +124,6 @@ void start_from(const std::string& axis_file, Job& job) {
       p.initial = std::clamp(*values[p.quantity], p.lower, p.upper);
 }
 
-/// A text for standard output.
-void print(const std::string& text) {
-  if (!(std::cout << text).flush()) throw std::runtime_error("cannot write to standard output");
-}
-
 bool in_colour() { return takes_colour(STDOUT_FILENO); }
 
 void print_report(const std::string& report) {
@@ -169,7 +168,7 @@ int init(const Arguments& arguments, std::optional<ProgressLine>& line) {
   if (!created.guesses.empty()) text += "Guessed, please check\n";
   for (const std::string& guess : created.guesses) text += paragraph(guess, 2);
   const std::string job = path(created.files.back().first);
-  std::cerr << text << fmt::format("Next: fit-params {} --check\n      fit-params {}\n", job, job);
+  print_error(text + fmt::format("Next: fit-params {} --check\n      fit-params {}\n", job, job));
   return kUsable;
 }
 
@@ -197,16 +196,18 @@ Files files_of(const Arguments& arguments, const JobFile& file, const RunResult&
   const std::string origin = fmt::format("axisfit {} from {}, starting from {}", version(),
                                          arguments.files.front(), file.axis_file);
   Files files{
-      {kResultFile, json},
-      {kAxisFile, format_axis_file(fitted, fmt::format("Fitted by {}.\n{}", origin,
-                                                       overall_verdict(run_result)))},
-      {kResidualsFile, residuals_csv(run_result.job(), run_result.fit(), run_result.diagnosis)},
-      {kReportFile, report_page(run_result, {arguments.command, arguments.files.front(), file.text,
-                                             file.axis_file, file.axis_text})}};
+      {kResultFile.name, json},
+      {kAxisFile.name, format_axis_file(fitted, fmt::format("Fitted by {}.\n{}", origin,
+                                                            overall_verdict(run_result)))},
+      {kResidualsFile.name,
+       residuals_csv(run_result.job(), run_result.fit(), run_result.diagnosis)},
+      {kReportFile.name, report_page(run_result, {arguments.command, arguments.files.front(),
+                                                  file.text, file.axis_file, file.axis_text})}};
   if (const Experiment* next = next_experiment(run_result)) {
-    files.emplace_back(kMotionFile, format_motion_file({next->motion, next->duration},
-                                                       fmt::format("Suggested by {}:\n{}.", origin,
-                                                                   motion_text(next->motion))));
+    files.emplace_back(kMotionFile.name,
+                       format_motion_file({next->motion, next->duration},
+                                          fmt::format("Suggested by {}:\n{}.", origin,
+                                                      motion_text(next->motion))));
   }
   return files;
 }
@@ -227,11 +228,14 @@ void begin_line(const Arguments& arguments, std::optional<ProgressLine>& line) {
 
 /// The folder of the results, with the journal of the run in it.
 std::unique_ptr<OutputFolder> open_folder(const Arguments& arguments,
+                                          std::vector<std::string> inputs,
                                           std::optional<ProgressLine>& line) {
   if (arguments.output.empty()) return nullptr;
+  if (!arguments.from.empty()) inputs.push_back(arguments.from);
   auto folder = std::make_unique<OutputFolder>(
       arguments.output,
-      std::vector<std::string>{kResultFile, kAxisFile, kResidualsFile, kReportFile, kMotionFile});
+      std::vector<ResultName>{kResultFile, kAxisFile, kResidualsFile, kReportFile, kMotionFile},
+      inputs);
   JournalFile& journal = folder->journal();
   const std::string found = fmt::format("{} solved least-squares problem{}", journal.recovered(),
                                         journal.recovered() == 1 ? "" : "s");
@@ -250,7 +254,7 @@ std::unique_ptr<OutputFolder> open_folder(const Arguments& arguments,
   }
   if (!arguments.quiet && !note.empty()) {
     line.reset();
-    std::cerr << paragraph(note);
+    print_error(paragraph(note));
     begin_line(arguments, line);
   }
   return folder;
@@ -258,7 +262,9 @@ std::unique_ptr<OutputFolder> open_folder(const Arguments& arguments,
 
 /// Whether a folder holds the whole result of a usable fit.
 bool holds_complete_result(const std::string& folder) {
-  std::ifstream file(std::filesystem::path(folder) / kResultFile);
+  const std::filesystem::path path = std::filesystem::path(folder) / kResultFile.name;
+  if (!std::filesystem::is_regular_file(path)) return false;
+  std::ifstream file(path);
   const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
   const auto is = [&](const char* key, bool value) {
     return json.is_object() && json.contains(key) && json[key] == value;
@@ -271,10 +277,10 @@ void write(const Arguments& arguments, const JobFile& file, const RunResult& run
            const std::string& json, OutputFolder& folder) {
   const bool complete = !run_result.interrupted;
   if ((!complete || !run_result.fit().usable) && holds_complete_result(arguments.output)) {
-    std::cerr << paragraph(
+    print_error(paragraph(
         fmt::format("{} already holds a usable result, which was kept. To save this one, choose "
                     "another folder with --output.",
-                    arguments.output));
+                    arguments.output)));
     if (complete) folder.discard_journal();
     return;
   }
@@ -303,7 +309,7 @@ int run_command(const Arguments& arguments) {
   if (arguments.starts) options.starts = *arguments.starts;
   if (arguments.seed) options.seed = *arguments.seed;
   if (arguments.check) return check(arguments, file.job, line);
-  const std::unique_ptr<OutputFolder> folder = open_folder(arguments, line);
+  const std::unique_ptr<OutputFolder> folder = open_folder(arguments, file.files, line);
 
   const RunContext context{&stop_flag, folder ? &folder->journal() : nullptr,
                            [&](const Progress& progress) { line->update(progress); }};
@@ -312,14 +318,21 @@ int run_command(const Arguments& arguments) {
   const std::string json = result_json(run_result).dump(2) + "\n";
   line.reset();
 
-  // What was found is shown before anything can go wrong with writing it.
-  if (arguments.json)
-    print(json);
-  else if (!arguments.quiet)
-    print_report(report_text(run_result, in_colour()));
+  // What was found is shown before anything can go wrong with writing it, and written even if
+  // nobody can be shown it.
+  std::exception_ptr unseen;
+  try {
+    if (arguments.json)
+      print(json);
+    else if (!arguments.quiet)
+      print_report(report_text(run_result, in_colour()));
+  } catch (const OutputError&) {
+    unseen = std::current_exception();
+  }
   if (folder) write(arguments, file, run_result, json, *folder);
+  if (unseen) std::rethrow_exception(unseen);
   if (run_result.interrupted) {
-    if (!arguments.quiet) std::cerr << how_to_continue(arguments);
+    if (!arguments.quiet) print_error(how_to_continue(arguments));
     return exit_code_of_stop();
   }
   return run_result.fit().usable ? kUsable : kNoUsableFit;
@@ -353,13 +366,16 @@ int main(int argc, char** argv) {
                     ->excludes(experiment);
   auto* data = app.add_option("--data", arguments.data,
                               "folder of the recordings, if not that of the job file")
+                   ->check(kNotEmpty)
                    ->type_name("FOLDER");
   auto* from = app.add_option("--from", arguments.from,
                               "start from the values of this axis file, such as fitted.yaml")
+                   ->check(kNotEmpty)
                    ->type_name("AXIS.yaml");
   auto* output = app.add_option("--output", arguments.output,
                                 "folder for report.html, result.json, fitted.yaml and "
                                 "residuals.csv; with --init, for the job")
+                     ->check(kNotEmpty)
                      ->type_name("FOLDER");
   auto* json = app.add_flag("--json", arguments.json, "print result.json instead of the tables");
   app.add_flag("--quiet", arguments.quiet, "print errors only")->excludes(json);
@@ -380,17 +396,18 @@ int main(int argc, char** argv) {
       ->excludes(check);
   app.add_option("--axis", arguments.axis, "with --init: use this axis file")
       ->needs(init)
+      ->check(kNotEmpty)
       ->type_name("AXIS.yaml");
   app.add_option("--threads", arguments.threads, "number of threads; default: all cores")
-      ->check(CLI::Range(1, 1024));
+      ->transform(whole_number(1, 1024));
   app.add_option("--seed", arguments.seed, "seed of the random starts; default: as in the job")
-      ->check(CLI::NonNegativeNumber);
+      ->transform(whole_number<std::uint64_t>(0));
   app.add_option("--starts", arguments.starts,
                  "number of starts, the first from the initial values; default: as in the job")
-      ->check(CLI::Range(1, 1000000));
+      ->transform(whole_number(1, 1'000'000));
   app.add_option("--time-limit", arguments.time_limit,
                  "stop after this many seconds and keep what is finished, as Ctrl-C does")
-      ->check(CLI::Range(0.001, 1e8))
+      ->check(number(0.001, 1e8))
       ->excludes(init)
       ->excludes(check)
       ->type_name("SECONDS");
@@ -405,9 +422,9 @@ int main(int argc, char** argv) {
       return run_command(arguments);
     } catch (const Interrupted&) {
       if (!arguments.quiet)
-        std::cerr << fmt::format("Stopped{} before any fit finished: there is no result.\n",
-                                 time_limit_reached ? " by the time limit" : "")
-                  << how_to_continue(arguments);
+        print_error(fmt::format("Stopped{} before any fit finished: there is no result.\n{}",
+                                time_limit_reached ? " by the time limit" : "",
+                                how_to_continue(arguments)));
       return exit_code_of_stop();
     }
   });

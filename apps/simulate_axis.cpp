@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <csignal>
-#include <iostream>
 #include <sstream>
 
 #include "apps/command_line.h"
@@ -67,6 +66,8 @@ void run_command(Arguments arguments) {
   if (const std::string reason = model_error(rig->model); !reason.empty())
     throw std::runtime_error(reason);
   const MotionFile motion = read_motion_file(arguments.motion, *rig);
+  if (!arguments.output.empty())
+    refuse_to_overwrite(arguments.output, {arguments.axis, arguments.motion, motion.recording});
   RecordingOptions& options = arguments.recording;
   constexpr double kMaxRows = 2e7;
   if (motion.duration * options.rate > kMaxRows)
@@ -92,10 +93,9 @@ void run_command(Arguments arguments) {
     write_csv(text, record(*rig, motion.motion, options), arguments.exact ? 0 : 9);
   }
   if (arguments.output.empty())
-    std::cout << text.str() << std::flush;
+    print(text.str());
   else
     write_file(arguments.output, text.str());
-  if (!std::cout) throw std::runtime_error("cannot write to standard output");
 }
 
 }  // namespace
@@ -113,6 +113,7 @@ int main(int argc, char** argv) {
   app.add_option("AXIS.yaml", arguments.axis, "axis file (docs/axis-file.md)")->required();
   app.add_option("MOTION.yaml", arguments.motion, "motion file (docs/motion-file.md)")->required();
   app.add_option("-o,--output", arguments.output, "CSV file; default: standard output")
+      ->check(kNotEmpty)
       ->type_name("FILE");
   app.add_option("--set", arguments.changes, "change a quantity; give the value with its unit")
       ->take_all()
@@ -125,13 +126,14 @@ int main(int argc, char** argv) {
           ->option_text("NAME ...")
           ->default_str(fmt::format("{}", fmt::join(arguments.signals, ", ")));
   app.add_option("--rate", arguments.recording.rate, "samples per second")
-      ->check(CLI::Range(1.0, 1e6))
+      ->check(number(1.0, 1e6))
       ->capture_default_str();
   app.add_option("--seed", arguments.recording.seed, "seed of the noise")
-      ->check(CLI::NonNegativeNumber)
+      ->transform(whole_number<std::uint64_t>(0))
       ->capture_default_str();
   app.add_flag("--exact", arguments.exact, "no noise, no encoder quantisation, all digits");
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, end_by_signal);
+  for (const int signal : {SIGINT, SIGTERM})
+    if (std::signal(signal, end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
   return run_program(app, argc, argv, [&] {
     arguments.signals_given = chosen->count() > 0;
     run_command(std::move(arguments));

@@ -8,13 +8,21 @@ namespace {
 // Whether a byte of UTF-8 text continues a character.
 bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
-// The bytes of a control character, or of one that separates lines or paragraphs, at the start of
-// valid UTF-8; 0 where there is none.
+// The bytes of a control character at the start of valid UTF-8, of one that separates lines or
+// paragraphs, or of one that reorders what follows (Unicode's bidirectional formatting); 0 where
+// there is none.
 std::size_t control_size(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x20 || byte(0) == 0x7F) return 1;
   if (byte(0) == 0xC2 && byte(1) < 0xA0) return 2;
-  return text.starts_with("\u2028") || text.starts_with("\u2029") ? 3 : 0;
+  if (byte(0) == 0xD8 && byte(1) == 0x9C) return 2;  // U+061C
+  if (byte(0) != 0xE2) return 0;
+  const unsigned last_two = byte(1) << 8 | byte(2);
+  const bool separates = last_two == 0x80A8 || last_two == 0x80A9;     // U+2028, U+2029
+  const bool reorders = last_two == 0x808E || last_two == 0x808F ||    // U+200E, U+200F
+                        (last_two >= 0x80AA && last_two <= 0x80AE) ||  // U+202A to U+202E
+                        (last_two >= 0x81A6 && last_two <= 0x81A9);    // U+2066 to U+2069
+  return separates || reorders ? 3 : 0;
 }
 
 }  // namespace
@@ -59,6 +67,15 @@ std::string sanitized(std::string_view text) {
     text.remove_prefix(std::min(valid + 1, text.size()));
   }
   return result;
+}
+
+std::string sanitized_lines(std::string_view text) {
+  std::string result;
+  for (std::size_t end; (end = text.find('\n')) != std::string_view::npos;) {
+    result += sanitized(text.substr(0, end)) + '\n';
+    text.remove_prefix(end + 1);
+  }
+  return result + sanitized(text);
 }
 
 bool is_sanitized(std::string_view text) { return sanitized(text) == text; }

@@ -11,9 +11,12 @@ namespace axisfit {
 /// npos.
 std::size_t find_invalid_utf8(std::string_view text);
 
-/// A text as one line that every reader takes: what breaks lines, controls a terminal or is no
-/// UTF-8 becomes a question mark.
+/// A text as one line that every reader takes: what breaks lines, controls a terminal, reverses the
+/// direction of the text or is no UTF-8 becomes a question mark.
 std::string sanitized(std::string_view text);
+
+/// The same line by line: line breaks stay.
+std::string sanitized_lines(std::string_view text);
 
 /// Whether sanitized() leaves a text as it is.
 bool is_sanitized(std::string_view text);

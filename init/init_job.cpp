@@ -10,6 +10,7 @@
 #include <set>
 
 #include "base/plain_text.h"
+#include "base/rounding.h"
 #include "base/units.h"
 #include "base/version.h"
 #include "fit/data/noise.h"
@@ -125,7 +126,15 @@ class Initialiser {
   Initialiser(const std::string& axis, const std::string& folder) : axis_(axis), folder_(folder) {}
 
   InitialJob make(const std::vector<std::string>& paths) {
-    for (const std::string& path : paths) add(path);
+    for (auto path = paths.begin(); path != paths.end(); ++path) {
+      std::error_code ignored;
+      if (std::any_of(paths.begin(), path, [&](const std::string& earlier) {
+            return std::filesystem::equivalent(earlier, *path, ignored);
+          }))
+        throw std::runtime_error(
+            fmt::format("{} is given twice: a recording counts once", sanitized(*path)));
+      add(*path);
+    }
     if (axis_.empty()) {
       choose_drive();
     } else {
@@ -367,7 +376,8 @@ class Initialiser {
     const GuessedColumn* position = first.find(Kind::position);
     const bool offset = position && !force_source() && !is_rounded_away(*position, first);
     if (const double resolution = offset ? resolution_of(position->values) : 0.0; resolution > 0.0)
-      add("position.bias", bounds(-two_digits(resolution), two_digits(resolution), "m"));
+      add("position.bias",
+          bounds(-round_to_digits(resolution, 2), round_to_digits(resolution, 2), "m"));
     if (!force_source() || std::ranges::any_of(sources_, drives_in_newtons)) return;
     add("K_f");
     if (starter_) candidates_.back().reason_not_free = kOnlyRatios;
@@ -562,7 +572,7 @@ class Initialiser {
                "unmodelled hundredth of the acceleration would show as ten times the noise; a "
                "higher gain hides more.",
                2) +
-           fmt::format("  observer: {{fixed: {} 1/s}}\n", two_digits(rate));
+           fmt::format("  observer: {{fixed: {} 1/s}}\n", round_to_digits(rate, 2));
   }
 
   std::string axis_, folder_;

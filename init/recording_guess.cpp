@@ -9,6 +9,7 @@
 #include <ranges>
 
 #include "base/plain_text.h"
+#include "base/rounding.h"
 #include "fit/data/noise.h"
 #include "fit/data/recording_check.h"
 #include "io/recording/csv.h"
@@ -252,8 +253,6 @@ class Guesser {
     }
   }
 
-  static double rounded(double size) { return std::stod(fmt::format("{:.4g}", size)); }
-
   /// The unit of the derivative of `of`, which is `found.ratio` times that.
   void size_rate(UnscaledColumn& rate, const UnscaledColumn& of, const RateRatio& found,
                  const char* words) const {
@@ -267,7 +266,7 @@ class Guesser {
       rate.guess(fmt::format("the header says {}, but it is {}: {}", rate.named, measured,
                              unit ? fmt::format("taken as {}", unit->text)
                                   : fmt::format("a factor of {:.4g} makes them agree", size)));
-      unit ? rate.set_unit(*unit) : rate.set_unit(rounded(size));
+      unit ? rate.set_unit(*unit) : rate.set_unit(round_to_digits(size, 4));
     } else {
       from_ratio(rate, size, measured);
     }
@@ -281,7 +280,7 @@ class Guesser {
       column.set_unit(*unit);
       column.reason(fmt::format("{}: taken as {}", measured, unit->text));
     } else {
-      column.set_unit(rounded(size));
+      column.set_unit(round_to_digits(size, 4));
       column.guess(fmt::format("{}: one unit is {:.4g} {}, which matches no known unit", measured,
                                size, si_unit(column.column.kind)));
     }

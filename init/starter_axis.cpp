@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/plain_text.h"
+#include "base/rounding.h"
 #include "base/units.h"
 #include "base/version.h"
 #include "io/config/yaml_text.h"
@@ -63,9 +64,9 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
   starter.gain_guessed = gain_guessed;
   for (const char* effect : {"coulomb_friction", "constant_force"})
     starter.structure.effects.set(*effect_named(effect));
-  const double most = starter.largest_force = two_digits(input * gain);
+  const double most = starter.largest_force = round_to_digits(input * gain, 2);
   const auto within = [](double value, double lower, double upper) {
-    return std::clamp(two_digits(value), lower, upper);
+    return std::clamp(round_to_digits(value, 2), lower, upper);
   };
   // A fit on a logarithmic scale must not start at zero.
   const double viscous = balance.viscous > 0.0 ? balance.viscous * gain

@@ -381,7 +381,7 @@ Json result_json(const RunResult& run_result) {
   for (std::size_t i = 0; i < job.free.size(); ++i)
     parameters.push_back(parameter_json(fit.parameters[i], as_specified(run_result, i)));
   Json json{{"schema_version", kSchemaVersion},
-            {"version", version()},
+            {"axisfit", version()},
             {"status", text(fit.status)},
             {"usable", fit.usable},
             {"interrupted", run_result.interrupted},
@@ -455,7 +455,7 @@ Json check_json(const Job& job, const std::vector<RecordingCheck>& checks, const
                           {"standard_error", optional(u.determined, u.standard_error)},
                           {"sensitivity", std::move(sensitivity)}});
   }
-  Json json{{"schema_version", kSchemaVersion},     {"version", version()},
+  Json json{{"schema_version", kSchemaVersion},     {"axisfit", version()},
             {"recordings", std::move(recordings)},  {"evaluation_time_s", run_time.evaluation},
             {"expected_time_s", run_time.expected}, {"finite", forecast.finite},
             {"parameters", std::move(parameters)}};

@@ -5,6 +5,27 @@
 
 namespace axisfit {
 
+bool share_samples(const Recording& a, const Recording& b) {
+  constexpr std::size_t kFewest = 9;
+  std::size_t shared = 0;
+  bool varies = false;
+  std::vector<std::pair<const Measurement*, const Measurement*>> both;
+  for (const Measurement& m : a.measurements)
+    if (const Measurement* other = b.find(m.signal)) both.emplace_back(&m, other);
+  for (std::size_t i = 0, k = 0; i < a.times.size() && k < b.times.size();) {
+    if (a.times[i] != b.times[k]) {
+      a.times[i] < b.times[k] ? ++i : ++k;
+      continue;
+    }
+    for (const auto& [one, other] : both) {
+      if (one->values[i] != other->values[k]) return false;
+      varies = varies || one->values[i] != one->values[0];
+    }
+    ++shared, ++i, ++k;
+  }
+  return varies && shared >= kFewest;
+}
+
 FreeParameter free_parameter(std::string_view name, double initial) {
   const QuantityEntry* entry = find_quantity(name);
   if (entry == nullptr) throw std::invalid_argument("unknown quantity '" + std::string(name) + "'");

@@ -78,6 +78,11 @@ struct Recording {
   }
 };
 
+/// Whether two recordings are the same one, all or in part, under whatever names: fitted twice it
+/// would make standard errors too small, and fitted it can validate nothing. They are when at the
+/// times that they share they measured the same values of every signal that both have.
+bool share_samples(const Recording& a, const Recording& b);
+
 /// Gaussian knowledge from elsewhere: value = mean +- sigma.
 struct Prior {
   double mean = 0.0;

@@ -74,6 +74,7 @@ class JobReader {
       : path_(path), data_directory_(data_directory), drafts_(drafts) {}
 
   JobFile read() {
+    result_.files.push_back(path_);
     if (const auto root = load(path_)) {
       result_.text = root->contents();
       ConfigMap map(*root, job_keys());
@@ -115,6 +116,7 @@ class JobReader {
     const auto file = node.as_string();
     if (!file) return false;
     result_.axis_file = resolved(node, *file, {});
+    result_.files.push_back(result_.axis_file);
     std::error_code unreadable;
     if (!draft(result_.axis_file) && !fs::exists(result_.axis_file, unreadable)) {
       node.error(fmt::format("axis file {} does not exist", result_.axis_file));
@@ -190,15 +192,31 @@ class JobReader {
     for (const ConfigNode& entry : *entries) {
       result_.job.recordings.push_back(
           read_recording(entry, result_.rig, result_.job.options.observer, data_directory_));
-      any_fit = any_fit || result_.job.recordings.back().role == Role::fit;
-      check_length(entry, result_.job.recordings.back());
+      const Recording& recording = result_.job.recordings.back();
+      result_.files.push_back(resolved(entry, recording.file, data_directory_));
+      any_fit = any_fit || recording.role == Role::fit;
+      check_length(entry, recording);
     }
     for (const Recording& recording : result_.job.recordings)
       if (!names.insert(recording.name).second)
         node.error(fmt::format("two recordings are called '{}': give them different names",
                                recording.name));
+    if (diagnostics_.empty()) check_repeats(*entries);
     if (!any_fit && diagnostics_.empty())
       node.error("no recording has the role fit: at least one must");
+  }
+
+  void check_repeats(const std::vector<ConfigNode>& entries) const {
+    const std::vector<Recording>& recordings = result_.job.recordings;
+    for (std::size_t b = 1; b < recordings.size(); ++b)
+      for (std::size_t a = 0; a < b; ++a)
+        if (share_samples(recordings[a], recordings[b])) {
+          entries[b].error(
+              fmt::format("'{}' has the same samples as '{}', and a recording counts once: remove "
+                          "one of them, or trim them to different parts",
+                          recordings[b].name, recordings[a].name));
+          break;
+        }
   }
 
   /// Whether there is more to fit to than parameters.

@@ -14,9 +14,10 @@ namespace axisfit {
 /// A job with what only its files know.
 struct JobFile {
   Job job;
-  Rig rig;                      ///< of the axis file, with the job's effects
-  std::string axis_file;        ///< as found
-  std::string text, axis_text;  ///< what stood in the two files when they were read
+  Rig rig;                         ///< of the axis file, with the job's effects
+  std::string axis_file;           ///< as found
+  std::string text, axis_text;     ///< what stood in the two files when they were read
+  std::vector<std::string> files;  ///< all that were read, with the recordings, as found
 };
 
 /// The keys of a job file.

@@ -141,7 +141,7 @@ class MotionReader {
       else if (rig_.model.axis.T_d >= rig_.controller.period)
         type->error("a move needs a command delay T_d below the controller's period");
     } else {
-      file.motion = recorded();
+      file.motion = recorded(file.recording);
     }
     map_.finish();
     return file;
@@ -155,15 +155,16 @@ class MotionReader {
     return given ? given->as_quantity("V", -most, most).value_or(0.0) : 0.0;
   }
 
-  /// The command column of a recording.
-  RecordedMotion recorded() {
+  /// The command column of a recording, and the path of that.
+  RecordedMotion recorded(std::string& found) {
     RecordedMotion motion;
     const auto file = map_.required("file");
     const auto path = file ? file->as_string() : std::nullopt;
     const auto time = map_.required("time"), command = map_.required("command");
     if (!path || !time || !command) return motion;
     try {
-      const RecordingFile data((root_.directory() / *path).lexically_normal().string());
+      found = (root_.directory() / *path).lexically_normal().string();
+      const RecordingFile data(found);
       const auto times = read_times(data, *time), values = read_column(data, *command, "V");
       if (!times || !values) return motion;
       const double limit = rig_.controller.limit;

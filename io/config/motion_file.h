@@ -12,7 +12,8 @@ namespace axisfit {
 
 struct MotionFile {
   Motion motion;
-  double duration = 0.0;  ///< s
+  double duration = 0.0;    ///< s
+  std::string recording{};  ///< the file of a recorded motion, as found
 };
 
 /// The keys of a motion file that every type has.

@@ -21,6 +21,4 @@ std::string scalar(const std::string& text) {
   return out.c_str();
 }
 
-double two_digits(double value) { return std::stod(fmt::format("{:.2g}", value)); }
-
 }  // namespace axisfit

@@ -14,7 +14,4 @@ std::string comment(const std::string& text, std::size_t indent);
 /// A text as a value, quoted where it must be.
 std::string scalar(const std::string& text);
 
-/// Rounded: more digits would pretend to knowledge.
-double two_digits(double value);
-
 }  // namespace axisfit

@@ -121,9 +121,17 @@ std::optional<std::vector<double>> read_column(const RecordingFile& file, const 
 
 std::optional<std::vector<double>> read_times(const RecordingFile& file, const ConfigNode& node) {
   auto times = read_column(file, node, "s");
+  constexpr double kShortest = 1e-9;  // s; beside the times themselves, shorter ones are rounding
   for (std::size_t i = 1; times && i < times->size(); ++i) {
     const double before = (*times)[i - 1], time = (*times)[i];
-    if (time > before) continue;
+    if (time - before >= kShortest) continue;
+    if (time > before) {
+      node.error(fmt::format(
+          "{}: {:.3g} s after the sample before, less than the {:g} s that a simulation can step: "
+          "check the unit of time",
+          file.where(i), time - before, kShortest));
+      return std::nullopt;
+    }
     node.error(
         fmt::format("{}: time {:.15g} s does not increase from {:.15g} s: samples must be in order "
                     "of time, without repeats",

@@ -29,32 +29,44 @@ std::uint32_t checksum(std::string_view bytes) {
       crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-/// Every record is CBOR, which keeps all digits and what is not finite, behind its length and
-/// checksum.
-std::string framed(const Json& json) {
+/// CBOR in bytes. It takes hundreds; what is nested thousands deep, as a forged one may be, would
+/// exhaust the stack of the reader.
+constexpr std::uint32_t kMaxBytes = 1 << 14;
+
+/// Every record is CBOR, which keeps what is not finite, and numbers as they are in memory, of
+/// which there may be any number, behind the size of either and the checksum of both.
+struct Record {
+  Json json;
+  std::vector<double> numbers{};
+};
+
+using Frame = std::array<std::uint32_t, 3>;
+
+std::string framed(const Record& record) {
   std::string payload;
-  Json::to_cbor(json, payload);
-  const std::array<std::uint32_t, 2> frame{static_cast<std::uint32_t>(payload.size()),
-                                           checksum(payload)};
+  Json::to_cbor(record.json, payload);
+  const auto size = static_cast<std::uint32_t>(payload.size());
+  payload.append(reinterpret_cast<const char*>(record.numbers.data()),
+                 record.numbers.size() * sizeof(double));
+  const Frame frame{size, static_cast<std::uint32_t>(record.numbers.size()), checksum(payload)};
   return std::string(reinterpret_cast<const char*>(frame.data()), sizeof frame) + payload;
 }
 
-/// Of a record, in bytes. A solution takes hundreds; what is nested thousands deep, as a forged one
-/// may be, would exhaust the stack of the reader.
-constexpr std::uint32_t kMaxBytes = 1 << 14;
-
 /// Takes the first record off; none where it is not whole.
-std::optional<Json> unframed(std::string_view& bytes) {
-  std::array<std::uint32_t, 2> frame;
+std::optional<Record> unframed(std::string_view& bytes) {
+  Frame frame;
   if (bytes.size() < sizeof frame) return std::nullopt;
   std::memcpy(frame.data(), bytes.data(), sizeof frame);
   if (frame[0] > kMaxBytes) return std::nullopt;
-  const std::string_view payload = bytes.substr(sizeof frame, frame[0]);
-  if (payload.size() < frame[0] || checksum(payload) != frame[1]) return std::nullopt;
-  Json json = Json::from_cbor(payload, true, false);
-  if (json.is_discarded()) return std::nullopt;
-  bytes.remove_prefix(sizeof frame + frame[0]);
-  return json;
+  const std::size_t size = frame[0] + std::size_t{frame[1]} * sizeof(double);
+  const std::string_view payload = bytes.substr(sizeof frame, size);
+  if (payload.size() < size || checksum(payload) != frame[2]) return std::nullopt;
+  Record record{Json::from_cbor(payload.substr(0, frame[0]), true, false)};
+  if (record.json.is_discarded()) return std::nullopt;
+  record.numbers.resize(frame[1]);
+  std::memcpy(record.numbers.data(), payload.data() + frame[0], size - frame[0]);
+  bytes.remove_prefix(sizeof frame + size);
+  return record;
 }
 
 /// The first record, of the program that runs: another one might solve otherwise.
@@ -62,27 +74,27 @@ const std::string& origin() {
   static const std::string record = [] {
     std::ifstream self("/proc/self/exe", std::ios::binary);
     const std::string program{std::istreambuf_iterator<char>(self), {}};
-    return framed({{"axisfit", version()}, {"program", checksum(program)}});
+    return framed({{{JournalFile::kSignature, version()}, {"program", checksum(program)}}});
   }();
   return record;
 }
 
-Json to_json(const ProblemKey& key, const SolveResult& s) {
-  return {{"key", key},
-          {"usable", s.usable},
-          {"converged", s.converged},
-          {"u", std::vector<double>(s.u.begin(), s.u.end())},
-          {"cost", s.cost},
-          {"reduced_cost", s.reduced_cost},
-          {"iterations", s.iterations},
-          {"message", s.message}};
+Record record_of(const ProblemKey& key, const SolveResult& s) {
+  return {{{"key", key},
+           {"usable", s.usable},
+           {"converged", s.converged},
+           {"cost", s.cost},
+           {"reduced_cost", s.reduced_cost},
+           {"iterations", s.iterations},
+           {"message", s.message}},
+          {s.u.begin(), s.u.end()}};
 }
 
-SolveResult from_json(const Json& json) {
+SolveResult solution_of(const Record& record) {
   SolveResult s;
+  const auto& [json, u] = record;
   s.usable = json.at("usable");
   s.converged = json.at("converged");
-  const std::vector<double> u = json.at("u");
   s.u = Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()));
   s.cost = json.at("cost");
   s.reduced_cost = json.at("reduced_cost");
@@ -140,8 +152,8 @@ void JournalFile::read() {
   end_ = origin().size();
   std::string_view remaining = std::string_view(bytes).substr(end_);
   try {
-    while (const std::optional<Json> record = unframed(remaining)) {
-      recovered_.emplace(record->at("key").get<ProblemKey>(), from_json(*record));
+    while (const std::optional<Record> record = unframed(remaining)) {
+      recovered_.emplace(record->json.at("key").get<ProblemKey>(), solution_of(*record));
       end_ = bytes.size() - remaining.size();
     }
   } catch (const Json::exception&) {  // whole, but not of our making
@@ -167,7 +179,7 @@ std::optional<SolveResult> JournalFile::find(const ProblemKey& key) {
 }
 
 void JournalFile::store(const ProblemKey& key, const SolveResult& solution) {
-  const std::string record = framed(to_json(key, solution));
+  const std::string record = framed(record_of(key, solution));
   const std::lock_guard lock(mutex_);
   append(record);
   ++stored_;

@@ -16,6 +16,8 @@ namespace axisfit {
 /// count as not written. Solutions of another build of the program do not count.
 class JournalFile : public Journal {
  public:
+  static constexpr const char* kSignature = "axisfit";  ///< near the start of every journal
+
   /// Opens the file, or makes it. Throws std::runtime_error with a reason, without the path, when
   /// that is not possible or another process has it locked.
   explicit JournalFile(const std::string& path);

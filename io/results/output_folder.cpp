@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <fstream>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 
@@ -49,17 +51,33 @@ std::string reason(const std::exception& error) {
   return known != nullptr ? known->code().message() : error.what();
 }
 
+/// Whether a file is a regular one that contains a text near its start, or nothing at all.
+bool contains(const fs::path& path, const std::string& text) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(fs::symlink_status(path, ignored))) return false;
+  std::string head(1 << 16, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head.empty() || head.find(text) != std::string::npos;
+}
+
 /// A folder for files on their way to another, which goes away with this object.
 class Staging {
  public:
-  explicit Staging(fs::path path) : path_(std::move(path)) {
-    fs::remove_all(path_);  // of a run that was killed
-    fs::create_directory(path_);
+  /// Makes it, or clears the one that a killed run has left. Throws std::runtime_error where one
+  /// of that name is somebody else's.
+  Staging(fs::path path, const std::vector<ResultName>& names)
+      : path_(std::move(path)), names_(names) {
+    remove();
+    std::error_code failed;
+    if (!fs::create_directory(path_, failed)) {
+      if (failed) throw fs::filesystem_error("cannot create", path_, failed);
+      throw std::runtime_error(fmt::format("{} is in the way: move it", path_.string()));
+    }
+    write_through(path_ / kMarker, kMarkerText);
   }
-  ~Staging() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
+  ~Staging() { remove(); }
   Staging(const Staging&) = delete;
   Staging& operator=(const Staging&) = delete;
 
@@ -69,8 +87,27 @@ class Staging {
     for (const auto& [name, contents] : files) write_through(path_ / name, contents);
   }
 
+  /// From now on it is as any folder of results.
+  void unmark() const { fs::remove(path_ / kMarker); }
+
  private:
+  static constexpr const char* kMarker = ".axisfit";
+  static constexpr const char* kMarkerText =
+      "axisfit's temporary files, which its next run removes\n";
+
+  /// Removes what is its own: any file on its way below a marker, else those with their signatures.
+  void remove() const {
+    std::error_code ignored;
+    const bool marked = contains(path_ / kMarker, kMarkerText);
+    for (const ResultName& file : names_)
+      if (marked || contains(path_ / file.name, file.signature))
+        fs::remove(path_ / file.name, ignored);
+    if (marked) fs::remove(path_ / kMarker, ignored);
+    fs::remove(path_, ignored);  // unless there is something else in it
+  }
+
   fs::path path_;
+  const std::vector<ResultName>& names_;
 };
 
 bool same_owner_and_mode(const fs::path& a, const fs::path& b) {
@@ -81,8 +118,10 @@ bool same_owner_and_mode(const fs::path& a, const fs::path& b) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(std::string folder, std::vector<std::string> names)
+OutputFolder::OutputFolder(std::string folder, std::vector<ResultName> names,
+                           const std::vector<std::string>& inputs)
     : folder_(std::move(folder)), names_(std::move(names)) {
+  names_.push_back({kJournal, JournalFile::kSignature});
   // Where it is: a link to a folder must stay one.
   const fs::path given = fs::absolute(folder_).lexically_normal();
   std::error_code ignored;
@@ -94,10 +133,8 @@ OutputFolder::OutputFolder(std::string folder, std::vector<std::string> names)
     created_ = created_.parent_path();
   try {
     fs::create_directories(target_);
-    for (const std::string& name : names_)
-      if (fs::is_directory(target_ / name))
-        throw fs::filesystem_error("cannot replace", target_ / name,
-                                   std::make_error_code(std::errc::is_a_directory));
+    for (const ResultName& file : names_) refuse_to_overwrite(target_ / file.name, inputs);
+    refuse_foreign_files();
     journal_ = std::make_unique<JournalFile>(target_ / kJournal);
   } catch (const std::exception& error) {
     remove_created_folders();
@@ -128,43 +165,67 @@ void OutputFolder::fail(const std::exception& error, const char* advice) const {
       fmt::format("results could not be written to {}: {}{}", folder_, reason(error), advice));
 }
 
+bool OutputFolder::is_own(const fs::path& file) const {
+  const auto known = std::ranges::find(names_, file.filename().string(), &ResultName::name);
+  return known != names_.end() && contains(file, known->signature);
+}
+
+void OutputFolder::refuse_foreign_files() const {
+  std::error_code ignored;
+  for (const ResultName& file : names_)
+    if (const fs::path path = target_ / file.name;
+        fs::exists(fs::symlink_status(path, ignored)) && !is_own(path))
+      throw std::runtime_error(fmt::format(
+          "{} there was not written by axisfit; move it, or choose another folder", file.name));
+}
+
 bool OutputFolder::holds_results_only() const {
   std::error_code ignored;
   if (fs::equivalent(target_, ".", ignored)) return false;  // somebody is in it
-  return std::ranges::all_of(fs::directory_iterator(target_), [&](const fs::directory_entry& e) {
-    const std::string name = e.path().filename();
-    return name == kJournal || std::ranges::find(names_, name) != names_.end();
-  });
+  return std::ranges::all_of(fs::directory_iterator(target_),
+                             [&](const fs::directory_entry& e) { return is_own(e.path()); });
 }
 
 bool OutputFolder::exchange(const Files& files, bool complete) const {
   const fs::path path =
       target_.parent_path() / fmt::format(".{}.partial", target_.filename().string());
-  if (::access(target_.parent_path().c_str(), W_OK) != 0) return false;
-  const Staging staging(path);
-  if (!same_owner_and_mode(staging.path(), target_)) return false;
-  staging.write(files);
   std::error_code failed;
-  if (!complete) fs::create_hard_link(target_ / kJournal, staging.path() / kJournal, failed);
+  if (fs::exists(path, failed) && !fs::is_directory(path)) return false;
+  if (failed || ::access(target_.parent_path().c_str(), W_OK) != 0) return false;
+  std::optional<Staging> staging;
+  try {
+    staging.emplace(path, names_);
+  } catch (const std::runtime_error&) {
+    return false;  // a name that is too long, or somebody else's folder
+  }
+  if (!same_owner_and_mode(path, target_)) return false;
+  staging->write(files);
+  if (!complete) fs::create_hard_link(target_ / kJournal, path / kJournal, failed);
   if (failed) return false;
-  // What it holds after that are the earlier results, which go.
-  return ::renameat2(AT_FDCWD, staging.path().c_str(), AT_FDCWD, target_.c_str(),
-                     RENAME_EXCHANGE) == 0;
+  staging->unmark();
+  if (::renameat2(AT_FDCWD, path.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0)
+    return false;
+  // Now it holds the earlier results, which go; what somebody else has put there just now stays.
+  for (const fs::directory_entry& e : fs::directory_iterator(path, failed))
+    if (!is_own(e.path())) fs::rename(e.path(), target_ / e.path().filename(), failed);
+  return true;
 }
 
 void OutputFolder::replace_one_by_one(const Files& files, bool complete) const {
-  const Staging staging(target_ / ".partial");
+  const Staging staging(target_ / ".partial", names_);
   staging.write(files);
   for (const auto& [name, contents] : files) fs::rename(staging.path() / name, target_ / name);
-  for (const std::string& name : names_)
-    if (std::ranges::find(files, name, &Files::value_type::first) == files.end())
-      fs::remove(target_ / name);
+  for (const ResultName& file : names_)
+    if (file.name != kJournal &&
+        std::ranges::find(files, file.name, &Files::value_type::first) == files.end())
+      fs::remove(target_ / file.name);
   if (complete) fs::remove(target_ / kJournal);
 }
 
 void OutputFolder::write(const Files& files, bool complete) {
   try {
-    fs::create_directories(target_);  // somebody may have removed it meanwhile
+    fs::create_directories(target_);  // somebody may have removed it meanwhile,
+    refuse_foreign_files();           // or put something there
     if (!holds_results_only() || !exchange(files, complete)) replace_one_by_one(files, complete);
     has_result_ = true;
   } catch (const std::exception& error) {
@@ -176,14 +237,25 @@ void OutputFolder::write(const Files& files, bool complete) {
   }
 }
 
+void refuse_to_overwrite(const std::string& path, const std::vector<std::string>& inputs) {
+  std::error_code ignored;
+  for (const std::string& input : inputs)
+    if (fs::equivalent(path, input, ignored))
+      throw std::runtime_error(fmt::format(
+          "{} is read by this run and would be overwritten; choose another output", input));
+}
+
 void write_file(const std::string& path, const std::string& contents) {
   std::error_code ignored;
   // Devices and pipes must not be replaced by a file.
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
     throw std::runtime_error(fmt::format("{} not written: it exists and is not a file", path));
-  const fs::path partial = fmt::format("{}.partial-{}", path, ::getpid());
+  // A short name of its own, since that of the file may be as long as names can be.
+  const fs::path folder = fs::path(path).parent_path();
+  fs::path partial;
+  for (int i = 0; partial.empty() || fs::exists(fs::symlink_status(partial, ignored)); ++i)
+    partial = folder / fmt::format(".partial-{}-{}", ::getpid(), i);
   try {
-    fs::remove(partial);  // of a run that was killed
     write_through(partial, contents);
     fs::rename(partial, path);
   } catch (const std::exception& error) {

@@ -14,15 +14,24 @@ namespace axisfit {
 /// Names and contents.
 using Files = std::vector<std::pair<std::string, std::string>>;
 
-/// The folder of a run's results. It belongs to this run alone as long as this object lives.
+/// What a result can be called, and how one is told from a file of the same name that is somebody
+/// else's: by a text that it contains.
+struct ResultName {
+  std::string name, signature;
+};
+
+/// The folder of a run's results. It belongs to this run alone as long as this object lives. Only
+/// files of those names with their signatures are ever replaced or removed.
 ///
 /// All errors are std::runtime_error: "results not written to FOLDER: " and the reason.
 class OutputFolder {
  public:
-  /// Makes the folder if need be. `names` are those that results can have. Throws, and leaves
-  /// nothing behind, when they cannot be put into it or another run is at work in it: before the
+  /// Makes the folder if need be. `names` are those that results can have, `inputs` the files that
+  /// the run reads. Throws, and leaves nothing behind, when results cannot be put into the folder,
+  /// would replace an input or somebody else's file, or another run is at work in it: before the
   /// work rather than after.
-  OutputFolder(std::string folder, std::vector<std::string> names);
+  OutputFolder(std::string folder, std::vector<ResultName> names,
+               const std::vector<std::string>& inputs = {});
   /// Leaves nothing behind that no run can use.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -42,6 +51,8 @@ class OutputFolder {
   void discard_journal() const;
 
  private:
+  bool is_own(const std::filesystem::path& file) const;
+  void refuse_foreign_files() const;
   bool holds_results_only() const;
   bool exchange(const Files& files, bool complete) const;
   void replace_one_by_one(const Files& files, bool complete) const;
@@ -50,12 +61,15 @@ class OutputFolder {
   [[noreturn]] void fail(const std::exception& error, const char* advice = "") const;
 
   std::string folder_;
-  std::vector<std::string> names_;
+  std::vector<ResultName> names_;
   std::filesystem::path target_;
   std::filesystem::path created_;  ///< the topmost folder that was not there
   std::unique_ptr<JournalFile> journal_;
   bool has_result_ = false;
 };
+
+/// Throws std::runtime_error where `path` is one of the files that were read, by whatever name.
+void refuse_to_overwrite(const std::string& path, const std::vector<std::string>& inputs);
 
 /// As OutputFolder::write, for a single file, which is not locked: "FILE not written: " and the
 /// reason.

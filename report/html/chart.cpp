@@ -11,6 +11,7 @@
 #include <new>
 #include <set>
 
+#include "base/rounding.h"
 #include "sim/sampling.h"
 
 namespace axisfit {
@@ -343,12 +344,13 @@ nlohmann::ordered_json column_data(const ChartColumn& column) {
   const std::size_t n = column.values.size();
   const double start = column.values.empty() ? 0.0 : column.values.front();
   if (column.step == 0.0)
-    return {{"length", n},
-            {"start", start},
-            // As it was meant, without the rounding of many sums.
-            {"interval", n > 1 ? std::stod(fmt::format("{:.12g}", (column.values.back() - start) /
-                                                                      static_cast<double>(n - 1)))
-                               : 1.0}};
+    return {
+        {"length", n},
+        {"start", start},
+        // As it was meant, without the rounding of many sums.
+        {"interval",
+         n > 1 ? round_to_digits((column.values.back() - start) / static_cast<double>(n - 1), 12)
+               : 1.0}};
   std::string bytes(4 * n, '\0');
   std::uint32_t before = 0;
   for (std::size_t i = 0; i < n; ++i) {

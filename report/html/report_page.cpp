@@ -88,6 +88,7 @@ class Page {
     };
     return html(R"(<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>{0}</title>
+<meta name="generator" content="axisfit {4}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:">
 <style>{1}</style></head>

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/rounding.h"
 #include "base/text_table.h"
 #include "report/text/report_text.h"
 #include "report/text/words.h"
@@ -13,8 +14,6 @@ namespace {
 
 /// A number for the eye.
 std::string short_number(double value) { return fmt::format("{:.4g}", value); }
-
-double one_digit(double value) { return std::stod(fmt::format("{:.0e}", value)); }
 
 bool drives_by_force(const Recording& recording, const Model<double>& model) {
   static const std::size_t kGain = find_quantity("K_f")->index;
@@ -75,10 +74,11 @@ std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& c
 
 std::string run_time_text(const Job& job, const RunTimeEstimate& run_time) {
   const int threads = thread_count(job.options.threads);
-  const std::string time = run_time.expected < 1.0 ? "about a second"
-                           : run_time.expected < 90.0
-                               ? fmt::format("about {:g} s", one_digit(run_time.expected))
-                               : fmt::format("about {:g} min", one_digit(run_time.expected / 60.0));
+  const std::string time =
+      run_time.expected < 1.0 ? "about a second"
+      : run_time.expected < 90.0
+          ? fmt::format("about {:g} s", round_to_digits(run_time.expected, 1))
+          : fmt::format("about {:g} min", round_to_digits(run_time.expected / 60.0, 1));
   return paragraph(
       fmt::format("Estimated run time: {} on this machine with {} thread{}; up to ten times that "
                   "if the model does not explain the recordings.",

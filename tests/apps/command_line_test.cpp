@@ -5,6 +5,7 @@
 #include <matio.h>
 #include <spawn.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -97,9 +98,10 @@ class Terminal {
 std::size_t solutions_in(const std::string& journal) {
   std::ifstream in(journal, std::ios::binary);
   std::size_t records = 0;
-  for (std::array<std::uint32_t, 2> frame; in.read(reinterpret_cast<char*>(frame.data()), 8);) {
-    in.ignore(frame[0]);
-    if (in.gcount() == frame[0]) ++records;
+  for (std::array<std::uint32_t, 3> frame; in.read(reinterpret_cast<char*>(frame.data()), 12);) {
+    const std::streamsize size = frame[0] + std::streamsize{8} * frame[1];
+    in.ignore(size);
+    if (in.gcount() == size) ++records;
   }
   return records > 0 ? records - 1 : 0;  // the first says whose it is
 }
@@ -233,7 +235,13 @@ TEST_F(CommandLineTest, WrongArgumentsAreBadInput) {
                                              {good, good},
                                              {good, "--threads", "0"},
                                              {good, "--starts", "many"},
+                                             {good, "--starts", "1e3"},
                                              {good, "--seed", "-1"},
+                                             {good, "--seed", "18446744073709551616"},
+                                             {good, "--time-limit", "nan"},
+                                             {good, "--output", ""},
+                                             {good, "--data", ""},
+                                             {good, "--from", ""},
                                              {good, "--output"},
                                              {folder_.path("none.yaml")},
                                              {folder_.path()}}) {
@@ -242,6 +250,74 @@ TEST_F(CommandLineTest, WrongArgumentsAreBadInput) {
     EXPECT_EQ(outcome.out, "");
     EXPECT_NE(outcome.err, "");
   }
+}
+
+TEST_F(CommandLineTest, NumbersAreDecimal) {
+  const auto starts = [&](const char* number) {
+    return Json::parse(fit({job(), "--json", "--starts", number}).out).at("starts").size();
+  };
+  EXPECT_EQ(starts("010"), 10u);
+  EXPECT_EQ(fit({job(), "--seed", "18446744073709551615", "--quiet"}).exit_code, 0);
+  const Outcome wrong = fit({job(), "--starts", "0x10"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(wrong.err.find("'0x10' is not a whole number from 1 to 1000000"), std::string::npos)
+      << wrong.err;
+  for (const char* rate : {"nan", "inf", "1e300"})
+    EXPECT_EQ(simulate({kXAxis, motion(), "--rate", rate}).exit_code, 2) << rate;
+}
+
+TEST_F(CommandLineTest, MessagesControlNoTerminal) {
+  const Outcome none = fit({"no\x1B[2J\u202Esuch.yaml"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("no?[2J?such.yaml"), std::string::npos) << none.err;
+  EXPECT_EQ(fit({"--\x1B[2J"}).err.find('\x1B'), std::string::npos);
+}
+
+TEST_F(CommandLineTest, OverwritesNothingThatItRead) {
+  const std::string original = job();
+  const Outcome once = fit({original, "--quiet", "--output", folder_.path("results")});
+  EXPECT_EQ(once.exit_code, 0) << once.err;
+  const std::string fitted = folder_.read("results/fitted.yaml");
+  const Outcome again = fit({original, "--quiet", "--output", folder_.path("results"), "--from",
+                             folder_.path("results/fitted.yaml")});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_EQ(folder_.without_path(again.err),
+            "results could not be written to results: results/fitted.yaml is read by this run and "
+            "would be overwritten; choose another output\n");
+  EXPECT_EQ(folder_.read("results/fitted.yaml"), fitted);
+  EXPECT_EQ(fit({original, "--quiet", "--output", folder_.path("results")}).exit_code, 0)
+      << "its own results are replaced";
+
+  std::filesystem::create_directory(folder_.path("mine"));
+  std::filesystem::copy_file(folder_.path("short.csv"), folder_.path("mine/residuals.csv"));
+  const std::string recorded = folder_.read("mine/residuals.csv");
+  const std::string reads = job(replaced(fit_job(), "short.csv", "mine/residuals.csv"));
+  EXPECT_EQ(fit({reads, "--quiet", "--output", folder_.path("mine")}).exit_code, 2);
+  EXPECT_EQ(folder_.read("mine/residuals.csv"), recorded);
+
+  const std::string path = motion(), level = folder_.read("motion.yaml");
+  EXPECT_EQ(simulate({kXAxis, path, "--output", path}).exit_code, 2);
+  EXPECT_EQ(folder_.read("motion.yaml"), level);
+}
+
+TEST_F(CommandLineTest, APipeForAResultBlocksNobody) {
+  std::filesystem::create_directory(folder_.path("results"));
+  ASSERT_EQ(::mkfifo(folder_.path("results/result.json").c_str(), 0600), 0);
+  EXPECT_EQ(fit({job(), "--quiet", "--output", folder_.path("results")}).exit_code, 2);
+  EXPECT_TRUE(std::filesystem::is_fifo(folder_.path("results/result.json")));
+}
+
+TEST_F(CommandLineTest, OneRecordingCountsOnce) {
+  std::filesystem::copy_file(folder_.path("short.csv"), folder_.path("copy.csv"));
+  const Outcome copied = fit({job(replaced(fit_job(), "judge.csv", "copy.csv"))});
+  EXPECT_EQ(copied.exit_code, 2);
+  EXPECT_NE(copied.err.find("'copy' has the same samples as 'short', and a recording counts once"),
+            std::string::npos)
+      << copied.err;
+  const std::string twice = folder_.path("short.csv");
+  const Outcome init = fit({"--init", twice, twice, "--output", folder_.path("new")});
+  EXPECT_EQ(init.exit_code, 2);
+  EXPECT_NE(init.err.find("is given twice"), std::string::npos) << init.err;
 }
 
 TEST_F(CommandLineTest, MisspeltOptionsGetASuggestion) {
@@ -317,8 +393,10 @@ TEST_F(CommandLineTest, OutputThatCannotBeWrittenIsFoundBeforeTheFit) {
   const Outcome outcome = fit({slow, "--output", folder_.path("results")});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(folder_.without_path(outcome.err),
-            "results could not be written to results: Is a directory\n");
+  EXPECT_EQ(
+      folder_.without_path(outcome.err),
+      "results could not be written to results: fitted.yaml there was not written by axisfit; "
+      "move it, or choose another folder\n");
 }
 
 TEST_F(CommandLineTest, TheLoopIsClosedOnDemand) {

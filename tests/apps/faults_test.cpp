@@ -116,6 +116,34 @@ TEST_F(FaultsTest, AFullDiskLeavesTheOldResultAndTheWork) {
   EXPECT_EQ(folder_.names("disk"), (Names{"filler", "rest", "results"}));
 }
 
+TEST_F(FaultsTest, ResultsAreWrittenEvenIfNobodySeesThem) {
+  job();
+  for (const std::string unseen :
+       {"2>&- >/dev/null", ">&-", "<&- >&- 2>&-", ">/dev/full", "| true"}) {
+    SCOPED_TRACE(unseen);
+    shell(folder_, "fit-params job.yaml --output results " + unseen);
+    EXPECT_EQ(folder_.names("results"),
+              (Names{"fitted.yaml", "report.html", "residuals.csv", "result.json"}));
+    EXPECT_TRUE(folder_.read("results/result.json").starts_with("{\n"));
+    std::filesystem::remove_all(folder_.path("results"));
+  }
+  EXPECT_EQ(shell(folder_, "fit-params job.yaml >/dev/full").exit_code, 2);
+  EXPECT_EQ(shell(folder_, "fit-params job.yaml >&-").exit_code, 2);
+  EXPECT_EQ(shell(folder_, "fit-params job.yaml 2>&- >/dev/null").exit_code, 0);
+}
+
+TEST_F(FaultsTest, ASignalThatIsIgnoredStaysIgnored) {
+  job("{starts: 3}");
+  for (const std::string signal : {"INT", "TERM"})
+    EXPECT_EQ(shell(folder_, "trap '' " + signal +
+                                 "; fit-params job.yaml --quiet & "
+                                 "while kill -" +
+                                 signal + " $!; do :; done 2>/dev/null; wait $!")
+                  .exit_code,
+              0)
+        << signal;
+}
+
 TEST_F(FaultsTest, AFileThatGrowsTooLargeIsAnErrorLikeAnother) {
   job();
   const std::string before = usable_result();
@@ -191,7 +219,7 @@ TEST_F(FaultsTest, KilledAtAnyStepOfWritingAFolderHasOneResultOrTheOther) {
   job("{starts: 2}");
   int old = 0, whole = 0;
   std::map<std::string, int> calls;
-  for (const std::string call : {"flock", "pwrite64", "fsync", "renameat2", "unlinkat"})
+  for (const std::string call : {"flock", "pwrite64", "fsync", "renameat2", "unlink", "rmdir"})
     for (int when = 1; when < 100; ++when) {
       SCOPED_TRACE(call + " " + std::to_string(when));
       shell(folder_, "rm -r results; cp -r old results");
@@ -207,14 +235,16 @@ TEST_F(FaultsTest, KilledAtAnyStepOfWritingAFolderHasOneResultOrTheOther) {
       ++(found == before ? old : whole);
       ++calls[call];
     }
-  // A call that never comes kills nobody. Each file of the result goes through to the disk.
+  // A call that never comes kills nobody. Each file of the result goes through to the disk, and so
+  // does the marker of the temporary folder.
   EXPECT_EQ(calls["flock"], 1);
   EXPECT_GE(calls["pwrite64"], 1);
-  EXPECT_EQ(calls["fsync"], static_cast<int>(after.size()));
+  EXPECT_EQ(calls["fsync"], static_cast<int>(after.size()) + 1);
   EXPECT_EQ(calls["renameat2"], 1);
-  EXPECT_GE(calls["unlinkat"], 1);
+  EXPECT_GE(calls["unlink"], 1);
+  EXPECT_GE(calls["rmdir"], 1);
   EXPECT_GT(old, 10);
-  EXPECT_GT(whole, 2);
+  EXPECT_GE(whole, 2);
 }
 
 TEST_F(FaultsTest, ARecordingInTheMakingIsRefused) {

@@ -105,7 +105,7 @@ def numbers(name, text):
     if not name.endswith(("--json", ".json")):
         return None
     result = json.loads(text)
-    for other in ("message", "version", "wall_time_s"):
+    for other in ("message", "axisfit", "wall_time_s"):
         del result[other]
     # A rejected effect may have no minimum, and where its parameters stop is chance.
     result["effects"] = [e for e in result.get("effects", []) if e["decision"] != "rejected"]

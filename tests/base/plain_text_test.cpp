@@ -13,7 +13,10 @@ TEST(PlainText, WhatIsNoTextBecomesAQuestionMark) {
     EXPECT_TRUE(is_sanitized(text));
   }
   EXPECT_EQ(sanitized("a\tb\nc\x1B[2J\x7F"), "a?b?c?[2J?");
-  EXPECT_EQ(sanitized("\u0085\u009B1m\u2028\u2029\u202A"), "??1m??\u202A");
+  EXPECT_EQ(sanitized("\u0085\u009B1m\u2028\u2029\u2030"), "??1m??\u2030");
+  EXPECT_EQ(sanitized("\u202Egpj.exe\u2066\u2069\u200F\u061C"), "?gpj.exe????");
+  EXPECT_EQ(sanitized("\u200D\u2065\u206A\u061B"), "\u200D\u2065\u206A\u061B");
+  EXPECT_EQ(sanitized_lines("a\x1B[2J\n\nb\r\n"), "a?[2J\n\nb?\n");
   EXPECT_EQ(sanitized("gr\xF6\xDF"
                       "er"),
             "gr??er");

@@ -216,6 +216,7 @@ TEST_F(InitJobTest, OneInputServesAllRecordings) {
   for (double& i : both.columns.back().values) i /= 60.0;
   folder_.write("a.csv", both);
   both.columns.erase(both.columns.begin() + 1);
+  for (double& t : both.columns.front().values) t += 1e-4;  // else it would be the same recording
   folder_.write("b.csv", both);
   make({"a.csv", "b.csv"});
   const JobFile file = read();
@@ -253,9 +254,10 @@ TEST_F(InitJobTest, MatlabVariablesAreColumnsToo) {
 TEST_F(InitJobTest, RecordingsOfOneNameGetDifferentOnes) {
   fs::create_directories(folder_.path("one"));
   fs::create_directories(folder_.path("two"));
-  const Table table = renamed(
+  Table table = renamed(
       driven(), {{"t_s", 1.0}, {"i_A", 1.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
   folder_.write("one/run.csv", table);
+  for (double& t : table.columns.front().values) t += 1e-4;  // else it would be the same recording
   folder_.write("two/run.csv", table);
   make({"one/run.csv", "two/run.csv"});
   const JobFile file = read();

@@ -77,7 +77,7 @@ TEST(ResultTest, JsonHasItsDocumentedKeys) {
   const Json json = Found(fit_job("{starts: 2, seed: 5}")).json;
   // docs/result.md promises these to other programs.
   EXPECT_EQ(keys(json), (std::vector<std::string>{"schema_version",
-                                                  "version",
+                                                  "axisfit",
                                                   "status",
                                                   "usable",
                                                   "interrupted",
@@ -142,7 +142,7 @@ TEST(ResultTest, JsonSaysWhatTheFitFound) {
   EXPECT_EQ(json.at("usable"), true);
   EXPECT_EQ(json.at("verdict"), verdict_text(fit.run_result.first));
   EXPECT_EQ(json.at("axis"), "x axis of the Automatix AID 600");
-  EXPECT_EQ(json.at("version"), version());
+  EXPECT_EQ(json.at("axisfit"), version());
   EXPECT_EQ(json.at("seed"), 5);
   EXPECT_EQ(json.at("wall_time_s"), fit.run_result.wall_time);
   EXPECT_GT(fit.run_result.wall_time, 0.0);
@@ -587,7 +587,7 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
   const Found found(rubbing_job(), true);
   const Json& json = found.json;
   EXPECT_EQ(keys(json), (std::vector<std::string>{"schema_version",
-                                                  "version",
+                                                  "axisfit",
                                                   "status",
                                                   "usable",
                                                   "interrupted",

@@ -459,10 +459,16 @@ TEST_F(JobFileTest, AQuantityIsEitherFittedForAllOrSet) {
 }
 
 TEST_F(JobFileTest, PerRecordingFreesAQuantityOnceForEachFittedRecording) {
+  // Others than the first, if only in time.
+  for (const char* name : {"judge", "second"}) {
+    Data data;
+    for (double& t : data.t_ms) t += name[0] == 'j' ? 0.125 : 0.25;
+    write_data(std::string(name) + ".csv", data.columns());
+  }
   const std::string more =
-      R"(  - {file: data.csv, name: judge, role: validate, time: {column: t_ms, unit: ms},
+      R"(  - {file: judge.csv, name: judge, role: validate, time: {column: t_ms, unit: ms},
      signals: {command: {column: u, unit: V}, velocity: {column: v, unit: m/s, sigma: 1 m/s}}}
-  - {file: data.csv, name: second, set: {M: 6 kg}, time: {column: t_ms, unit: ms},
+  - {file: second.csv, name: second, set: {M: 6 kg}, time: {column: t_ms, unit: ms},
      signals: {command: {column: u, unit: V}, velocity: {column: v, unit: m/s, sigma: 1 m/s}}}
 )";
   std::string text = replaced(kJob, "free:\n", more + "free:\n");

@@ -95,11 +95,21 @@ TEST_F(JournalFileTest, GoesOnBehindWhatWasNotWrittenToItsEnd) {
   expect_same(journal.find(second_).value(), solution(2.0));
 }
 
+TEST_F(JournalFileTest, HoldsSolutionsOfAnyNumberOfParameters) {
+  SolveResult large = solution(1.0);
+  large.u = Eigen::VectorXd::LinSpaced(100'000, 0.0, 1.0);
+  JournalFile(path_).store(first_, large);
+  JournalFile journal(path_);
+  ASSERT_EQ(journal.recovered(), 1u);
+  journal.resume();
+  expect_same(*journal.find(first_), large);
+}
+
 TEST_F(JournalFileTest, WhatIsNoSolutionDoesNotCount) {
   // Arrays within arrays, more of them than a stack can hold, with a right checksum.
   const std::string nested(10'000'000, '\x81');
-  const std::array<std::uint32_t, 2> frame{
-      static_cast<std::uint32_t>(nested.size()),
+  const std::array<std::uint32_t, 3> frame{
+      static_cast<std::uint32_t>(nested.size()), 0,
       static_cast<std::uint32_t>(
           crc32_z(0, reinterpret_cast<const Bytef*>(nested.data()), nested.size()))};
   const std::string deep =

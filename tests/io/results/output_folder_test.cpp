@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -54,7 +55,8 @@ namespace {
 using Names = std::set<std::string>;
 const Files kFiles{{"result.json", "{}\n"}, {"residuals.csv", std::string("a\0b", 3)}};
 
-const std::vector<std::string> kNames{"result.json", "residuals.csv", "next-motion.yaml"};
+const std::vector<ResultName> kNames{
+    {"result.json", ""}, {"residuals.csv", ""}, {"next-motion.yaml", ""}};
 const std::string kTooLong(300, 'x');
 constexpr const char* kJournal = "unfinished.journal";
 
@@ -173,8 +175,17 @@ TEST_F(OutputFolderTest, LeavesALinkAndTheModeOfAFolder) {
 
 TEST_F(OutputFolderTest, TheRemainsOfAKilledRunGoAway) {
   write_folder(folder_.path("results"), {{"result.json", "old"}});
-  std::filesystem::create_directory(folder_.path(".results.partial"));
-  folder_.write(".results.partial/result.json", "half");
+  const pid_t run = ::fork();
+  ASSERT_GE(run, 0);
+  if (run == 0) {
+    on_call = [](const std::string&) { ::_exit(0); };  // with the first file half written
+    write_folder(folder_.path("results"), kFiles);
+    ::_exit(1);
+  }
+  int status = 1;
+  ASSERT_EQ(::waitpid(run, &status, 0), run);
+  ASSERT_EQ(status, 0);
+  ASSERT_EQ(folder_.names(), (Names{"results", ".results.partial"}));
   write_folder(folder_.path("results"), kFiles);
   EXPECT_EQ(folder_.names(), Names{"results"});
   EXPECT_EQ(folder_.names("results"), (Names{"result.json", "residuals.csv"}));
@@ -280,10 +291,92 @@ TEST_F(OutputFolderTest, WhatCannotBeReplacedIsSaidBeforeTheWork) {
   folder_.write("results/result.json", "old");
   EXPECT_EQ(folder_.without_path(
                 error_of([&] { const OutputFolder folder(folder_.path("results"), kNames); })),
-            "results could not be written to results: Is a directory");
+            "results could not be written to results: residuals.csv there was not written by "
+            "axisfit; move it, or choose another folder");
   EXPECT_EQ(folder_.names(), Names{"results"});
   EXPECT_EQ(folder_.names("results"), (Names{"result.json", "residuals.csv"}));
   EXPECT_EQ(folder_.read("results/result.json"), "old");
+}
+
+TEST_F(OutputFolderTest, ReplacesNothingThatItCannotProveToBeItsOwn) {
+  const std::vector<ResultName> names{{"result.json", "by axisfit"},
+                                      {"residuals.csv", "by axisfit"}};
+  const Files files{{"result.json", "{} by axisfit"}};
+  const auto error = [&](const std::string& name) {
+    return folder_.without_path(
+        error_of([&] { OutputFolder(folder_.path(name), names).write(files, true); }));
+  };
+  EXPECT_EQ(error("results"), "");
+  for (const char* name : {"residuals.csv", "result.json", kJournal}) {
+    SCOPED_TRACE(name);
+    std::filesystem::remove_all(folder_.path("results"));
+    std::filesystem::create_directory(folder_.path("results"));
+    folder_.write(std::string("results/") + name, "mine");
+    EXPECT_EQ(error("results"), std::string("results could not be written to results: ") + name +
+                                    " there was not written by axisfit; move it, or choose another "
+                                    "folder");
+    EXPECT_EQ(folder_.names("results"), Names{name});
+    EXPECT_EQ(folder_.read(std::string("results/") + name), "mine");
+    folder_.write(std::string("results/") + name, "");  // in which there is nothing to lose
+    EXPECT_EQ(error("results"), "");
+  }
+  // Put there while the run was at work.
+  OutputFolder folder(folder_.path("results"), names);
+  folder_.write("results/residuals.csv", "mine");
+  EXPECT_NE(error_of([&] { folder.write(files, true); }), "");
+  EXPECT_EQ(folder_.read("results/residuals.csv"), "mine");
+}
+
+TEST_F(OutputFolderTest, LeavesFoldersOfOthersThatAreNamedAsItsTemporaryOnes) {
+  const std::vector<ResultName> names{{"result.json", "by axisfit"}};
+  const Files files{{"result.json", "{} by axisfit"}};
+  const auto error = [&] {
+    return folder_.without_path(
+        error_of([&] { OutputFolder(folder_.path("results"), names).write(files, true); }));
+  };
+  std::filesystem::create_directories(folder_.path(".results.partial/below"));
+  folder_.write(".results.partial/result.json", "mine");
+  EXPECT_EQ(error(), "");
+  EXPECT_EQ(folder_.read("results/result.json"), "{} by axisfit");
+  EXPECT_EQ(folder_.names(".results.partial"), (Names{"below", "result.json"}));
+  EXPECT_EQ(folder_.read(".results.partial/result.json"), "mine");
+
+  std::filesystem::create_directory(folder_.path("results/.partial"));
+  folder_.write("results/.partial/notes.txt", "mine");
+  EXPECT_EQ(error(),
+            "results could not be written to results: results/.partial is in the way: move it");
+  EXPECT_EQ(folder_.read("results/.partial/notes.txt"), "mine");
+}
+
+TEST_F(OutputFolderTest, OverwritesNothingThatWasRead) {
+  folder_.write("axis.yaml", "mine");
+  std::filesystem::create_directory(folder_.path("results"));
+  std::filesystem::create_symlink("../axis.yaml", folder_.path("results/result.json"));
+  const auto error = [&](const std::vector<std::string>& inputs) {
+    return folder_.without_path(
+        error_of([&] { const OutputFolder folder(folder_.path("results"), kNames, inputs); }));
+  };
+  EXPECT_EQ(error({folder_.path("none"), folder_.path("axis.yaml")}),
+            "results could not be written to results: axis.yaml is read by this run and would be "
+            "overwritten; choose another output");
+  EXPECT_EQ(folder_.read("axis.yaml"), "mine");
+  EXPECT_EQ(folder_.names("results"), Names{"result.json"});
+
+  const std::string same = folder_.path("results/../axis.yaml");
+  EXPECT_EQ(folder_.without_path(
+                error_of([&] { refuse_to_overwrite(same, {folder_.path("axis.yaml")}); })),
+            "axis.yaml is read by this run and would be overwritten; choose another output");
+  EXPECT_NO_THROW(refuse_to_overwrite(folder_.path("new.yaml"), {folder_.path("axis.yaml"), ""}));
+}
+
+TEST_F(OutputFolderTest, TakesNamesOfAnyLengthThatTheSystemTakes) {
+  const std::string longest(255, 'x');
+  EXPECT_EQ(error_in(longest), "");
+  EXPECT_EQ(error_in(longest), "") << "over the earlier results";
+  EXPECT_EQ(folder_.names(), Names{longest});
+  EXPECT_EQ(folder_.names(longest), (Names{"result.json", "residuals.csv"}));
+  EXPECT_EQ(error_at(longest + "/" + longest), "");
+  EXPECT_EQ(folder_.read(longest + "/" + longest), "new");
 }
 
 TEST_F(OutputFolderTest, AfterAFailureTheJournalIsThereToGoOnFrom) {
@@ -312,10 +405,11 @@ TEST_F(OutputFolderTest, FilesAreOnTheDiskBeforeTheyGetTheirNames) {
   const auto calls = [&] {
     return calls_of("results/result.json", [&] { write_folder(folder_.path("results"), kFiles); });
   };
-  const std::vector<std::string> exchanged{"fsync result.json: old", "fsync residuals.csv: old",
+  const std::vector<std::string> exchanged{"fsync .axisfit: old", "fsync result.json: old",
+                                           "fsync residuals.csv: old",
                                            "rename .results.partial: old"};
-  const std::vector<std::string> one_by_one{"fsync result.json: old", "fsync residuals.csv: old",
-                                            "rename result.json: old",
+  const std::vector<std::string> one_by_one{"fsync .axisfit: old", "fsync result.json: old",
+                                            "fsync residuals.csv: old", "rename result.json: old",
                                             "rename residuals.csv: {}\n"};
   write_folder(folder_.path("results"), {{"result.json", "old"}});
   EXPECT_EQ(calls(), exchanged);
@@ -326,7 +420,7 @@ TEST_F(OutputFolderTest, FilesAreOnTheDiskBeforeTheyGetTheirNames) {
 }
 
 TEST_F(OutputFolderTest, AFileIsTheOldOneUntilTheNewOneIsOnTheDisk) {
-  const std::string partial = "step.csv.partial-" + std::to_string(::getpid());
+  const std::string partial = ".partial-" + std::to_string(::getpid()) + "-0";
   folder_.write("step.csv", "old");
   EXPECT_EQ(
       calls_of("step.csv", [&] { EXPECT_EQ(error_at("step.csv"), ""); }),
@@ -336,16 +430,16 @@ TEST_F(OutputFolderTest, AFileIsTheOldOneUntilTheNewOneIsOnTheDisk) {
 
 TEST_F(OutputFolderTest, FollowsNoLinkThatAwaitsItsTemporaryFile) {
   const std::string other = folder_.write("other", "precious");
-  std::filesystem::create_symlink(other,
-                                  folder_.path("step.csv.partial-" + std::to_string(::getpid())));
+  const std::string link = ".partial-" + std::to_string(::getpid()) + "-0";
+  std::filesystem::create_symlink(other, folder_.path(link));
   EXPECT_EQ(error_at("step.csv"), "");
   EXPECT_EQ(folder_.read("step.csv"), "new");
   EXPECT_EQ(folder_.read("other"), "precious");
-  EXPECT_EQ(folder_.names(), (Names{"other", "step.csv"}));
+  EXPECT_EQ(folder_.names(), (Names{link, "other", "step.csv"}));
 }
 
 TEST_F(OutputFolderTest, LeavesNothingOfAFileThatCannotBeWritten) {
-  const std::string name(255, 'x');
+  const std::string name(256, 'x');
   EXPECT_EQ(error_at("none/step.csv"), "none/step.csv not written: No such file or directory");
   EXPECT_EQ(error_at(name), name + " not written: File name too long");
   EXPECT_EQ(folder_.names(), Names{});

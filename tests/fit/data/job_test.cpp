@@ -1,0 +1,55 @@
+#include "fit/data/job.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace axisfit {
+namespace {
+
+/// Samples `from` to `to` of one motion, 1 ms apart.
+Recording recording_of(std::size_t from, std::size_t to) {
+  Recording r;
+  std::vector<double> times, values;
+  for (std::size_t i = from; i < to; ++i) {
+    times.push_back(1e-3 * static_cast<double>(i));
+    values.push_back(std::sin(0.1 * static_cast<double>(i)));
+  }
+  r.times = times;
+  Measurement& m = r.measurements.emplace_back();
+  m.values = values;
+  m.sigma = 0.1;
+  return r;
+}
+
+void change(Recording& r, std::size_t sample, double value) {
+  r.measurements[0].values.edit()[sample] = value;
+}
+
+TEST(ShareSamples, FindsARecordingThatIsGivenTwice) {
+  EXPECT_TRUE(share_samples(recording_of(0, 100), recording_of(0, 100)));
+  EXPECT_TRUE(share_samples(recording_of(0, 100), recording_of(90, 200))) << "partly";
+  EXPECT_FALSE(share_samples(recording_of(0, 100), recording_of(100, 200))) << "two parts";
+  EXPECT_FALSE(share_samples(recording_of(0, 100), recording_of(95, 200))) << "five by chance";
+}
+
+TEST(ShareSamples, AnotherRecordingAtTheSameTimesIsNotTheSame) {
+  Recording other = recording_of(0, 100);
+  change(other, 50, 0.0);
+  EXPECT_FALSE(share_samples(recording_of(0, 100), other));
+  Recording accelerometer = recording_of(0, 100);
+  accelerometer.measurements[0].signal = Signal::acceleration;
+  EXPECT_FALSE(share_samples(recording_of(0, 100), accelerometer)) << "no signal in common";
+}
+
+TEST(ShareSamples, TwoRecordingsOfAStandstillAreNotTheSame) {
+  Recording a = recording_of(0, 100), b = a;
+  for (std::size_t i = 0; i < 100; ++i) {
+    change(a, i, 0.0);
+    change(b, i, 0.0);
+  }
+  EXPECT_FALSE(share_samples(a, b));
+}
+
+}  // namespace
+}  // namespace axisfit
