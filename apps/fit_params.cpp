@@ -110,8 +110,8 @@ constexpr const char* kExamples = R"(Examples:
   fit-params job.yaml --starts 1000 --time-limit 60 --output results
   fit-params job.yaml --json | jq '.parameters[] | {name, value}'
 
-Exit codes: 0 usable fit, 2 bad input, 3 no usable fit, 124 stopped by the time
-limit, 130 by Ctrl-C.)";
+Exit codes: 0 explained or usable, 2 bad input, 3 model wrong, nothing
+determined or not converged, 124 stopped by the time limit, 130 by Ctrl-C.)";
 
 /// Begins at the values of another axis, as far as it has them, instead of the job's initial ones.
 void start_from(const std::string& axis_file, Job& job) {
@@ -276,7 +276,7 @@ bool holds_complete_result(const std::string& folder) {
 void write(const Arguments& arguments, const JobFile& file, const RunResult& run_result,
            const std::string& json, OutputFolder& folder) {
   const bool complete = !run_result.interrupted;
-  if ((!complete || !run_result.fit().usable) && holds_complete_result(arguments.output)) {
+  if ((!complete || !run_result.grade.is_usable()) && holds_complete_result(arguments.output)) {
     print_error(paragraph(
         fmt::format("{} already holds a usable result, which was kept. To save this one, choose "
                     "another folder with --output.",
@@ -335,7 +335,7 @@ int run_command(const Arguments& arguments) {
     if (!arguments.quiet) print_error(how_to_continue(arguments));
     return exit_code_of_stop();
   }
-  return run_result.fit().usable ? kUsable : kNoUsableFit;
+  return run_result.grade.is_usable() ? kUsable : kNoUsableFit;
 }
 
 }  // namespace

@@ -113,6 +113,11 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
         score.forces.push_back(missing_force(model.job, model.fit, r));
       result.scores.push_back(std::move(score));
     }
+  FitResult& last = result.selection ? result.selection->result.fit : result.first;
+  result.grade = grade_of(result.job(), last, result.diagnosis);
+  if (result.grade.grade == Grade::model_wrong)
+    for (ParameterResult& p : last.parameters)
+      p.uncertainty = {.of_wrong_model = true, .inflation = p.uncertainty.inflation};
   const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - begin;
   result.wall_time = wall_time.count();
   return result;

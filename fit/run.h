@@ -13,6 +13,7 @@
 #include "fit/estimation/estimate.h"
 #include "fit/estimation/profile.h"
 #include "fit/selection/diagnosis.h"
+#include "fit/selection/grade.h"
 #include "fit/selection/select_effects.h"
 
 namespace axisfit {
@@ -56,6 +57,7 @@ struct RunResult {
   std::optional<EffectSelection> selection;
   std::vector<ModelScore> scores;               ///< of the loop's models
   std::optional<Diagnosis> diagnosis;           ///< of the final model; none unless that is usable
+  FitGrade grade;                               ///< of the final model
   std::vector<Profile> profiles;                ///< of the final model, those asked for
   std::vector<Discrimination> discriminations;  ///< of the loop's undecided effects, pair by pair
   std::optional<Suggestion> suggestion;         ///< of the next experiment, where it was asked for

@@ -64,9 +64,11 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
     test.reduced_chi_square = mean_square(series.values);
     test.autocorrelation_time = autocorrelation_time(series.values);
     test.explained = is_explained(series);
-    const double noise = series.noise_known ? 1.0 : noise_from_differences(series.values);
+    const double noise =
+        series.noise == NoiseSource::fit ? noise_from_differences(series.values) : 1.0;
+    const double explicable = noise * noise + series.allowance;
     test.unexplained_percent =
-        100.0 * std::sqrt(std::max(0.0, 1.0 - noise * noise / test.reduced_chi_square));
+        100.0 * std::sqrt(std::max(0.0, 1.0 - explicable / test.reduced_chi_square));
     const auto& samples = result.recordings[series.recording].as_fitted().samples;
     const Recording& recording = job.recordings[series.recording];
     const auto& times = recording.times;

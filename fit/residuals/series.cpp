@@ -21,7 +21,7 @@ std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& res
       ResidualSeries fitted, unfitted;
       static_cast<SeriesKey&>(fitted) = {r, m, true};
       static_cast<SeriesKey&>(unfitted) = {r, m, false};
-      fitted.noise_known = measurement.noise != NoiseSource::fit;
+      fitted.noise = measurement.noise;
       const std::size_t first = recording.score_initial_samples ? 0 : recording.initial_samples;
       for (std::size_t i = first; i < recording.times.size(); ++i) {
         if (!measurement.counts(i)) continue;
@@ -35,6 +35,13 @@ std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& res
     }
   }
   return list;
+}
+
+double samples_of(const std::vector<ResidualSeries>& list) {
+  double samples = 0.0;
+  for (const ResidualSeries& series : list)
+    if (series.fitted) samples += static_cast<double>(series.values.size());
+  return samples;
 }
 
 double mean_square(std::span<const double> values) {
@@ -82,19 +89,21 @@ void allow_for_parameters(const Job& job, const FitResult& result,
   for (Eigen::Index k = 0; k < root.cols(); ++k)
     root.col(k) *= size[k] > 1e-3 ? 1.0 / size[k] : 0.0;
   const Eigen::MatrixXd shown = unfitted.jacobian * length.cwiseInverse().asDiagonal() * root;
-  const double excess = std::max(1.0, result.reduced_chi_square);
   for (const SeriesRows& rows : unfitted.series)
     if (ResidualSeries* series = find_series(list, {rows.recording, rows.measurement, false}))
-      series->allowance = shown.middleRows(rows.first, rows.count).squaredNorm() /
-                          static_cast<double>(rows.count) * excess;
+      series->allowance =
+          shown.middleRows(rows.first, rows.count).squaredNorm() / static_cast<double>(rows.count);
 }
 
 bool is_explained(const ResidualSeries& series) {
-  const double n = static_cast<double>(series.values.size());
-  const double time = autocorrelation_time(series.values);
-  if (!series.noise_known) return time < 1.0 + std::max(0.25, 8.0 / std::sqrt(n));
-  const double scatter = 4.0 * std::sqrt(2.0 * time / n);
-  return mean_square(series.values) < 1.0 + std::max(0.05, scatter) + 4.0 * series.allowance;
+  const double root = std::sqrt(static_cast<double>(series.values.size()));
+  if (series.noise == NoiseSource::fit)
+    return autocorrelation_time(series.values) < 1.0 + std::max(0.25, 8.0 / root);
+  // Standard error of the mean square of white noise, times root: about the true size, or about one
+  // that noise_from_differences() found in as many samples (both scatter; by simulation).
+  const double spread = series.noise == NoiseSource::given ? std::sqrt(2.0) : 3.2;
+  return mean_square(series.values) <
+         1.0 + std::max(0.05, 4.0 * spread / root) + 4.0 * series.allowance;
 }
 
 }  // namespace axisfit

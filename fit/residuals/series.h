@@ -26,9 +26,9 @@ auto* find_series(List& list, const SeriesKey& key) {
 }
 
 struct ResidualSeries : SeriesKey {
-  bool noise_known = true;           ///< false: estimated with the parameters, from this series
-  std::vector<std::size_t> samples;  ///< that count, in order
-  std::vector<double> values;        ///< (measured - simulated) / sigma at those
+  NoiseSource noise = NoiseSource::given;  ///< fit: estimated from this series
+  std::vector<std::size_t> samples;        ///< that count, in order
+  std::vector<double> values;              ///< (measured - simulated) / sigma at those
   /// What the uncertainty of the estimates alone adds to the mean square, on average; zero where
   /// the series was fitted, and until allow_for_parameters() finds it.
   double allowance = 0.0;
@@ -38,6 +38,9 @@ struct ResidualSeries : SeriesKey {
 /// with a fixed observer gain. Signals that are only compared are omitted, and so are recordings
 /// whose simulation did not finish.
 std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& result);
+
+/// Number of fitted samples.
+double samples_of(const std::vector<ResidualSeries>& list);
 
 /// Mean square.
 double mean_square(std::span<const double> values);
@@ -53,9 +56,9 @@ void allow_for_parameters(const Job& job, const FitResult& result,
                           std::vector<ResidualSeries>& list);
 
 /// Whether a series shows no more than its noise: a mean square within 5 % of one, or within four
-/// standard errors for as many independent samples as it has, the allowance four times. Where the
-/// noise was estimated from the series itself, its size carries no information: then, whether it is
-/// white.
+/// standard errors of that of white noise, the allowance four times. The colour of the residual
+/// widens nothing, for what a model lacks is coloured, too. Where the noise was estimated from the
+/// series itself, its size carries no information: then, whether it is white.
 bool is_explained(const ResidualSeries& series);
 
 }  // namespace axisfit

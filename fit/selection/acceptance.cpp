@@ -107,9 +107,8 @@ Determination determination(const Job& job, const FitResult& result, const Candi
       u.segment(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(strengths));
   // A neutral value that is not zero, as a gain of one, is not part of the strength.
   Eigen::VectorXd zero(static_cast<Eigen::Index>(strengths));
-  const std::vector<double> neutral = neutral_strengths(candidate);
   for (std::size_t i = 0; i < strengths; ++i)
-    zero[static_cast<Eigen::Index>(i)] = space.internal(first + i, neutral[i]);
+    zero[static_cast<Eigen::Index>(i)] = space.internal(first + i, candidate.neutral[i]);
   const Eigen::VectorXd shown =
       mark - at.jacobian.middleCols(static_cast<Eigen::Index>(first),
                                     static_cast<Eigen::Index>(strengths)) *
@@ -124,18 +123,21 @@ Determination determination(const Job& job, const FitResult& result, const Candi
   return d;
 }
 
+double least_gain(const Candidate& candidate, double samples, std::size_t tried) {
+  return static_cast<double>(candidate.parameters()) * std::log(std::max(2.0, samples)) +
+         2.0 * std::log(static_cast<double>(std::max<std::size_t>(1, tried)));
+}
+
 std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvement& gain,
                                       const Determination& determined, std::size_t tried,
                                       double chance) {
   using enum Rejection::Test;
   if (!gain.comparable) return Rejection{.test = simulation};
-  // Schwarz's criterion, with the price of having been chosen among many.
-  const double bic_penalty = static_cast<double>(candidate.parameters()) * std::log(gain.samples) +
-                             2.0 * std::log(static_cast<double>(std::max<std::size_t>(1, tried)));
-  if (gain.fit_gain < bic_penalty)
+  const double required = least_gain(candidate, gain.samples, tried);
+  if (gain.fit_gain < required)
     return Rejection{.test = significance,
                      .found = std::max(0.0, gain.fit_gain),
-                     .required = bic_penalty,
+                     .required = required,
                      .tried = tried};
   constexpr double kMinPercent = 0.5;
   if (gain.p_value > chance) return Rejection{.test = validation, .found = gain.p_value};

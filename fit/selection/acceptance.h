@@ -83,6 +83,10 @@ struct Rejection {
   bool operator==(const Rejection&) const = default;
 };
 
+/// The fall of the sum of squares that a candidate must bring: the price of its parameters by
+/// Schwarz's criterion, and that of having been chosen among so many.
+double least_gain(const Candidate& candidate, double samples, std::size_t tried);
+
 /// The first test that the candidate fails; none when it may stay.
 /// `tried` is the number of candidates and settings among which it was chosen.
 std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvement& gain,

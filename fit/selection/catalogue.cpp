@@ -75,6 +75,28 @@ Candidate candidate_of(const EffectInfo& effect, SearchEntry entry) {
   return candidate;
 }
 
+/// A candidate of one quantity.
+Candidate single(const std::string& name, const std::string& acts_on, const QuantityEntry& entry) {
+  Candidate candidate;
+  candidate.name = name;
+  candidate.acts_on = acts_on;
+  candidate.meaning = entry.quantity.meaning;
+  candidate.strengths = {entry.index};
+  candidate.settings = {{}};
+  return candidate;
+}
+
+/// Whether a quantity has a value in the job's axis that somebody declared, not neutral, and that
+/// is not estimated. Where a recording begins is known of each recording, not of the axis.
+bool is_constant(const Job& job, const QuantityEntry& entry, double declared) {
+  const auto signal = signal_by_name(entry.group);
+  return is_used(entry, job.model.structure) && !has_value(job, entry.index) &&
+         entry.group != "initial" && !entry.quantity.shape && declared != 0.0 &&
+         declared != neutral(entry.quantity) && declared > entry.quantity.lower &&
+         declared < entry.quantity.upper &&
+         (!signal || (is_recorded(job, *signal) && !is_ignored(entry, job.options.observer)));
+}
+
 /// The range of a shape that may be negative, such as a place: it has no scale of its own, and is
 /// sought where its settings lie, and a tenth of their span beyond.
 std::pair<double, double> range_of_place(const Candidate& candidate, std::size_t shape) {
@@ -91,20 +113,16 @@ std::pair<double, double> range_of_place(const Candidate& candidate, std::size_t
 
 }  // namespace
 
-std::vector<double> neutral_strengths(const Candidate& candidate) {
-  std::vector<double> values;
-  for (const std::size_t q : candidate.strengths)
-    values.push_back(neutral(quantity_list()[q].quantity));
-  return values;
-}
-
 std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
   scales.pinion_radius = job.model.axis.r_g;
   const Structure& structure = job.model.structure;
+  Model<double> model = job.model;
   std::vector<Candidate> list;
   const auto add_if_absent = [&](Candidate candidate) {
-    if (!candidate.settings.empty() && is_absent(job, candidate.strengths))
-      list.push_back(std::move(candidate));
+    if (candidate.settings.empty() || !is_absent(job, candidate.strengths)) return;
+    for (const std::size_t q : candidate.strengths)
+      candidate.neutral.push_back(neutral(quantity_list()[q].quantity));
+    list.push_back(std::move(candidate));
   };
   const auto add_effects = [&](ActsOn place, bool curves) {
     for (std::size_t e = 0; e < kEffects; ++e) {
@@ -117,8 +135,7 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
   };
   for (const ActsOn place : kPlacesToAct) add_effects(place, false);
   const std::vector<double> both_signs{-2.0 * scales.interval, 2.0 * scales.interval};
-  Candidate dead_time{"dead_time", "drive", "dead time of the command", {}, {}, {{}}};
-  dead_time.strengths = {index_of_quantity("T_d")};
+  Candidate dead_time = single("dead_time", "drive", *find_quantity("T_d"));
   dead_time.probes = later(scales);
   add_if_absent(std::move(dead_time));
   for (const SignalInfo& signal : kSignalTable) {
@@ -127,13 +144,21 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
       const std::string name = std::string(signal.name) + "." + std::string(part);
       const QuantityEntry* entry = find_quantity(name);
       if (is_ignored(*entry, job.options.observer)) continue;
-      Candidate candidate{name,           "sensor", std::string(entry->quantity.meaning),
-                          {entry->index}, {},       {{}}};
+      Candidate candidate = single(name, "sensor", *entry);
       if (part == "lag") candidate.probes = later(scales);
       if (part == "delay") candidate.probes = both_signs;
       add_if_absent(std::move(candidate));
     }
   }
+  const bool offers_mass = std::ranges::find(list, "added_mass", &Candidate::name) != list.end();
+  for (const QuantityEntry& entry : quantity_list())
+    if (const double declared = *members(model)[entry.index]; is_constant(job, entry, declared)) {
+      if (entry.name == "M" && offers_mass) continue;  // they say the same
+      Candidate candidate = single(entry.name, "axis file", entry);
+      candidate.is_constant = true;
+      candidate.neutral = {declared};
+      list.push_back(std::move(candidate));
+    }
   for (const ActsOn place : kPlacesToAct) add_effects(place, true);
   return list;
 }
@@ -153,13 +178,17 @@ Job with_candidate(const Job& job, const Candidate& candidate, std::span<const d
       *member[entry.index] = neutral(entry.quantity);
   }
   for (std::size_t i = 0; i < candidate.strengths.size(); ++i) {
-    const Quantity& q = quantity_list()[candidate.strengths[i]].quantity;
+    const QuantityEntry& entry = quantity_list()[candidate.strengths[i]];
     FreeParameter p;
-    p.quantity = candidate.strengths[i];
-    p.lower = q.lower;
-    p.upper = q.upper;
-    p.initial = std::clamp(strengths[i], q.lower, q.upper);
-    p.logarithmic = false;
+    if (candidate.is_constant) {
+      p = free_parameter(entry.name, candidate.neutral[i]);
+    } else {
+      p.quantity = entry.index;
+      p.lower = entry.quantity.lower;
+      p.upper = entry.quantity.upper;
+      p.logarithmic = false;
+    }
+    p.initial = std::clamp(strengths[i], p.lower, p.upper);
     extended_job.free.push_back(p);
   }
   for (std::size_t i = 0; i < candidate.shapes.size(); ++i) {

@@ -17,8 +17,10 @@ struct Candidate {
   std::string
       acts_on;  ///< where it acts: "arm force", "friction", "inertia", "drive", "sensor" ...
   std::string meaning;  ///< a few words
-  /// Quantities (indices in quantity_list()) that are estimated, and neutral while it is absent.
+  /// Quantities (indices in quantity_list()) that are estimated, and what they are while it is
+  /// absent: zero, one for a gain, and what the axis file declares for a constant.
   std::vector<std::size_t> strengths;
+  std::vector<double> neutral;
   /// Quantities that give it its shape, and the settings of them to be tried, one value for each.
   /// A candidate without shapes has one empty setting.
   std::vector<std::size_t> shapes;
@@ -28,6 +30,8 @@ struct Candidate {
   /// little: that of a lag or delay holds while it is shorter than anything else. Empty: none.
   std::vector<double> probes = {};
   bool is_curve = false;  ///< a curve: it fits whatever no other effect explains
+  /// A value of the axis file that is not free: the hypothesis is that it is another.
+  bool is_constant = false;
 
   std::size_t parameters() const {
     return strengths.size() + (shapes_are_free ? shapes.size() : 0);
@@ -39,11 +43,9 @@ inline bool same_effect(const Candidate& a, const Candidate& b) {
   return a.strengths == b.strengths;
 }
 
-/// The strengths of an absent effect: zero, but for a gain, which is one.
-std::vector<double> neutral_strengths(const Candidate& candidate);
-
-/// All candidates that the job's axis can have, its recordings could show, and its model lacks.
-/// The pinion radius is the job's.
+/// All candidates that the job's axis can have, its recordings could show, and its model lacks:
+/// effects, instruments that are not as they should be, and constants that are not what the axis
+/// file says. The pinion radius is the job's.
 std::vector<Candidate> catalogue(const Job& job, SearchScales scales);
 
 /// The job with the candidate added to its free parameters, started from these strengths and

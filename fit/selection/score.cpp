@@ -92,6 +92,7 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   const Eigen::MatrixXd basis = basis_of(base.jacobian);
   const Eigen::VectorXd residual = base.residuals - basis * (basis.transpose() * base.residuals);
   test.sum_of_squares = residual.squaredNorm();
+  test.mean_square = test.sum_of_squares / static_cast<double>(residual.size());
   test.usable = std::isfinite(test.sum_of_squares);  // squares may overflow
   if (!test.usable) return test;
   test.candidates =
@@ -108,7 +109,7 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
     Score& score = test.scores[i];
     const Candidate& candidate = test.candidates[score.candidate];
     score.strengths.assign(candidate.strengths.size(), 0.0);
-    const std::vector<double> neutral = neutral_strengths(candidate);
+    const std::vector<double>& neutral = candidate.neutral;
     Candidate shaped = candidate;
     shaped.shapes_are_free = false;
     const Job extended = with_candidate(fixed, shaped, {}, neutral, score.shapes);

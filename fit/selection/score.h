@@ -30,6 +30,7 @@ struct Score {
 struct ScoreTest {
   bool usable = false;  ///< false: the tracking simulation has no finite residuals
   double sum_of_squares = 0.0;
+  double mean_square = 0.0;  ///< of the tracking simulation's residuals, which noise drives, too
   std::vector<Candidate> candidates;
   std::vector<Score> scores;  ///< of every candidate and setting, the largest gain first
 };

@@ -138,7 +138,7 @@ class EffectSelector {
 
   void search_named() {
     swapped_ = false;
-    while (has_room() && !explained())
+    while (has_room())
       if (!round(false) && !try_swap()) break;
   }
 
@@ -185,15 +185,22 @@ class EffectSelector {
                                : Rejection{.test = Rejection::Test::fit};
   }
 
-  /// Refits a shortlist and takes the best that passes the gate. Returns whether one did.
+  /// Refits a shortlist and takes the best that passes the gate. Returns whether one did. Where the
+  /// size of the residual is that of the noise, an effect may yet be hidden in it: then only those
+  /// are refitted whose score is beyond chance.
   bool round(bool curves, double chance = kChance) {
     ++round_;
     report_progress("scoring effects");
-    const Shortlist list =
-        shortlist(current().job, values_of(current().fit), curves, options_.shortlist, context_);
-    const std::vector<ShortlistEntry>& entries = list.entries;
+    const bool is_complete = explained();
+    Shortlist list = shortlist(current().job, values_of(current().fit), rates_to_score(is_complete),
+                               curves, options_.shortlist, context_);
+    std::vector<ShortlistEntry>& entries = list.entries;
     tried_ = list.tried;
     const auto before = residual_series(current().job, current().fit);
+    if (is_complete)
+      std::erase_if(entries, [&](const ShortlistEntry& entry) {
+        return entry.gain < least_gain(entry.candidate, samples_of(before), tried_);
+      });
     std::vector<ExtendedModel> extended_models(entries.size());
     // What takes longest first, so that nobody waits for it at the end.
     std::vector<std::size_t> order(entries.size());
@@ -251,6 +258,14 @@ class EffectSelector {
     result_.models.push_back({best->candidate.name, std::move(best->job), std::move(best->fit)});
     if (!provisional_) last_valid_ = snapshot();
     return true;
+  }
+
+  /// A simulation that is far from the data must track them to be scored. Of one that is not, the
+  /// free-running residual is white, and its score is exact.
+  std::vector<double> rates_to_score(bool is_complete) const {
+    const Job& job = result_.models.back().job;
+    if (is_complete && job.options.observer != ObserverMode::fixed) return {0.0};
+    return score_gains(job);
   }
 
   static bool is_preferred(const ExtendedModel& a, const ExtendedModel& b) {
@@ -444,7 +459,8 @@ class EffectSelector {
   }
 
   void finish();
-  SelectionVerdict verdict() const;
+  std::vector<std::string> small_effects() const;
+  void decide();
 
   const SelectionOptions options_;
   const FitResult& first_;
@@ -460,7 +476,8 @@ class EffectSelector {
 };
 
 void EffectSelector::finish() {
-  result_.explained = current().fit.usable && explained();
+  result_.verdict.small = small_effects();
+  result_.explained = current().fit.usable && explained() && result_.verdict.small.empty();
   result_.result = current();
   // The refits on the way were content with less, and blocks that were held out count too.
   SelectionStep& last = result_.result;
@@ -483,16 +500,31 @@ void EffectSelector::finish() {
       result_.interrupted = true;
     }
   }
-  result_.verdict = verdict();
+  decide();
 }
 
-SelectionVerdict EffectSelector::verdict() const {
+/// Effects that were rejected for their size alone, in the last round.
+std::vector<std::string> EffectSelector::small_effects() const {
+  std::vector<std::string> names;
+  for (const EffectTrial& t : result_.effects)
+    if (t.round == round_ && t.rejection && t.rejection->test == Rejection::Test::validation_size)
+      names.push_back(t.candidate.name);
+  return names;
+}
+
+void EffectSelector::decide() {
   using enum SelectionVerdict::Kind;
-  SelectionVerdict verdict;
-  if (!result_.models.front().fit.usable) return verdict;
+  SelectionVerdict& verdict = result_.verdict;
+  if (!result_.models.front().fit.usable) return;
+  Model<double> last_model = fitted_model(result_.result.job, result_.result.fit);
   for (const EffectTrial& t : result_.effects)
     if (t.decision == Decision::undecided) verdict.undecided.push_back(t.candidate.name);
-  for (const Accepted& a : accepted_) verdict.accepted.push_back(a.candidate.name);
+  for (const Accepted& a : accepted_) {
+    verdict.accepted.push_back(a.candidate.name);
+    if (a.candidate.is_constant)
+      verdict.corrections.push_back({a.candidate.name, a.candidate.neutral.front(),
+                                     *members(last_model)[a.candidate.strengths.front()]});
+  }
   if (!verdict.accepted.empty()) {
     verdict.kind = effects_accepted;
     verdict.validate_percent =
@@ -501,12 +533,13 @@ SelectionVerdict EffectSelector::verdict() const {
             .validate_percent;
   } else if (result_.explained && verdict.undecided.empty()) {
     verdict.kind = nothing_missing;
+  } else if (!verdict.small.empty() && verdict.undecided.empty() && explained()) {
+    verdict.kind = hardly_anything;
   } else if (result_.interrupted) {
     verdict.kind = stopped;
   } else {
     verdict.kind = verdict.undecided.empty() ? none_passes : undecided;
   }
-  return verdict;
 }
 
 }  // namespace

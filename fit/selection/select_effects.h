@@ -68,6 +68,7 @@ struct SelectionVerdict {
   enum class Kind {
     no_usable_fit,     ///< of the baseline model: its residual says nothing about effects
     nothing_missing,   ///< the baseline model explains every signal
+    hardly_anything,   ///< it does, but for effects that are significant and hardly matter
     effects_accepted,  ///< one or more
     stopped,           ///< before an effect was accepted
     undecided,         ///< no effect was accepted, some explain the recordings equally well
@@ -75,6 +76,15 @@ struct SelectionVerdict {
   };
   Kind kind = Kind::no_usable_fit;
   std::vector<std::string> accepted{}, undecided{};  ///< effects
+  /// Significant, but rejected since they hardly lower the validation error.
+  std::vector<std::string> small{};
+  /// A constant of the axis file that was accepted to be another: both in the quantity's unit.
+  struct Correction {
+    std::string name;
+    double declared = 0.0, value = 0.0;
+    bool operator==(const Correction&) const = default;
+  };
+  std::vector<Correction> corrections{};
   /// Fall of the root mean square of what was not fitted, by the accepted effects together.
   double validate_percent = 0.0;
 
@@ -86,7 +96,7 @@ struct EffectSelection {
   SelectionStep result;               ///< the last of them, fitted to all samples
   std::vector<EffectTrial> effects;   ///< every effect that was refitted, its last trial
   bool held_out_blocks = false;       ///< no recording to validate: blocks of the fitted were kept
-  bool explained = false;             ///< nothing but noise is left
+  bool explained = false;             ///< nothing but noise is left, and no small effect
   bool interrupted = false;           ///< the search was not finished
   SelectionVerdict verdict;
   std::vector<UndecidedPair> rivals;  ///< the effects that stay undecided

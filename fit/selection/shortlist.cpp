@@ -18,18 +18,21 @@ bool nearly_same(const ShortlistEntry& a, const ShortlistEntry& b) {
          });
 }
 
-std::vector<ShortlistEntry> best_of(const ScoreTest& test, std::size_t length) {
+/// The best constants, or the best of the others.
+std::vector<ShortlistEntry> best_of(const ScoreTest& test, std::size_t length, bool constants) {
   constexpr double kMinGain = 6.0;  // of a sum of squares: below is chance
   constexpr double kNearly = 0.9;   // of the best gain: heard even beyond the length
   constexpr int kSettings = 2;      // of one candidate: no crowding out of the others
   std::vector<ShortlistEntry> taken;
   for (const Score& score : test.scores) {
     const Candidate& candidate = test.candidates[score.candidate];
+    if (candidate.is_constant != constants) continue;
     if (score.gain < kMinGain || taken.size() >= 2 * length) break;
     if (taken.size() >= length && score.gain < kNearly * taken.front().score.gain) break;
     const auto same = std::ranges::count_if(
         taken, [&](const ShortlistEntry& p) { return same_effect(p.candidate, candidate); });
-    if (same < kSettings) taken.push_back({candidate, score});
+    if (same < kSettings)
+      taken.push_back({candidate, score, score.gain / std::max(1.0, test.mean_square)});
   }
   return taken;
 }
@@ -80,16 +83,20 @@ std::vector<ShortlistEntry> screened(const Job& job, std::vector<ShortlistEntry>
 
 }  // namespace
 
-Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curves, int length,
+Shortlist shortlist(const Job& job, const std::vector<double>& values,
+                    const std::vector<double>& rates, bool curves, int length,
                     const RunContext& context) {
-  // What a slow hold shows may be hidden under a firm one: each has its own best.
-  const std::vector<double> rates = score_gains(job);
+  // What a low gain shows may be hidden by a high one: each has its own best.
   std::vector<Shortlist> of_rate(rates.size());
   parallel_for(rates.size(), [&](std::size_t i) {
     const ScoreTest test = score_test(job, values, rates[i], curves, context);
     of_rate[i].tried = test.scores.size();
-    of_rate[i].entries =
-        screened(job, best_of(test, static_cast<std::size_t>(length)), rates[i], context);
+    const auto most = static_cast<std::size_t>(length);
+    of_rate[i].entries = best_of(test, most, false);
+    // Constants are many, and alike: they crowd no effect out.
+    for (ShortlistEntry& entry : best_of(test, (most + 1) / 2, true))
+      of_rate[i].entries.push_back(std::move(entry));
+    of_rate[i].entries = screened(job, std::move(of_rate[i].entries), rates[i], context);
   });
   Shortlist result;
   for (Shortlist& list : of_rate) {

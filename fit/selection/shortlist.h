@@ -12,6 +12,7 @@ namespace axisfit {
 struct ShortlistEntry {
   Candidate candidate;
   Score score;
+  double gain = 0.0;  ///< the score's, in units of the residuals' mean square, at least one
 };
 
 struct Shortlist {
@@ -19,12 +20,13 @@ struct Shortlist {
   std::size_t tried = 1;  ///< candidates and settings among which they were chosen
 };
 
-/// The best by score_test() at every rate of score_gains(), about `length` of each, from a fit with
-/// the given values of the free parameters; those of the catalogue or, with `curves`, those without
-/// a name. Those of a rate are then fitted while the simulation still tracks with it, which is
-/// quick: what is far behind there is dropped, and the others start from there. The thread pool
+/// The best by score_test() at each of these observer gains, about `length` of each, from a fit
+/// with the given values of the free parameters; those of the catalogue or, with `curves`, those
+/// without a name. Those of a rate are then fitted while the simulation still tracks with it, which
+/// is quick: what is far behind there is dropped, and the others start from there. The thread pool
 /// shares the work.
-Shortlist shortlist(const Job& job, const std::vector<double>& values, bool curves, int length,
+Shortlist shortlist(const Job& job, const std::vector<double>& values,
+                    const std::vector<double>& observer_gains, bool curves, int length,
                     const RunContext& context = {});
 
 }  // namespace axisfit

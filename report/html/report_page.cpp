@@ -114,8 +114,8 @@ class Page {
   }
 
   const char* verdict_class() const {
-    if (!fit_.usable) return "bad";
-    return run_result_.diagnosis && run_result_.diagnosis->explained ? "good" : "warn";
+    if (!run_result_.grade.is_usable()) return "bad";
+    return run_result_.grade.grade == Grade::explained ? "good" : "warn";
   }
 
   static Html fact(const std::string& name, const Html& value) {
@@ -241,6 +241,7 @@ class Page {
         case ParameterVerdict::at_bound:
           return "bound";
         case ParameterVerdict::not_determined:
+        case ParameterVerdict::of_wrong_model:
           return "open";
         case ParameterVerdict::weakly_determined:
           return "weak";

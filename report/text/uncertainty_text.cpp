@@ -49,10 +49,12 @@ std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty
     std::string description(quantity_list()[space[i].quantity].quantity.meaning);
     if (const ParameterVerdict verdict = known[i].verdict();
         verdict != ParameterVerdict::determined)
-      description +=
-          ": " + toned(verdict_name(verdict),
-                       verdict == ParameterVerdict::not_determined ? Tone::bad : Tone::caution,
-                       colour);
+      description += ": " + toned(verdict_name(verdict),
+                                  verdict == ParameterVerdict::not_determined ||
+                                          verdict == ParameterVerdict::of_wrong_model
+                                      ? Tone::bad
+                                      : Tone::caution,
+                                  colour);
     rows.push_back({space.name(i), description});
   }
   return format_table(rows, {Alignment::left, Alignment::wrapped});

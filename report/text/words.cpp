@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
 #include "base/terminal.h"
+#include "base/units.h"
 
 namespace axisfit {
 namespace {
@@ -87,35 +89,114 @@ std::string text_of(const MoveMotion& motion) {
 
 std::string text_of(const RecordedMotion&) { return "a recorded motion"; }
 
+std::string grade_heading(const FitGrade& grade, bool colour) {
+  switch (grade.grade) {
+    case Grade::explained:
+      return toned("Explained", Tone::good, colour);
+    case Grade::usable:
+      return toned("Usable", Tone::caution, colour);
+    case Grade::model_wrong:
+      return toned("Model wrong", Tone::bad, colour);
+    case Grade::nothing_determined:
+      return toned("Nothing determined", Tone::bad, colour);
+    case Grade::not_converged:
+      return toned("Not converged", Tone::bad, colour);
+  }
+  return "";
+}
+
+/// What was wrong with the model as declared, whole sentences.
+std::string lacked_text(const SelectionVerdict& verdict) {
+  std::vector<std::string> effects;
+  for (const std::string& name : verdict.accepted)
+    if (std::ranges::find(verdict.corrections, name, &SelectionVerdict::Correction::name) ==
+        verdict.corrections.end())
+      effects.push_back(name);
+  std::string text;
+  for (const auto& [name, declared, value] : verdict.corrections) {
+    const std::string_view unit = find_quantity(name)->quantity.unit;
+    text += fmt::format("{} is {}, not the {} of the axis file. ", name,
+                        with_unit(fmt::format("{:.4g}", value), unit),
+                        with_unit(fmt::format("{:.4g}", declared), unit));
+  }
+  if (!effects.empty()) text += fmt::format("The model lacked {}. ", fmt::join(effects, ", "));
+  return text;
+}
+
+/// What a simulation does with a signal, to follow it as the subject.
+std::string followed_text(double percent, const std::string& signal) {
+  return percent > 0.0 ? fmt::format("follows {} to only {:.2g} %", signal, percent)
+                       : fmt::format("follows {} no better than a constant", signal);
+}
+
 }  // namespace
 
-std::string verdict_text(const FitResult& fit, bool colour) {
-  using enum FitVerdict::Kind;
-  const FitVerdict& verdict = fit.verdict;
-  const std::string not_usable = toned("No usable fit", Tone::bad, colour);
-  switch (verdict.kind) {
-    case not_simulated:
-      return not_usable +
-             ": the simulation does not finish at the initial values. Check them and "
-             "the axis file for impossible values.";
-    case no_minimum:
+const char* grade_name(Grade grade) {
+  switch (grade) {
+    case Grade::explained:
+      return "explained";
+    case Grade::usable:
+      return "usable";
+    case Grade::model_wrong:
+      return "model_wrong";
+    case Grade::nothing_determined:
+      return "nothing_determined";
+    case Grade::not_converged:
+      return "not_converged";
+  }
+  return "";
+}
+
+std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour) {
+  const std::string heading = grade_heading(grade, colour);
+  const auto signal = [&] {
+    return fmt::format("the {} of {}", info(grade.signal).name, grade.recording);
+  };
+  using enum FitGrade::Reason;
+  switch (grade.reason) {
+    case solver:
+      if (fit.verdict.kind == FitVerdict::Kind::not_simulated)
+        return heading +
+               ": the simulation does not finish at the initial values. Check them and the axis "
+               "file for impossible values.";
       return fmt::format(
           "{}: no minimum was found within {} iterations. Try --starts 20, or free fewer "
           "parameters.",
-          not_usable, verdict.iteration_limit);
-    case signal_not_followed:
+          heading, fit.verdict.iteration_limit);
+    case parameters:
+      return heading +
+             ": these recordings determine none of the free parameters. Record a motion that shows "
+             "them, or free fewer.";
+    case simulation:
       return fmt::format(
-          "{}: the model follows the {} of {} no better than a constant would. Try other initial "
-          "values, --starts 20, or check units and signs of the columns.",
-          not_usable, info(verdict.signal).name, verdict.recording);
-    case usable:
+          "{}: {}. Check the units and signs of the columns, and try other initial values or "
+          "--starts 20.",
+          heading,
+          std::isnan(grade.percent)
+              ? "the free-running simulation of " + grade.recording + " does not finish"
+              : fmt::format("the free-running simulation {}",
+                            followed_text(grade.percent, signal())));
+    case force:
+      return fmt::format(
+          "{}: the force that the model lacks in {} is {:.3g} % of the drive's. Check the units "
+          "and "
+          "signs of the columns and what the axis file declares.",
+          heading, grade.recording, grade.percent);
+    case tracking_only:
+      return fmt::format(
+          "{} while it tracks recordings: the free-running simulation {}. The parameters describe "
+          "the forces; do not simulate with them for long.",
+          heading, followed_text(grade.percent, signal()));
+    case residual:
+    case none:
       break;
   }
-  std::string text = fmt::format("{}: reduced chi-square {:.4g} on the fitted data.",
-                                 toned("Usable fit", Tone::good, colour), fit.reduced_chi_square);
-  if (!verdict.undetermined.empty())
+  std::string text = fmt::format(
+      "{}: reduced chi-square {:.4g} on the fitted data{}", heading, fit.reduced_chi_square,
+      grade.reason == none ? ", and no signal shows more than its noise." : ".");
+  if (!fit.verdict.undetermined.empty())
     text += fmt::format(" These recordings do not determine {}.",
-                        fmt::join(verdict.undetermined, ", "));
+                        fmt::join(fit.verdict.undetermined, ", "));
   return text;
 }
 
@@ -132,12 +213,16 @@ std::string verdict_text(const EffectSelection& selection) {
       return "The search for missing effects was stopped: no effect has been accepted so far.";
     case none_passes:
       return "Something is missing, but no effect passes the tests: see the reasons.";
+    case hardly_anything:
+      return fmt::format(
+          "Hardly anything is missing: {} {} significant, but hardly lowers the validation error.",
+          fmt::join(verdict.small, ", "), verdict.small.size() > 1 ? "are" : "is");
     case effects_accepted:
-      text = fmt::format("The model lacked {}. With {}, the validation error falls by {:.3g} %{}",
-                         fmt::join(verdict.accepted, ", "),
-                         verdict.accepted.size() > 1 ? "them" : "it", verdict.validate_percent,
-                         selection.explained ? ", and every signal is explained down to its noise."
-                                             : ", but not down to the noise.");
+      text =
+          fmt::format("{}With {}, the validation error falls by {:.3g} %{}", lacked_text(verdict),
+                      verdict.accepted.size() > 1 ? "them" : "it", verdict.validate_percent,
+                      selection.explained ? ", and every signal is explained down to its noise."
+                                          : ", but not down to the noise.");
       break;
     case undecided:
       break;
@@ -149,10 +234,13 @@ std::string verdict_text(const EffectSelection& selection) {
 }
 
 std::string overall_verdict(const RunResult& run_result, bool colour) {
-  const FitResult& fit = run_result.fit();
-  if (!run_result.selection) return verdict_text(fit, colour);
+  const FitGrade& grade = run_result.grade;
+  if (!run_result.selection) return grade_text(grade, run_result.fit(), colour);
   // Both judge the same model by the same residual.
-  return (fit.usable ? toned("Usable fit", Tone::good, colour) + "." : verdict_text(fit, colour)) +
+  const bool by_residual =
+      grade.reason == FitGrade::Reason::residual || grade.reason == FitGrade::Reason::none;
+  return (by_residual ? grade_heading(grade, colour) + "."
+                      : grade_text(grade, run_result.fit(), colour)) +
          " " + verdict_text(*run_result.selection);
 }
 
@@ -222,6 +310,8 @@ std::string_view verdict_name(ParameterVerdict verdict) {
       return "not determined";
     case ParameterVerdict::at_bound:
       return "at bound";
+    case ParameterVerdict::of_wrong_model:
+      return "of a wrong model";
   }
   return "";
 }

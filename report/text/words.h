@@ -9,13 +9,16 @@
 
 namespace axisfit {
 
-/// Whether a fit can be used, one sentence or two.
-std::string verdict_text(const FitResult& fit, bool colour = false);
+/// "explained", "usable", "model_wrong", "nothing_determined", "not_converged"
+const char* grade_name(Grade grade);
+
+/// How far a fit can be relied on, and why, one sentence or a few.
+std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour = false);
 
 /// What a search for effects comes to, a sentence or a few.
 std::string verdict_text(const EffectSelection& selection);
 
-/// Whether the final model can be used, and what a search for effects comes to.
+/// How far the final model can be relied on, and what a search for effects comes to.
 std::string overall_verdict(const RunResult& run_result, bool colour = false);
 
 /// What the decision on an effect rests on; no sentence, to follow its estimate.
@@ -33,7 +36,7 @@ std::string discrimination_text(const Discrimination& discrimination);
 /// " by the time limit of 60 s", or nothing: to follow "stopped".
 std::string stop_reason(const RunResult& run_result);
 
-/// "determined", "weakly determined", "not determined", "at bound"
+/// "determined", "weakly determined", "not determined", "at bound", "of a wrong model"
 std::string_view verdict_name(ParameterVerdict verdict);
 
 /// "accepted", "undecided", "rejected"

@@ -334,7 +334,7 @@ TEST_F(CommandLineTest, AUsableFitIsReported) {
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err, "");  // no progress where nobody looks
   EXPECT_TRUE(outcome.out.starts_with("Recordings\n"));
-  EXPECT_NE(outcome.out.find("\nUsable fit"), std::string::npos);
+  EXPECT_NE(outcome.out.find("\nExplained: "), std::string::npos);
   EXPECT_EQ(outcome.out.find('\r'), std::string::npos);
   EXPECT_EQ(outcome.out.find('\033'), std::string::npos);
   EXPECT_EQ(folder_.names(), (Names{"job.yaml", "judge.csv", "short.csv"}));
@@ -360,7 +360,7 @@ TEST_F(CommandLineTest, NoUsableFitHasItsOwnExitCode) {
   const std::string poor = job(fit_job("{max_iterations: 1, observer: none}"));
   const Outcome outcome = fit({poor, "--output", folder_.path("results")});
   EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_NE(outcome.out.find("No usable fit"), std::string::npos);
+  EXPECT_NE(outcome.out.find("Not converged"), std::string::npos);
   // What was found is there to look at.
   EXPECT_EQ(Json::parse(folder_.read("results/result.json")).at("usable"), false);
 }

@@ -80,6 +80,7 @@ TEST(ResultTest, JsonHasItsDocumentedKeys) {
                                                   "axisfit",
                                                   "status",
                                                   "usable",
+                                                  "grade",
                                                   "interrupted",
                                                   "time_limit_reached",
                                                   "verdict",
@@ -140,7 +141,7 @@ TEST(ResultTest, JsonSaysWhatTheFitFound) {
   const Json& json = fit.json;
   EXPECT_EQ(json.at("status"), "converged");
   EXPECT_EQ(json.at("usable"), true);
-  EXPECT_EQ(json.at("verdict"), verdict_text(fit.run_result.first));
+  EXPECT_EQ(json.at("verdict"), grade_text(fit.run_result.grade, fit.run_result.first));
   EXPECT_EQ(json.at("axis"), "x axis of the Automatix AID 600");
   EXPECT_EQ(json.at("axisfit"), version());
   EXPECT_EQ(json.at("seed"), 5);
@@ -226,7 +227,8 @@ TEST(ResultTest, ReportHasEveryFreeParameterAndTheVerdict) {
                            "judge", "validate", "compare", "motor_current", "151 samples",
                            "* estimated from differences of the samples"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
-  EXPECT_NE(text.find("\n" + verdict_text(fit.run_result.first) + "\n"), std::string::npos);
+  EXPECT_NE(text.find("\n" + paragraph(grade_text(fit.run_result.grade, fit.run_result.first))),
+            std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -315,7 +317,8 @@ TEST(ResultTest, ARecordingThatCannotBeSimulatedHasNoErrors) {
   const std::string text = report_text(run_result);
   EXPECT_NE(text.find(" - "), std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
-  EXPECT_TRUE(text.ends_with(std::string("\n").append(paragraph(verdict_text(run_result.first)))));
+  EXPECT_TRUE(text.ends_with(
+      std::string("\n").append(paragraph(grade_text(run_result.grade, run_result.first)))));
 }
 
 TEST(ResultTest, LongNamesAndNumbersFitInTheWidth) {
@@ -590,6 +593,7 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
                                                   "axisfit",
                                                   "status",
                                                   "usable",
+                                                  "grade",
                                                   "interrupted",
                                                   "time_limit_reached",
                                                   "verdict",

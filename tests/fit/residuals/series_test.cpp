@@ -9,6 +9,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "fit/data/noise.h"
 #include "fit/residuals/dependence.h"
 #include "fit/residuals/missing_force.h"
 #include "tests/fit/example.h"
@@ -172,13 +173,29 @@ TEST(IsExplained, OfManySamplesIsFivePercent) {
   EXPECT_FALSE(of_mean_square(1.08));
 }
 
-TEST(IsExplained, CountsCorrelatedSamplesAsFewer) {
+// What a model lacks is coloured.
+TEST(IsExplained, ColourExcusesNothing) {
   // Unit variance is scaled to a mean square of 1.21, with an autocorrelation time of 39 samples.
   const double deviation = 1.0 / std::sqrt(1.0 - 0.95 * 0.95);
   const auto values = scaled(autoregressive(0.95, 5000, 1), 1.1 / deviation);
   ASSERT_GT(mean_square(values), 1.1);
-  EXPECT_TRUE(is_explained(series_of(values)));
+  EXPECT_FALSE(is_explained(series_of(values)));
   EXPECT_FALSE(is_explained(series_of(scaled(Normal(1).values(5000), 1.1))));
+}
+
+TEST(IsExplained, NoiseThatWasEstimatedScattersItself) {
+  // In 1000 samples the mean square over the square of a noise from differences scatters by 10 %.
+  int explained = 0, of_known = 0;
+  constexpr int kTrials = 200;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const auto values = Normal(static_cast<std::uint64_t>(trial) + 1).values(1000);
+    ResidualSeries series = series_of(scaled(values, 1.0 / noise_from_differences(values)));
+    of_known += is_explained(series);
+    series.noise = NoiseSource::differences;
+    explained += is_explained(series);
+  }
+  EXPECT_GE(explained, kTrials - 1);
+  EXPECT_LT(of_known, kTrials - 5);
 }
 
 /// The paper's axis to and fro, with residuals by hand.

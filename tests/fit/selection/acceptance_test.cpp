@@ -45,6 +45,7 @@ Candidate candidate(std::size_t strengths = 1, std::size_t shapes = 0) {
   Candidate c;
   c.name = "effect";
   c.strengths.assign(strengths, find_quantity("coulomb_friction.F_c")->index);
+  c.neutral.assign(strengths, 0.0);
   c.shapes.assign(shapes, find_quantity("stribeck_friction.v_st")->index);
   return c;
 }
@@ -311,6 +312,7 @@ class DeterminationTest : public testing::Test {
     job_ = two_recordings(truth, slide(), free);
     candidate_.name = "coulomb_friction";
     candidate_.strengths = {find_quantity("coulomb_friction.F_c")->index};
+    candidate_.neutral = {0.0};
     std::vector<double> values;
     for (const FreeParameter& p : job_.free) values.push_back(p.initial);
     const std::vector<double> strengths{friction};
@@ -376,6 +378,7 @@ TEST_F(DeterminationTest, SeesThatAnotherParameterDoesTheSame) {
   add_effect<CommandOffset>(truth).U_0 = 0.2;
   Job job = two_recordings(truth, truth, {"B_a", "command_offset.U_0"});
   candidate_.strengths = {find_quantity("constant_force.F_0")->index};
+  candidate_.neutral = {0.0};
   const std::vector<double> values{30.0, 0.1}, strengths{4.0};
   job_ = with_candidate(job, candidate_, values, strengths, {});
   result_ = result_at_start(job_);
@@ -387,6 +390,7 @@ TEST_F(DeterminationTest, CountsAGainFromOne) {
   Model<double> truth = slide();
   Job job = two_recordings(truth, truth, {"B_a"});
   candidate_.strengths = {find_quantity("velocity.gain")->index};
+  candidate_.neutral = {1.0};
   const std::vector<double> values{30.0};
   const auto wald = [&](double gain) {
     const std::vector<double> strengths{gain};

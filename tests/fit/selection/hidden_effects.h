@@ -87,6 +87,8 @@ inline std::vector<HiddenEffect> hidden_effects() {
   };
   // With M free as well it would be the same twice.
   secret("added_mass").free = {"B_a"};
+  // Of a slide with one free parameter, twice the force does what half the mass does.
+  secret("added_mass").twin = "K_f";
   secret("cogging_torque").motor = secret("torque_ripple").motor = true;
   secret("cogging_torque").twin = "periodic_force";
   secret("velocity.gain").twin = "acceleration.gain";

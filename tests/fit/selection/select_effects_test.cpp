@@ -122,15 +122,15 @@ TEST(SelectEffects, HoldsOutBlocksWhereThereIsNothingToValidate) {
 TEST(SelectEffects, FindsTwoEffects) {
   Model<double> truth = slide();
   hidden_effect_named("coulomb_friction").put_into(truth);
-  hidden_effect_named("added_mass").put_into(truth);
-  const EffectSelection selection = close(two_recordings(truth, slide(), {"B_a"}));
-  EXPECT_EQ(accepted(selection), (Names{"coulomb_friction", "added_mass"}));
+  hidden_effect_named("stroke_spring").put_into(truth);
+  const EffectSelection selection = close(two_recordings(truth, slide(), {"M", "B_a"}));
+  EXPECT_EQ(accepted(selection), (Names{"coulomb_friction", "stroke_spring"}));
   EXPECT_TRUE(selection.explained);
   ASSERT_EQ(selection.models.size(), 3u);
   EXPECT_LT(selection.models[1].fit.reduced_chi_square, selection.models[0].fit.reduced_chi_square);
   EXPECT_LT(selection.models[2].fit.reduced_chi_square, selection.models[1].fit.reduced_chi_square);
   expect_found(selection, "coulomb_friction.F_c", 5.0);
-  expect_found(selection, "added_mass.dM", 0.5);
+  expect_found(selection, "stroke_spring.k_s", 20.0);
   expect_found(selection, "B_a", 30.0);
 }
 

@@ -29,7 +29,8 @@ TEST(Shortlist, HasAllThatGainMoreThanSix) {
   }
   EXPECT_GT(little, 0);
   std::set<std::string> found;
-  for (const ShortlistEntry& promise : shortlist(job, values, false, 1000).entries) {
+  for (const ShortlistEntry& promise :
+       shortlist(job, values, score_gains(job), false, 1000).entries) {
     found.insert(promise.candidate.name);
     EXPECT_GE(promise.score.gain, 6.0) << promise.candidate.name;
   }

@@ -46,7 +46,7 @@ TEST(ReportPage, HasItsSectionsAndEveryIdOnce) {
   EXPECT_TRUE(ids.contains("trace-velocity-2"));
   EXPECT_TRUE(ids.contains("1-velocity-over-position"));
   EXPECT_TRUE(ids.contains("force-1"));
-  EXPECT_NE(page.find("Usable fit"), std::string::npos);
+  EXPECT_NE(page.find("Explained"), std::string::npos);
 }
 
 TEST(ReportPage, TellsTheStoryOfTheLoop) {

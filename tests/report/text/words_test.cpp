@@ -2,32 +2,56 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace axisfit {
 namespace {
 
-TEST(WordsTest, OfTheVerdictOnAFit) {
+TEST(WordsTest, OfTheGradeOfAFit) {
   using enum FitVerdict::Kind;
+  using Reason = FitGrade::Reason;
   FitResult fit;
-  EXPECT_EQ(verdict_text(fit),
-            "No usable fit: the simulation does not finish at the initial values. Check them and "
+  EXPECT_EQ(grade_text({}, fit),
+            "Not converged: the simulation does not finish at the initial values. Check them and "
             "the axis file for impossible values.");
   fit.verdict = {.kind = no_minimum, .iteration_limit = 50};
-  EXPECT_EQ(verdict_text(fit),
-            "No usable fit: no minimum was found within 50 iterations. Try --starts 20, or free "
+  EXPECT_EQ(grade_text({}, fit),
+            "Not converged: no minimum was found within 50 iterations. Try --starts 20, or free "
             "fewer parameters.");
-  fit.verdict = {.kind = signal_not_followed, .signal = Signal::acceleration, .recording = "step"};
-  EXPECT_EQ(verdict_text(fit),
-            "No usable fit: the model follows the acceleration of step no better than a constant "
-            "would. Try other initial values, --starts 20, or check units and signs of the "
-            "columns.");
   fit.verdict = {.kind = usable};
-  fit.usable = true;
+  EXPECT_EQ(grade_text({Grade::nothing_determined, Reason::parameters}, fit),
+            "Nothing determined: these recordings determine none of the free parameters. Record a "
+            "motion that shows them, or free fewer.");
+  const FitGrade badly{Grade::model_wrong, Reason::simulation, "step", Signal::acceleration, 23.4};
+  EXPECT_EQ(grade_text(badly, fit),
+            "Model wrong: the free-running simulation follows the acceleration of step to only 23 "
+            "%. Check the units and signs of the columns, and try other initial values or --starts "
+            "20.");
+  FitGrade worse = badly;
+  worse.percent = -5.0;
+  EXPECT_NE(grade_text(worse, fit).find("step no better than a constant. Check"),
+            std::string::npos);
+  worse.percent = NAN;
+  EXPECT_NE(grade_text(worse, fit).find("simulation of step does not finish. Check"),
+            std::string::npos);
+  EXPECT_EQ(
+      grade_text({Grade::model_wrong, Reason::force, "step", Signal::velocity, 181.2}, fit),
+      "Model wrong: the force that the model lacks in step is 181 % of the drive's. Check the "
+      "units and signs of the columns and what the axis file declares.");
+  FitGrade drifts = badly;
+  drifts.grade = Grade::usable;
+  drifts.reason = Reason::tracking_only;
+  EXPECT_EQ(grade_text(drifts, fit),
+            "Usable while it tracks recordings: the free-running simulation follows the "
+            "acceleration of step to only 23 %. The parameters describe the forces; do not "
+            "simulate with them for long.");
   fit.reduced_chi_square = 1.00251;
-  EXPECT_EQ(verdict_text(fit), "Usable fit: reduced chi-square 1.003 on the fitted data.");
+  EXPECT_EQ(grade_text({Grade::usable, Reason::residual, "step"}, fit),
+            "Usable: reduced chi-square 1.003 on the fitted data.");
   fit.verdict.undetermined = {"V_L", "k_g"};
-  EXPECT_EQ(verdict_text(fit),
-            "Usable fit: reduced chi-square 1.003 on the fitted data. These recordings do not "
-            "determine V_L, k_g.");
+  EXPECT_EQ(grade_text({Grade::explained, Reason::none}, fit),
+            "Explained: reduced chi-square 1.003 on the fitted data, and no signal shows more than "
+            "its noise. These recordings do not determine V_L, k_g.");
 }
 
 TEST(WordsTest, OfWhatASearchComesTo) {
@@ -44,18 +68,33 @@ TEST(WordsTest, OfWhatASearchComesTo) {
   selection.verdict.kind = none_passes;
   EXPECT_EQ(verdict_text(selection),
             "Something is missing, but no effect passes the tests: see the reasons.");
-  selection.verdict = {effects_accepted, {"added_mass"}, {}, 12.345};
+  selection.verdict = {.kind = hardly_anything, .small = {"spring"}};
+  EXPECT_EQ(verdict_text(selection),
+            "Hardly anything is missing: spring is significant, but hardly lowers the validation "
+            "error.");
+  selection.verdict = {
+      .kind = effects_accepted, .accepted = {"added_mass"}, .validate_percent = 12.345};
   EXPECT_EQ(verdict_text(selection),
             "The model lacked added_mass. With it, the validation error falls by 12.3 %, but not "
             "down to the noise.");
-  selection.verdict = {
-      effects_accepted, {"added_mass", "drive_lag"}, {"spring", "position.gain"}, 99.96};
+  selection.verdict = {.kind = effects_accepted,
+                       .accepted = {"added_mass", "drive_lag"},
+                       .undecided = {"spring", "position.gain"},
+                       .validate_percent = 99.96};
   selection.explained = true;
   EXPECT_EQ(verdict_text(selection),
             "The model lacked added_mass, drive_lag. With them, the validation error falls by 100 "
             "%, and every signal is explained down to its noise. Undecided: spring, position.gain; "
             "none of them was added.");
-  selection.verdict = {undecided, {}, {"spring", "position.gain"}, 0.0};
+  selection.verdict = {.kind = effects_accepted,
+                       .accepted = {"T_z", "spring"},
+                       .corrections = {{"T_z", 7.05e-3, 7.9989e-3}},
+                       .validate_percent = 71.4};
+  EXPECT_EQ(verdict_text(selection),
+            "T_z is 0.007999 s, not the 0.00705 s of the axis file. The model lacked spring. With "
+            "them, the validation error falls by 71.4 %, and every signal is explained down to its "
+            "noise.");
+  selection.verdict = {.kind = undecided, .undecided = {"spring", "position.gain"}};
   EXPECT_EQ(verdict_text(selection), "Undecided: spring, position.gain; none of them was added.");
 }
 
@@ -64,12 +103,13 @@ TEST(WordsTest, OfARunNameTheFitOnce) {
   run_result.first.usable = true;
   run_result.first.verdict.kind = FitVerdict::Kind::usable;
   run_result.first.reduced_chi_square = 2.5;
-  EXPECT_EQ(overall_verdict(run_result), "Usable fit: reduced chi-square 2.5 on the fitted data.");
+  run_result.grade = {Grade::usable, FitGrade::Reason::residual};
+  EXPECT_EQ(overall_verdict(run_result), "Usable: reduced chi-square 2.5 on the fitted data.");
   run_result.selection.emplace();
   run_result.selection->result.fit = run_result.first;
   run_result.selection->verdict.kind = SelectionVerdict::Kind::none_passes;
   EXPECT_EQ(overall_verdict(run_result),
-            "Usable fit. Something is missing, but no effect passes the tests: see the reasons.");
+            "Usable. Something is missing, but no effect passes the tests: see the reasons.");
 }
 
 TEST(WordsTest, OfTheDecisionOnAnEffect) {
@@ -161,12 +201,13 @@ TEST(WordsTest, OfWhatDiscriminates) {
 
 TEST(WordsTest, InColourAreTheSameWords) {
   FitResult fit;
-  EXPECT_TRUE(verdict_text(fit, true).starts_with("\033[31mNo usable fit\033[0m: the simulation"));
-  fit.usable = true;
-  fit.verdict.kind = FitVerdict::Kind::usable;
+  EXPECT_TRUE(
+      grade_text({}, fit, true).starts_with("\033[31mNot converged\033[0m: the simulation"));
   fit.reduced_chi_square = 1.0;
-  EXPECT_EQ(verdict_text(fit, true),
-            "\033[32mUsable fit\033[0m: reduced chi-square 1 on the fitted data.");
+  EXPECT_EQ(grade_text({Grade::usable, FitGrade::Reason::residual}, fit, true),
+            "\033[33mUsable\033[0m: reduced chi-square 1 on the fitted data.");
+  EXPECT_TRUE(grade_text({Grade::explained, FitGrade::Reason::none}, fit, true)
+                  .starts_with("\033[32mExplained\033[0m: "));
 }
 
 TEST(WordsTest, OfTheEndOfARun) {
