@@ -563,7 +563,8 @@ class Initialiser {
     if (!force_source() || position == nullptr) return {};
     const std::vector<double> none;
     const double rate = suggested_observer_gain(first.time.values, position->values,
-                                                velocity ? velocity->values : none);
+                                                velocity ? velocity->values : none,
+                                                input_of(sources_.front()).values);
     return "fit:\n" +
            comment(
                "The position is an open-loop integral of the force: a free-running simulation "

@@ -85,6 +85,8 @@ Json recording_json(const Recording& recording, const RecordingResult& result,
           {"start_s", recording.times.front()},
           {"end_s", recording.times.back()},
           {"events", result.free_running.events},
+          {"command_sigma", recording.command_sigma},
+          {"command_sigma_source", noise_name(recording.command_noise)},
           {"warnings", warnings},
           {"signals", std::move(signals)}};
 }
@@ -145,6 +147,7 @@ Json assumptions_json(const FitResult& fit) {
            "stationary, with the variance and autocorrelation estimated for each signal, not below "
            "the stated noise"},
           {"model", "linear over the intervals"},
+          {"input_noise_fraction", fit.input_part},
           {"autocorrelation_time", fit.autocorrelation_time},
           {"degrees_of_freedom", fit.degrees_of_freedom}};
 }
@@ -355,6 +358,8 @@ Json recording_check_json(const Job& job, const Recording& recording, const Reco
           {"command",
            {{"lowest", check.command.low},
             {"highest", check.command.high},
+            {"sigma", recording.command_sigma},
+            {"sigma_source", noise_name(recording.command_noise)},
             {"switches", check.switches},
             {"fraction_of_time_at_maximum", check.at_maximum}}},
           {"signals", std::move(signals)},

@@ -54,6 +54,10 @@ struct Recording {
   Role role = Role::fit;
   Samples times;     ///< s, increasing, at least two
   Schedule command;  ///< V
+  /// Standard deviation of the noise with which the command was recorded, V: white, of each value
+  /// of the schedule. Zero: the axis received exactly this command.
+  double command_sigma = 0.0;
+  NoiseSource command_noise = NoiseSource::given;  ///< or differences
   std::vector<Measurement> measurements;
   InitialState initial_state = InitialState::given;
   /// Samples at the start from which an initial state is taken.

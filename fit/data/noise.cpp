@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace axisfit {
@@ -27,7 +28,10 @@ double resolution_of(std::span<const double> values) {
   return moved > 8 && on_grid > 9 * moved / 10 ? step : 0.0;
 }
 
-double noise_from_differences(std::span<const double> values) {
+namespace {
+
+/// What noise_from_differences() finds where there is no grid.
+double white_part(std::span<const double> values) {
   constexpr std::size_t kOrder = 6;
   constexpr double kGain = 924.0;  // sum of the squared binomial coefficients of the sixth order
   if (values.size() < kOrder + 3) return 0.0;
@@ -40,7 +44,25 @@ double noise_from_differences(std::span<const double> values) {
   const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
   std::nth_element(d.begin(), middle, d.end());
   const double spread = *middle / 0.6745;  // median of |N(0, 1)|
-  return std::max(spread / std::sqrt(kGain), resolution_of(values) / std::sqrt(12.0));
+  return spread / std::sqrt(kGain);
+}
+
+}  // namespace
+
+double noise_from_differences(std::span<const double> values) {
+  return std::max(white_part(values), resolution_of(values) / std::sqrt(12.0));
+}
+
+double noise_of_input(std::span<const double> values) {
+  return white_part(values) > 0.0 ? noise_from_differences(values) : 0.0;
+}
+
+double standard_deviation(std::span<const double> values) {
+  const double n = static_cast<double>(std::max<std::size_t>(1, values.size()));
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double sum = 0.0;
+  for (const double x : values) sum += (x - mean) * (x - mean);
+  return std::sqrt(sum / n);
 }
 
 }  // namespace axisfit

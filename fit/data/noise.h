@@ -13,6 +13,13 @@ namespace axisfit {
 /// needed, fewer give zero.
 double noise_from_differences(std::span<const double> values);
 
+/// The same of a recorded input; zero for one that is constant from step to step, whose values lie
+/// on a grid because somebody chose them.
+double noise_of_input(std::span<const double> values);
+
+/// About the mean; zero for no values.
+double standard_deviation(std::span<const double> values);
+
 /// The step of the grid on which the values lie; zero when they lie on none.
 double resolution_of(std::span<const double> values);
 

@@ -151,8 +151,8 @@ std::optional<RateRatio> rate_ratio(std::span<const double> times, std::span<con
 }
 
 double suggested_observer_gain(std::span<const double> times, std::span<const double> position,
-                               std::span<const double> velocity) {
-  constexpr double kMissing = 0.01, kAboveNoise = 10.0;
+                               std::span<const double> velocity, std::span<const double> command) {
+  constexpr double kMissing = 0.01, kAboveNoise = 10.0, kBias = 0.25;
   const bool of_velocity = !velocity.empty();
   const std::span<const double> values = of_velocity ? velocity : position;
   const std::size_t n = times.size();
@@ -173,7 +173,10 @@ double suggested_observer_gain(std::span<const double> times, std::span<const do
   const double rate =
       of_velocity ? kMissing * acceleration / moved : std::sqrt(kMissing * acceleration / moved);
   const Sampling found = sampling(times);
-  const double highest = 0.3 / found.interval;
+  const double command_noise = noise_of_input(command) / standard_deviation(command);
+  const double highest =
+      std::min(0.3 / found.interval,
+               kBias / (command_noise * std::sqrt(found.interval * found.duration)));
   return std::isfinite(rate) ? std::clamp(rate, std::min(10.0 / found.duration, highest), highest)
                              : highest;
 }

@@ -10,7 +10,9 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "fit/data/noise.h"
 #include "fit/estimation/continuation.h"
+#include "fit/estimation/input_noise.h"
 #include "fit/estimation/residual.h"
 
 namespace axisfit {
@@ -73,14 +75,6 @@ double mean_square_error(const Measurement& measured, const std::vector<double>&
     ++n;
   }
   return n > 0 ? sum / static_cast<double>(n) : 0.0;
-}
-
-double standard_deviation(const std::vector<double>& values) {
-  const double n = static_cast<double>(values.size());
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
-  double sum = 0.0;
-  for (const double x : values) sum += (x - mean) * (x - mean);
-  return std::sqrt(sum / n);
 }
 
 RecordingResult evaluate_recording(const Job& job, const ParameterSpace& space, std::size_t index,
@@ -201,9 +195,8 @@ FitResult estimate(const Job& job, const RunContext& context) {
     result.recordings[r] = evaluate_recording(job, space, r, solved.u, result.observer_gain);
   });
 
-  result.at_solution =
-      std::make_shared<const Linearization>(linearize(job, space, solved.u, result.observer_gain));
-  const Linearization& at_solution = *result.at_solution;
+  Linearization at_solution = linearize(job, space, solved.u, result.observer_gain);
+  at_solution.input_noise = input_noise(job, space, solved.u, result.observer_gain, at_solution);
   const double degrees_of_freedom =
       static_cast<double>(at_solution.residuals.size()) - static_cast<double>(space.size());
   if (at_solution.finite && degrees_of_freedom > 0.0)
@@ -212,6 +205,7 @@ FitResult estimate(const Job& job, const RunContext& context) {
   const std::vector<double> values = space.values(solved.u);
   for (std::size_t i = 0; i < space.size(); ++i)
     result.parameters.push_back({space.name(i), values[i], found.parameters[i]});
+  result.input_part = found.input_part;
   result.correlation = std::move(found.correlation);
   result.degrees_of_freedom = found.degrees_of_freedom;
   result.autocorrelation_time = found.autocorrelation_time;
@@ -221,6 +215,7 @@ FitResult estimate(const Job& job, const RunContext& context) {
   result.status = !solved.usable     ? Status::failed
                   : solved.converged ? Status::converged
                                      : Status::not_converged;
+  result.at_solution = std::make_shared<const Linearization>(std::move(at_solution));
   result.verdict = verdict_of(job, result);
   result.usable = result.verdict.kind == FitVerdict::Kind::usable;
   return result;

@@ -102,6 +102,7 @@ struct FitResult {
   double degrees_of_freedom = 0.0;  ///< independent samples, parameters subtracted
   double autocorrelation_time =
       1.0;                          ///< samples per independent sample, of the most coloured signal
+  double input_part = 0.0;          ///< that noise of the input makes, see uncertainty.h
   Identifiability identifiability;  ///< at the solution
   double observer_gain = 0.0;       ///< of the last stage
   int iterations = 0;               ///< of the best start, all stages

@@ -277,7 +277,11 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
   return result;
 }
 
-Linearization linearize(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u) {
+namespace {
+
+/// The costs and then the priors at u, all rows of one series; with their Jacobian or without.
+Linearization evaluated(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u,
+                        bool with_jacobian) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Linearization result;
   SeriesRows& all = result.series.emplace_back();
@@ -286,18 +290,31 @@ Linearization linearize(const ParameterSpace& space, Costs costs, const Eigen::V
   std::vector<Eigen::Index> first{0};
   for (const auto& cost : costs) first.push_back(first.back() + cost->num_residuals());
   result.residuals.resize(first.back());
-  result.jacobian.resize(first.back(), u.size());
+  if (with_jacobian) result.jacobian.resize(first.back(), u.size());
   std::atomic<bool> finite = true;
   parallel_for(costs.size(), [&](std::size_t i) {
     const Eigen::Index row = first[i], n = costs[i]->num_residuals();
-    RowMajor block(n, u.size());
+    RowMajor block(with_jacobian ? n : 0, u.size());
     const double* parameters = u.data();
     double* jacobian = block.data();
-    if (!costs[i]->Evaluate(&parameters, result.residuals.data() + row, &jacobian)) finite = false;
-    result.jacobian.middleRows(row, n) = block;
+    if (!costs[i]->Evaluate(&parameters, result.residuals.data() + row,
+                            with_jacobian ? &jacobian : nullptr))
+      finite = false;
+    if (with_jacobian) result.jacobian.middleRows(row, n) = block;
   });
   result.finite = finite;
   return result;
+}
+
+}  // namespace
+
+Linearization linearize(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u) {
+  return evaluated(space, std::move(costs), u, true);
+}
+
+Eigen::VectorXd residuals_at(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u) {
+  Linearization at = evaluated(space, std::move(costs), u, false);
+  return at.finite ? std::move(at.residuals) : Eigen::VectorXd();
 }
 
 }  // namespace axisfit

@@ -47,4 +47,7 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
 /// one series.
 Linearization linearize(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u);
 
+/// Its residuals alone; none where they are not finite.
+Eigen::VectorXd residuals_at(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u);
+
 }  // namespace axisfit

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace axisfit {
@@ -13,12 +14,20 @@ struct SeriesRows {
   Eigen::Index first = 0, count = 0;
 };
 
+/// What noise of the recorded inputs does to the residuals: they change by d when a draw of it is
+/// added to the inputs.
+struct InputNoise {
+  Eigen::MatrixXd gradients;     ///< J'd, a column for each draw
+  Eigen::MatrixXd mean_squares;  ///< of what no change of u makes of d, per series (rows) and draw
+};
+
 /// Residuals at u, those of the priors last, and their Jacobian with respect to u.
 struct Linearization {
   bool finite = false;
   std::vector<SeriesRows> series;  ///< all rows but those of the priors
   Eigen::VectorXd residuals;
   Eigen::MatrixXd jacobian;
+  std::optional<InputNoise> input_noise;  ///< none where every input is exact, or not asked for
 };
 
 }  // namespace axisfit

@@ -57,4 +57,9 @@ Linearization linearize(const Job& job, const ParameterSpace& space, const Eigen
   return result;
 }
 
+Eigen::VectorXd residuals_at(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
+                             double observer_gain) {
+  return residuals_at(space, recording_costs(job, space, observer_gain, nullptr), u);
+}
+
 }  // namespace axisfit

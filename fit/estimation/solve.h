@@ -18,4 +18,8 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
 Linearization linearize(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
                         double observer_gain);
 
+/// The residuals alone; none where a simulation does not finish.
+Eigen::VectorXd residuals_at(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
+                             double observer_gain);
+
 }  // namespace axisfit

@@ -102,6 +102,36 @@ Eigen::MatrixXd sandwich_middle(const Linearization& at, const Autocovariances& 
   return sum + priors.transpose() * priors;
 }
 
+/// Covariance of the estimates of the parameters `chosen`, and the factors of their standard errors
+/// that make half of a 95 % interval.
+struct Spread {
+  Eigen::MatrixXd covariance;
+  Eigen::VectorXd student;
+  double input_part = 0.0;  ///< of the variances, the largest that noise of the input makes
+};
+
+Spread spread_of(const Linearization& at, const Autocovariances& autocovariances,
+                 const std::vector<Eigen::Index>& chosen, const NormalInverse& inverse, double t) {
+  const Eigen::MatrixXd j = at.jacobian(Eigen::all, chosen);
+  const Eigen::MatrixXd& n = inverse.matrix();
+  Spread found{n * sandwich_middle(at, autocovariances, j) * n,
+               Eigen::VectorXd::Constant(j.cols(), t)};
+  if (!at.input_noise) return found;
+  const Eigen::MatrixXd steps = n * at.input_noise->gradients(chosen, Eigen::all);
+  const auto draws = static_cast<double>(steps.cols());
+  for (Eigen::Index k = 0; k < j.cols(); ++k) {
+    const double of_input = steps.row(k).squaredNorm() / draws;
+    const double implied = n(k, k) + of_input;
+    found.input_part = std::max(found.input_part, of_input / implied);
+    if (!(implied > found.covariance(k, k))) continue;
+    const double factor = std::sqrt(implied / found.covariance(k, k));
+    found.covariance.row(k) *= factor;
+    found.covariance.col(k) *= factor;
+    found.student[k] = student_95(draws);
+  }
+  return found;
+}
+
 }  // namespace
 
 double student_95(double degrees_of_freedom) {
@@ -132,29 +162,30 @@ Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
   const double t = student_95(result.degrees_of_freedom);
 
   if (!inside.empty()) {
-    const Eigen::MatrixXd j = at_solution.jacobian(Eigen::all, inside);
-    const NormalInverse inverse(j);
-    const Eigen::MatrixXd covariance =
-        inverse.matrix() * sandwich_middle(at_solution, autocovariances, j) * inverse.matrix();
-    for (Eigen::Index k = 0; k < j.cols(); ++k) {
+    const NormalInverse inverse(at_solution.jacobian(Eigen::all, inside));
+    const auto [covariance, student, input_part] =
+        spread_of(at_solution, autocovariances, inside, inverse, t);
+    result.input_part = input_part;
+    for (Eigen::Index k = 0; k < covariance.cols(); ++k) {
       if (inverse.is_undetermined(k)) continue;
       const auto i = static_cast<std::size_t>(inside[static_cast<std::size_t>(k)]);
       const double error = std::sqrt(covariance(k, k));
       const double here = u[inside[static_cast<std::size_t>(k)]];
+      const double half = student[k] * error;
       ParameterUncertainty& p = result.parameters[i];
       p.inflation = error / std::sqrt(inverse.matrix()(k, k));
       // An error of more than a factor of e, or one that spans the allowed range, is no knowledge.
-      const double ratio = space[i].logarithmic ? error : 2.0 * t * error / (upper(i) - lower(i));
+      const double ratio = space[i].logarithmic ? error : 2.0 * half / (upper(i) - lower(i));
       constexpr double kWeak = 0.25;
       p.determined = ratio < 1.0;
       if (!p.determined) continue;
       p.weak = ratio > kWeak;
       p.standard_error = error * space.slope(i, here);
-      p.lower = std::max(space[i].lower, space.value(i, here - t * error));
-      p.upper = std::min(space[i].upper, space.value(i, here + t * error));
+      p.lower = std::max(space[i].lower, space.value(i, here - half));
+      p.upper = std::min(space[i].upper, space.value(i, here + half));
     }
-    for (Eigen::Index a = 0; a < j.cols(); ++a)
-      for (Eigen::Index b = 0; b < j.cols(); ++b) {
+    for (Eigen::Index a = 0; a < covariance.cols(); ++a)
+      for (Eigen::Index b = 0; b < covariance.cols(); ++b) {
         const Eigen::Index row = inside[static_cast<std::size_t>(a)];
         const Eigen::Index column = inside[static_cast<std::size_t>(b)];
         if (result.parameters[static_cast<std::size_t>(row)].determined &&
@@ -167,9 +198,10 @@ Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
   if (inside.size() == space.size()) return result;
   const NormalInverse inverse(at_solution.jacobian);
   if (inverse.has_undetermined()) return result;
-  const Eigen::MatrixXd covariance =
-      inverse.matrix() * sandwich_middle(at_solution, autocovariances, at_solution.jacobian) *
-      inverse.matrix();
+  std::vector<Eigen::Index> all(space.size());
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
+  const auto [covariance, student, input_part] =
+      spread_of(at_solution, autocovariances, all, inverse, t);
   // Where the minimum would be if there were no bounds.
   const Eigen::VectorXd step =
       -inverse.matrix() * (at_solution.jacobian.transpose() * at_solution.residuals);
@@ -180,7 +212,7 @@ Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
     p.inflation = std::sqrt(covariance(k, k) / inverse.matrix()(k, k));
     const double inwards = u[k] - lower(i) < upper(i) - u[k] ? 1.0 : -1.0;
     const double beyond = std::max(0.0, -inwards * step[k]);
-    const double variance = t * t * covariance(k, k);
+    const double variance = student[k] * student[k] * covariance(k, k);
     if (!std::isfinite(variance)) continue;
     // sqrt(variance + beyond^2) - beyond, without its cancellation and overflow
     const double whole = std::hypot(std::sqrt(variance), beyond) + beyond;

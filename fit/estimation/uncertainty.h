@@ -48,6 +48,9 @@ struct Uncertainty {
   double degrees_of_freedom = 0.0;  ///< independent samples, parameters subtracted
   double autocorrelation_time =
       1.0;  ///< samples per independent sample, of the most coloured signal
+  /// Of the variance of an estimate under noise of the stated sizes, what that of the input makes:
+  /// of the estimate where it is largest.
+  double input_part = 0.0;
 };
 
 /// Whether residuals with that autocorrelation time count as coloured.
@@ -73,7 +76,10 @@ double student_95(double degrees_of_freedom);
 ///   covariance = (J'J)^-1 J'G J (J'J)^-1
 ///
 /// through a singular value decomposition of J, columns scaled. Intervals are Student's. Priors
-/// count as one more measurement each. A parameter at its bound has the interval inside it whose
+/// count as one more measurement each. Where the inputs are noisy, no standard error is smaller than
+/// white noise of the stated sizes, in readings and inputs, makes it (see input_noise.h): a residual
+/// that drifts as slowly as that of a noisy input shows too little of itself in one recording.
+///  A parameter at its bound has the interval inside it whose
 /// likelihood ratio is not significant, with the others free; the others have theirs with it fixed.
 ///
 /// Literature: E. A. Morelli and V. Klein, Journal of Aircraft 34 (1997), for coloured residuals;

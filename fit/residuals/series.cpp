@@ -5,9 +5,26 @@
 #include <numeric>
 
 #include "base/linear_algebra.h"
+#include "fit/estimation/input_noise.h"
 #include "fit/estimation/solve.h"
 
 namespace axisfit {
+namespace {
+
+/// Enters what the draws of the inputs' noise add to the series of `at`.
+void add_input_noise(const Job& job, const Linearization& at, const InputNoise& noise, bool fitted,
+                     std::vector<ResidualSeries>& list) {
+  for (std::size_t s = 0; s < at.series.size(); ++s) {
+    const SeriesRows& rows = at.series[s];
+    ResidualSeries* series = find_series(list, {rows.recording, rows.measurement, fitted});
+    if (series == nullptr) continue;
+    series->input_noise = noise.mean_squares.row(static_cast<Eigen::Index>(s)).maxCoeff();
+    series->input_noise_given =
+        job.recordings[rows.recording].command_noise == NoiseSource::given;
+  }
+}
+
+}  // namespace
 
 std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& result) {
   std::vector<ResidualSeries> list;
@@ -22,6 +39,8 @@ std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& res
       static_cast<SeriesKey&>(fitted) = {r, m, true};
       static_cast<SeriesKey&>(unfitted) = {r, m, false};
       fitted.noise = measurement.noise;
+      // From other samples than these.
+      if (measurement.noise != NoiseSource::fit) unfitted.noise = measurement.noise;
       const std::size_t first = recording.score_initial_samples ? 0 : recording.initial_samples;
       for (std::size_t i = first; i < recording.times.size(); ++i) {
         if (!measurement.counts(i)) continue;
@@ -34,6 +53,8 @@ std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& res
         if (!series->values.empty()) list.push_back(std::move(*series));
     }
   }
+  if (result.at_solution && result.at_solution->input_noise)
+    add_input_noise(job, *result.at_solution, *result.at_solution->input_noise, true, list);
   return list;
 }
 
@@ -93,6 +114,11 @@ void allow_for_parameters(const Job& job, const FitResult& result,
     if (ResidualSeries* series = find_series(list, {rows.recording, rows.measurement, false}))
       series->allowance =
           shown.middleRows(rows.first, rows.count).squaredNorm() / static_cast<double>(rows.count);
+  for (Recording& r : other.recordings)
+    if (r.command_noise != NoiseSource::given) r.command_sigma = 0.0;
+  if (const auto noise = input_noise(other, space, space.internal(values_of(result)),
+                                     result.observer_gain, unfitted))
+    add_input_noise(other, unfitted, *noise, false, list);
 }
 
 bool is_explained(const ResidualSeries& series) {
@@ -102,8 +128,9 @@ bool is_explained(const ResidualSeries& series) {
   // Standard error of the mean square of white noise, times root: about the true size, or about one
   // that noise_from_differences() found in as many samples (both scatter; by simulation).
   const double spread = series.noise == NoiseSource::given ? std::sqrt(2.0) : 3.2;
+  const double input = series.input_noise_given ? series.input_noise : 0.0;
   return mean_square(series.values) <
-         1.0 + std::max(0.05, 4.0 * spread / root) + 4.0 * series.allowance;
+         1.0 + std::max(0.05, 4.0 * spread / root) + 4.0 * series.allowance + input;
 }
 
 }  // namespace axisfit

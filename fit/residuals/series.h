@@ -32,6 +32,10 @@ struct ResidualSeries : SeriesKey {
   /// What the uncertainty of the estimates alone adds to the mean square, on average; zero where
   /// the series was fitted, and until allow_for_parameters() finds it.
   double allowance = 0.0;
+  /// What noise of the input of the stated size adds to the mean square, the most of its draws.
+  double input_noise = 0.0;
+  /// Whether the size of that is given. One that was estimated excuses nothing.
+  bool input_noise_given = false;
 };
 
 /// The residuals by which a fit is assessed: of the simulation as it was fitted, free-running or
@@ -51,12 +55,13 @@ double mean_square(std::span<const double> values);
 double autocorrelation_time(std::span<const double> values);
 
 /// Finds the allowances of all series that were not fitted: what the fit leaves open, another
-/// motion may show all the more.
+/// motion may show all the more. Likewise what noise of their inputs adds, where it is given.
 void allow_for_parameters(const Job& job, const FitResult& result,
                           std::vector<ResidualSeries>& list);
 
 /// Whether a series shows no more than its noise: a mean square within 5 % of one, or within four
-/// standard errors of that of white noise, the allowance four times. The colour of the residual
+/// standard errors of that of white noise, the allowance four times, and noise of the input where
+/// its size is given. The colour of the residual
 /// widens nothing, for what a model lacks is coloured, too. Where the noise was estimated from the
 /// series itself, its size carries no information: then, whether it is white.
 bool is_explained(const ResidualSeries& series);

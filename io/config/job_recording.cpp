@@ -41,7 +41,14 @@ Section override_keys() {
 /// The input and all that can be measured.
 Section signal_keys() {
   const Map column{column_keys(), 0, false, "column"};
-  Section keys{Key::optional("command", column, DefaultText{"none if another input is given"},
+  Section input = column_keys();
+  input.push_back(Key::optional("sigma", NumberWithUnit{"V", 0.0},
+                                DefaultText{"of a force source estimated from the samples; 0 V of "
+                                            "other drives"},
+                                "standard deviation of the noise; 0 V: the axis received exactly "
+                                "these values"));
+  Section keys{Key::optional("command", Map{std::move(input), 0, false, "input_column"},
+                             DefaultText{"none if another input is given"},
                              "set-velocity voltage U in V; each value holds until the next sample"),
                Key::optional("position_reference", column, DefaultText{"not used with a command"},
                              "in m, in place of the command: the slave control unit of the axis "
@@ -206,16 +213,31 @@ class RecordingReader {
     if (reference && !command) return read_reference(data, *reference, signals, times);
     std::optional<Values> input;
     if (force) {
-      input = read_column(data, *force, "N");
+      input = read_noisy_input(data, *force, "N", recording);
       // The source turns U into K_f U newtons; a force in newtons needs no gain.
       const std::size_t gain = find_quantity("K_f")->index;
       if (std::ranges::any_of(recording.overrides, [&](const auto& o) { return o.first == gain; }))
         force->error("a drive_force is already in newtons: remove K_f from 'set'");
       recording.overrides.emplace_back(gain, 1.0);
     } else if (command) {
-      input = read_column(data, *command, "V");
+      input = read_noisy_input(data, *command, "V", recording);
     }
     if (input && times && !same_length(force ? *force : *command, *input, *times)) input.reset();
+    return input;
+  }
+
+  /// Its noise is taken from its samples where it was measured, as is what drives a force source.
+  std::optional<Values> read_noisy_input(const RecordingFile& data, const ConfigNode& node,
+                                         std::string_view unit, Recording& recording) const {
+    ConfigMap map(node, measurement_keys("command"));
+    auto input = read_column(data, map, unit);
+    if (const auto sigma = map.optional("sigma")) {
+      recording.command_sigma = sigma->as_number_with_unit({std::string(unit), 0.0}).value_or(0.0);
+    } else if (input && capabilities(rig_.model.structure).is_force_driven) {
+      recording.command_sigma = noise_of_input(*input);
+      recording.command_noise = NoiseSource::differences;
+    }
+    map.finish();
     return input;
   }
 

@@ -15,12 +15,6 @@ namespace {
 /// A number for the eye.
 std::string short_number(double value) { return fmt::format("{:.4g}", value); }
 
-bool drives_by_force(const Recording& recording, const Model<double>& model) {
-  static const std::size_t kGain = find_quantity("K_f")->index;
-  return capabilities(model.structure).is_force_driven &&
-         std::ranges::any_of(recording.overrides, [](const auto& o) { return o.first == kGain; });
-}
-
 std::string header_text(const Recording& recording, const Sampling& sampling) {
   std::string text = fmt::format(
       "{} ({}): {} samples in {} s, {} Hz", recording.name, role_name(recording, true),
@@ -44,7 +38,10 @@ std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& c
     std::vector<std::vector<std::string>> rows{
         {"", "lowest", "highest", "unit", "sigma", "noise", "resolution", ""}};
     rows.push_back({force ? "drive_force" : "command", short_number(check.command.low),
-                    short_number(check.command.high), force ? "N" : "V", "", "", "",
+                    short_number(check.command.high), force ? "N" : "V",
+                    recording.command_sigma > 0.0 ? fmt::format("{:.2g}", recording.command_sigma)
+                                                  : "",
+                    "", "",
                     fmt::format("{} switches", check.switches)});
     const double largest = std::max(std::abs(check.command.low), std::abs(check.command.high));
     if (!force && largest >= job.controller.limit && check.at_maximum > 0.01)

@@ -38,7 +38,7 @@ std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty
                           bool colour = false);
 
 /// What the intervals rest on, and what is known instead of parameters that are not determined.
-std::string uncertainty_text(const FitResult& result);
+std::string uncertainty_text(const Job& job, const FitResult& result);
 
 /// What is known of the parameters together: weak directions, and the combinations that are
 /// determined.

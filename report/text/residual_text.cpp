@@ -127,6 +127,13 @@ std::string residual_verdict(const Job& job, const Diagnosis& diagnosis, bool co
     std::string text = fmt::format("{}: up to {:.3g} % of the residual, in the {}. ",
                                    toned("Unexplained", Tone::caution, colour),
                                    worst->unexplained_percent, name_of(job, worst->series));
+    const bool by_input = std::ranges::all_of(tests, [](const SeriesTest& t) {
+      return t.explained || t.reduced_chi_square < 1.0 + t.series.input_noise;
+    });
+    if (by_input)
+      text += fmt::format(
+          "As much is left by {}: if the axis never received this noise, give it as sigma. ",
+          input_noise_text(job));
     if (diagnosis.suspected_effects.empty())
       text += "No effect that axisfit knows explains it.";
     else

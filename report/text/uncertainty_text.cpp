@@ -60,7 +60,7 @@ std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty
   return format_table(rows, {Alignment::left, Alignment::wrapped});
 }
 
-std::string uncertainty_text(const FitResult& result) {
+std::string uncertainty_text(const Job& job, const FitResult& result) {
   const double excess = std::sqrt(result.reduced_chi_square);
   std::string noise = excess > 1.0
                           ? fmt::format("residuals as observed, {:.3g} times the noise", excess)
@@ -69,6 +69,10 @@ std::string uncertainty_text(const FitResult& result) {
                ? fmt::format(", with an autocorrelation time of up to {:.3g} samples",
                              result.autocorrelation_time)
                : ", uncorrelated in time";
+  // Less than a tenth of a variance is 5 % of the error.
+  if (constexpr double kPart = 0.1; result.input_part > kPart)
+    noise += fmt::format(", and {}, which makes up to {:.2g} % of their squares",
+                         input_noise_text(job), 100.0 * result.input_part);
   return paragraph("Standard errors and intervals assume " + noise + ".", 2) +
          correlation_text(result) + identifiability_text(result.identifiability);
 }

@@ -295,6 +295,23 @@ std::string discrimination_text(const Discrimination& discrimination) {
                             discrimination.size);
 }
 
+bool drives_by_force(const Recording& recording, const Model<double>& model) {
+  static const std::size_t kGain = find_quantity("K_f")->index;
+  return capabilities(model.structure).is_force_driven &&
+         std::ranges::any_of(recording.overrides, [](const auto& o) { return o.first == kGain; });
+}
+
+std::string input_noise_text(const Job& job) {
+  const Recording& noisiest =
+      *std::ranges::max_element(job.recordings, {}, &Recording::command_sigma);
+  const bool force = drives_by_force(noisiest, job.model);
+  return fmt::format("noise of {} in the {}{}",
+                     with_unit(fmt::format("{:.3g}", noisiest.command_sigma), force ? "N" : "V"),
+                     force ? "drive force" : "command",
+                     noisiest.command_noise == NoiseSource::given ? ""
+                                                                  : ", estimated from its samples");
+}
+
 std::string stop_reason(const RunResult& run_result) {
   return run_result.time_limit ? fmt::format(" by the time limit of {:g} s", *run_result.time_limit)
                                : "";

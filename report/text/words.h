@@ -33,6 +33,12 @@ std::string motion_text(const Motion& motion);
 /// In which motion and signal two undecided effects differ, one sentence.
 std::string discrimination_text(const Discrimination& discrimination);
 
+/// Whether the input of a recording is a force in newtons.
+bool drives_by_force(const Recording& recording, const Model<double>& model);
+
+/// "noise of 0.02 V in the command, estimated from its samples": the largest of the recordings.
+std::string input_noise_text(const Job& job);
+
 /// " by the time limit of 60 s", or nothing: to follow "stopped".
 std::string stop_reason(const RunResult& run_result);
 

@@ -123,7 +123,8 @@ TEST(ResultTest, JsonHasItsDocumentedKeys) {
   for (const Json& recording : json.at("recordings")) {
     EXPECT_EQ(keys(recording),
               (std::vector<std::string>{"name", "file", "role", "samples", "start_s", "end_s",
-                                        "events", "warnings", "signals"}));
+                                        "events", "command_sigma", "command_sigma_source",
+                                        "warnings", "signals"}));
     for (const Json& signal : recording.at("signals"))
       EXPECT_EQ(keys(signal),
                 (std::vector<std::string>{"name", "unit", "fitted", "rmse", "nrmse_percent",
@@ -518,10 +519,10 @@ TEST(ResultTest, StrongCorrelationsOfEitherSignAreNamed) {
   for (const char* name : {"M", "B_a", "K_f"}) fit.parameters.push_back({name, 1.0, {}});
   fit.reduced_chi_square = 1.0;
   fit.correlation = Eigen::Matrix3d{{1.0, 0.96, -0.98}, {0.96, 1.0, 0.94}, {-0.98, 0.94, 1.0}};
-  EXPECT_NE(on_one_line(uncertainty_text(fit))
+  EXPECT_NE(on_one_line(uncertainty_text({}, fit))
                 .find("Strongly correlated: M and K_f (-0.98), M and B_a (0.96)."),
             std::string::npos)
-      << uncertainty_text(fit);
+      << uncertainty_text({}, fit);
 }
 
 TEST(ResultTest, TheNextExperimentPredictsWhatIsKnownAfterIt) {

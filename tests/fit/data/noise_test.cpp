@@ -67,5 +67,16 @@ TEST(Noise, OfAConstantIsZero) {
   EXPECT_EQ(noise_from_differences(std::vector<double>{1.0, 2.0, 1.0}), 0.0);
 }
 
+TEST(Noise, OfAnInputIsNoneWhereSomebodyChoseItsValues) {
+  std::vector<double> levels(1000);
+  for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = i / 100 % 2 == 0 ? 5.0 : -5.0;
+  EXPECT_GT(noise_from_differences(levels), 1.0);  // of its grid
+  EXPECT_EQ(noise_of_input(levels), 0.0);
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal(0.0, 0.01);
+  for (double& x : levels) x += normal(generator);
+  EXPECT_NEAR(noise_of_input(levels), 0.01, 2e-3);
+}
+
 }  // namespace
 }  // namespace axisfit

@@ -62,18 +62,25 @@ TEST(SuggestedObserverGainTest, ShowsAHundredthOfTheAccelerationAboveTheNoise) {
              &velocity = recording.measurements[1].values;
   // An acceleration of 0.1 kRate^2 / sqrt(2), noise of 1e-5 m and 2e-3 m/s.
   const double missing = 0.01 * 0.1 * kRate * kRate / std::sqrt(2.0);
-  EXPECT_NEAR(suggested_observer_gain(recording.times, position, {}), std::sqrt(missing / 1e-4),
+  EXPECT_NEAR(suggested_observer_gain(recording.times, position, {}, {}), std::sqrt(missing / 1e-4),
               1.0);
   // The loosest: ten times in two seconds.
   EXPECT_NEAR(missing / 2e-2, 2.4, 0.1);
-  EXPECT_NEAR(suggested_observer_gain(recording.times, {}, velocity), 10.0 / 2.0, 0.1);
+  EXPECT_NEAR(suggested_observer_gain(recording.times, {}, velocity, {}), 10.0 / 2.0, 0.1);
   // The firmest: with next to no noise all shows.
   std::mt19937_64 generator(1);
   std::normal_distribution<double> noise(0.0, 4e-8);
   std::vector<double> clean;
   for (const double t : recording.times)
     clean.push_back(0.1 * std::sin(kRate * t) + noise(generator));
-  EXPECT_NEAR(suggested_observer_gain(recording.times, clean, {}), 0.3 / kInterval, 1e-6);
+  EXPECT_NEAR(suggested_observer_gain(recording.times, clean, {}, {}), 0.3 / kInterval, 1e-6);
+  // A noisy command biases the estimates the more, the higher the gain.
+  std::vector<double> command;
+  for (const double t : recording.times)
+    command.push_back(std::sin(kRate * t) + 0.1 * std::sqrt(0.5) * noise(generator) / 4e-8);
+  const double duration = recording.times.back() - recording.times.front();
+  const double biased = 0.25 / (0.1 * std::sqrt(kInterval * duration));
+  EXPECT_NEAR(suggested_observer_gain(recording.times, clean, {}, command), biased, 0.1 * biased);
 }
 
 TEST(RateRatioTest, FindsFactorAndSignThroughNoiseAndBias) {

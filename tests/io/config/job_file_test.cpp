@@ -329,6 +329,32 @@ TEST_F(JobFileTest, NoiseIsEstimatedFromTheSamplesThatAreKept) {
             "sigma, for example 'sigma: 0.01 m/s'");
 }
 
+TEST_F(JobFileTest, TheNoiseOfAnInputIsGivenOrOfAForceSourceEstimated) {
+  Data data;
+  for (std::size_t i = 0; i < kRows; ++i) data.u[i] = i % 2 == 0 ? 0.5 : -0.5;
+  write_data("data.csv", data.columns());
+  const Recording estimated = read(kJob).job.recordings.front();
+  EXPECT_EQ(estimated.command_noise, NoiseSource::differences);
+  EXPECT_EQ(estimated.command_sigma, noise_of_input(data.u));
+  EXPECT_GT(estimated.command_sigma, 0.0);
+  const std::string command = "command: {column: u, unit: V";
+  for (const double volts : {0.0, 0.02}) {
+    const Recording given =
+        read(replaced(kJob, command, fmt::format("{}, sigma: {} V", command, volts)))
+            .job.recordings.front();
+    EXPECT_EQ(given.command_noise, NoiseSource::given);
+    EXPECT_EQ(given.command_sigma, volts);
+  }
+  // A drive receives the set velocity that its controller sent.
+  const Recording sent = read(replaced(kJob, "mass.yaml", "driven.yaml")).job.recordings.front();
+  EXPECT_EQ(sent.command_sigma, 0.0);
+  EXPECT_EQ(sent.command_noise, NoiseSource::given);
+  const Recording force = read(replaced(kJob, command, "drive_force: {column: f, unit: kN, "
+                                                       "sigma: 2 N"))
+                              .job.recordings.front();
+  EXPECT_EQ(force.command_sigma, 2.0);
+}
+
 TEST_F(JobFileTest, ADriveForceReplacesTheCommandOfAForceSource) {
   const JobFile file =
       read(replaced(kJob, "command: {column: u, unit: V}", "drive_force: {column: f, unit: kN}"));
@@ -677,7 +703,8 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
            {"unit: m/s", "unit: V",
             "7:35: 'V' cannot be converted to 'm/s'; use for example 'm/s'"},
            {", unit: V", "", "6:16: key 'unit' is missing in command"},
-           {"unit: V}", "unit: V, sigma: 1 V}", "6:37: unknown key 'sigma'; did you mean 'sign'?"},
+           {"unit: V}", "unit: V, fit: false}", "6:37: unknown key 'fit'; did you mean 'unit'?"},
+           {"unit: V}", "unit: V, sigma: -1 V}", "6:44: sigma must be at least 0 V, not -1 V"},
            {"unit: V}", "unit: V, sign: 2}", "6:43: sign must be one of 1, -1, not '2'"},
            {"unit: V}", "unit: V, factor: 2 V}",
             "6:45: factor: 'V' cannot be used for a dimensionless quantity; use a plain number or "
