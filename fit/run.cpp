@@ -81,12 +81,16 @@ void run_requested_analyses(RunResult& result, const RunContext& context) {
   if (result.fit().usable && !options.profiles.empty())
     result.profiles = profiles(result.job(), result.fit(),
                                parameters_to_profile(result.job(), options.profiles), context);
+  // A motion that is simulated with a wrong model could wreck the machine.
+  const bool safe = grade_of(result.job(), result.fit(), result.diagnosis).is_usable() &&
+                    !held_by_bound(result.job(), result.fit());
   if (result.selection)
     for (const UndecidedPair& rivals : result.selection->rivals) {
       report_progress("discriminating between " + rivals.chosen + " and " + rivals.rival);
-      result.discriminations.push_back(discriminate(*result.selection, rivals, context.quiet()));
+      result.discriminations.push_back(
+          discriminate(*result.selection, rivals, safe, context.quiet()));
     }
-  if (options.suggest_experiment)
+  if (safe && options.suggest_experiment)
     result.suggestion = suggest_experiment(result.job(), result.fit(), context);
 }
 

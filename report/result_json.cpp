@@ -177,16 +177,18 @@ Json suggestion_json(const Suggestion& s, const FitResult& fit) {
                          {"standard_error", optional(u.determined, u.standard_error)},
                          {"confidence_interval", interval_json(u)}});
   }
-  return {{"motion", motion_text(s.experiment.motion)},
-          {"duration_s", s.experiment.duration},
-          {"parameter", fit.parameters[s.parameter].name},
-          {"predicted", std::move(predicted)},
-          {"limits",
-           {{"travel_m", {*s.limits.lowest, *s.limits.highest}},
-            {"speed_mps", *s.limits.speed},
-            {"voltage_v", *s.limits.voltage}}},
-          {"motions_tried", s.tried},
-          {"motions_feasible", s.feasible}};
+  return {
+      {"motion", motion_text(s.experiment.motion)},
+      {"duration_s", s.experiment.duration},
+      {"parameter", fit.parameters[s.parameter].name},
+      {"predicted", std::move(predicted)},
+      {"limits",
+       {{"travel_m", {*s.limits.lowest, *s.limits.highest}},
+        {"speed_mps", *s.limits.speed},
+        {"voltage_v", *s.limits.voltage}}},
+      {"reach", {{"travel_m", {s.reach.lowest, s.reach.highest}}, {"speed_mps", s.reach.speed}}},
+      {"motions_tried", s.tried},
+      {"motions_feasible", s.feasible}};
 }
 
 Json force_json(const MissingForce& force) {

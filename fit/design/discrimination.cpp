@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "sim/recorder.h"
@@ -48,7 +50,7 @@ double noise_of(const Job& job, Signal signal, const std::vector<double>& values
 }  // namespace
 
 Discrimination discriminate(const EffectSelection& selection, const UndecidedPair& rivals,
-                            const RunContext& context) {
+                            bool new_motions, const RunContext& context) {
   const Job& job = selection.result.job;
   const MachineLimits within = complete_limits(job, selection.result.fit);
   std::vector<Signal> signals;
@@ -58,8 +60,8 @@ Discrimination discriminate(const EffectSelection& selection, const UndecidedPai
   std::vector<Trial> trials;
   for (const Recording& r : job.recordings) trials.push_back({&r, nullptr, r.command, r.times});
   const std::vector<double> times = next_sampling_times(job);
-  const std::vector<Experiment> candidates =
-      candidate_motions(job.model.structure, within, times.back());
+  std::vector<Experiment> candidates;
+  if (new_motions) candidates = candidate_motions(job.model.structure, within, times.back());
   for (const Experiment& experiment : candidates)
     trials.push_back({nullptr, &experiment,
                       commands_of(experiment, rivals.with_chosen, job.controller, times), times});
@@ -84,16 +86,27 @@ Discrimination discriminate(const EffectSelection& selection, const UndecidedPai
       found[i].signal = signals[s];
     }
   });
-  const auto best = std::ranges::max_element(found, {}, &Discrimination::size);
-  const Trial& trial = trials[static_cast<std::size_t>(best - found.begin())];
+  std::vector<std::size_t> order(trials.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return found[i].size; });
+  Discrimination result{.chosen = rivals.chosen, .rival = rivals.rival};
   constexpr double kVisible = 0.1;
-  Discrimination result{.chosen = rivals.chosen, .rival = rivals.rival, .size = best->size};
-  if (!best->signal || best->size < kVisible) return result;
-  result.signal = best->signal;
-  if (trial.experiment != nullptr)
-    result.experiment = *trial.experiment;
-  else
-    result.recording = trial.recorded->name;
+  for (const std::size_t i : order) {
+    context.check_stop();
+    const Trial& trial = trials[i];
+    const bool visible = found[i].signal && found[i].size >= kVisible;
+    if (visible && trial.experiment != nullptr &&
+        !reach_of(*trial.experiment, job, selection.result.fit, within))
+      continue;
+    result.size = found[i].size;
+    if (!visible) break;
+    result.signal = found[i].signal;
+    if (trial.experiment != nullptr)
+      result.experiment = *trial.experiment;
+    else
+      result.recording = trial.recorded->name;
+    break;
+  }
   return result;
 }
 

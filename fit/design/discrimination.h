@@ -16,11 +16,12 @@ struct Discrimination {
 };
 
 /// In which signal and motion two rivals of a loop differ most. Tried are the motions of the job's
-/// recordings, with the signals that they lack, and the family of experiments within the limits
-/// (completed as for suggest_experiment, by the final fit). Differences are counted in the job's
+/// recordings, with the signals that they lack, and, if `new_motions` are safe to ask for, the
+/// family of experiments that keep to the limits for all that the final fit leaves open, see
+/// reach_of(). Limits are completed as for suggest_experiment. Differences are counted in the job's
 /// noise of a signal, or, where it has none, in thousandths of its range. The models are taken as
 /// fitted; refitting them to the new recording would make the difference smaller.
 Discrimination discriminate(const EffectSelection& selection, const UndecidedPair& rivals,
-                            const RunContext& context = {});
+                            bool new_motions, const RunContext& context = {});
 
 }  // namespace axisfit

@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numeric>
+#include <random>
 
 #include "base/linear_algebra.h"
 #include "base/parallel.h"
+#include "base/random.h"
 #include "fit/estimation/residual.h"
 #include "fit/estimation/solve.h"
 #include "fit/residuals/series.h"
 #include "sim/controller.h"
 #include "sim/sampling.h"
+#include "sim/simulate.h"
 
 namespace axisfit {
 namespace {
@@ -207,9 +211,58 @@ std::vector<double> next_sampling_times(const Job& job) {
   return times;
 }
 
+std::optional<std::size_t> held_by_bound(const Job& job, const FitResult& fit) {
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    const FreeParameter& free = job.free[i];
+    const Quantity& quantity = quantity_list()[free.quantity].quantity;
+    const double middle = 0.5 * (free.lower + free.upper);
+    const bool is_range = fit.parameters[i].value > middle ? free.upper == quantity.upper
+                                                           : free.lower == quantity.lower;
+    if (fit.parameters[i].uncertainty.at_bound && !is_range) return i;
+  }
+  return std::nullopt;
+}
+
+std::optional<Reach> reach_of(const Experiment& experiment, const Job& job, const FitResult& fit,
+                              const MachineLimits& limits) {
+  Job next = with_next(job, {});
+  const std::size_t added = next.recordings.size() - 1;
+  const std::vector<double>& times = next.recordings[added].times;
+  const ParameterSpace space(next);
+  Eigen::VectorXd u = space.internal(values_of(fit));
+  constexpr std::size_t kEnumerated = 5;
+  constexpr std::uint64_t kCorners = 1 << kEnumerated;
+  std::mt19937_64 generator(1);
+  Reach reach{INFINITY, -INFINITY, 0.0};
+  for (std::uint64_t corner = 0; corner <= kCorners; ++corner) {
+    for (std::size_t i = 0; i < space.size() && corner > 0; ++i) {
+      const ParameterUncertainty& known = fit.parameters[i].uncertainty;
+      const bool up =
+          space.size() <= kEnumerated ? (corner >> i & 1) != 0 : uniform(generator) < 0.5;
+      const double end = known.has_interval() ? (up ? known.upper : known.lower)
+                                              : (up ? space[i].upper : space[i].lower);
+      u[static_cast<Eigen::Index>(i)] = space.internal(i, end);
+    }
+    const Model<double> model = model_at(next, space, u.data(), added);
+    bool within = true;
+    const auto read = [&](std::size_t, const Integrator<double>& axis) {
+      const double position = axis.state()[0], velocity = axis.state()[1];
+      within = within && is_within(limits, position, velocity);
+      reach.lowest = std::min(reach.lowest, position);
+      reach.highest = std::max(reach.highest, position);
+      reach.speed = std::max(reach.speed, std::abs(velocity));
+    };
+    // A fit rejects parameters with which the teeth chatter; the arm hardly moves meanwhile.
+    const SimulationResult simulation =
+        simulate(model, commands_of(experiment, model, next.controller, times), times, read);
+    if (!simulation.finished || !within) return std::nullopt;
+  }
+  return reach;
+}
+
 std::optional<Suggestion> suggest_experiment(const Job& job, const FitResult& fit,
                                              const RunContext& context) {
-  if (!fit.usable || job.free.empty()) return std::nullopt;
+  if (!fit.usable || job.free.empty() || held_by_bound(job, fit)) return std::nullopt;
   Suggestion suggestion;
   suggestion.limits = complete_limits(job, fit);
   const std::vector<ResidualSeries> residuals = residual_series(job, fit);
@@ -230,19 +283,29 @@ std::optional<Suggestion> suggest_experiment(const Job& job, const FitResult& fi
   };
   const Eigen::MatrixXd normal = normal_of(job, *fit.at_solution, residuals);
   suggestion.parameter = worst_of(errors_of(normal)).first;
-  const Linearization* best = nullptr;
-  double least = INFINITY;
+  std::vector<double> worst(candidates.size(), INFINITY);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (!sensitivities[i].finite) continue;
     ++suggestion.feasible;
     const auto rows = sensitivities[i].jacobian.topRows(rows_of(sensitivities[i]));
-    const double worst = worst_of(errors_of(normal + rows.transpose() * rows)).second;
-    if (!(worst < least)) continue;
-    least = worst;
-    best = &sensitivities[i];
-    suggestion.experiment = candidates[i];
+    worst[i] = worst_of(errors_of(normal + rows.transpose() * rows)).second;
   }
   suggestion.tried = static_cast<int>(candidates.size());
+  // The best of those that are safe: most of the others fail at the first corner.
+  std::vector<std::size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return worst[i]; });
+  const Linearization* best = nullptr;
+  for (const std::size_t i : order) {
+    if (!std::isfinite(worst[i])) break;
+    context.check_stop();
+    const auto reach = reach_of(candidates[i], job, fit, suggestion.limits);
+    if (!reach) continue;
+    best = &sensitivities[i];
+    suggestion.experiment = candidates[i];
+    suggestion.reach = *reach;
+    break;
+  }
   if (best == nullptr) return std::nullopt;
 
   // As the fit itself will judge.

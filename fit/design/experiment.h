@@ -41,23 +41,43 @@ Schedule commands_of(const Experiment& experiment, const Model<double>& model,
 /// and for at most 10 s.
 std::vector<double> next_sampling_times(const Job& job);
 
+/// How far an arm goes in a motion, and how fast, either way.
+struct Reach {
+  double lowest = 0.0, highest = 0.0;  ///< m
+  double speed = 0.0;                  ///< m/s
+};
+
+/// The first parameter that is held by a bound other than the end of its quantity's range, such as
+/// zero friction: its true value may lie beyond, and no simulation shows what the machine would do.
+std::optional<std::size_t> held_by_bound(const Job& job, const FitResult& fit);
+
+/// Over whatever the fit says the parameters may be: at their estimates, and at 32 corners of their
+/// 95 % intervals, which are all of up to five parameters and otherwise drawn with a seed. A
+/// parameter without an interval goes to its bounds: what is not known must not wreck a machine.
+/// Samples as next_sampling_times(). None where a simulation does not finish or leaves the limits,
+/// which are complete.
+std::optional<Reach> reach_of(const Experiment& experiment, const Job& job, const FitResult& fit,
+                              const MachineLimits& limits);
+
 struct Suggestion {
   Experiment experiment;
+  Reach reach;
   std::size_t parameter = 0;  ///< the one whose interval is the widest now
   Uncertainty now;            ///< of the estimates
   Uncertainty predicted;      ///< after one more recording, of that motion
   MachineLimits limits;       ///< as they were taken, all given
   int tried = 0;              ///< motions of the family
-  int feasible = 0;           ///< those that kept to the limits
+  int feasible = 0;           ///< those that kept to the limits at the estimates
 };
 
-/// Of all motions that keep to the limits in simulation, the one after which the least determined
+/// Of all motions that keep to the limits, see reach_of(), the one after which the least determined
 /// of the parameters is determined best: the largest standard error, relative to the parameter's
 /// size, is smallest (E. Walter and L. Pronzato, Identification of Parametric Models, Springer
 /// 1997, chapter 6). Assumes that the new recording has the signals, the sampling and the noise of
 /// the first one that was fitted, starts where that started, from rest, and leaves residuals of the
 /// size and colour that the fit has left; that the estimates are right; and that the model is
-/// linear over their errors. None when the fit is not usable or no motion keeps to the limits.
+/// linear over their errors. None when the fit is not usable, a parameter is held by a bound, see
+/// held_by_bound(), or no motion keeps to the limits.
 std::optional<Suggestion> suggest_experiment(const Job& job, const FitResult& fit,
                                              const RunContext& context = {});
 

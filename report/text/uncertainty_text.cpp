@@ -126,8 +126,19 @@ std::string suggestion_text(const RunResult& run_result) {
                                    discrimination.experiment->duration,
                                    info(*discrimination.signal).name),
                        2);
+  const std::string none = "Next experiment: none is suggested, for ";
+  if (!run_result.grade.is_usable())
+    return paragraph(none + "the simulation does not show what the machine would do.");
+  if (const auto held = held_by_bound(run_result.job(), run_result.fit()))
+    return paragraph(none + run_result.fit().parameters[*held].name +
+                     " is at its bound, and with a value beyond it the machine could leave its "
+                     "limits. Widen the bound, or look for what the model lacks.");
   if (!run_result.suggestion)
-    return paragraph("Next experiment: none of the motions tried stays within the limits.");
+    return paragraph(none +
+                     "no motion that was tried stays within the limits for every value that the "
+                     "parameters may have: within its 95 % interval, or its bounds where it is not "
+                     "determined. Set 'limits' in the job if the machine may do more, narrow the "
+                     "bounds, or record a small motion of your own choice first.");
   const Suggestion& s = *run_result.suggestion;
   const FitResult& fit = run_result.fit();
   const std::string& name = fit.parameters[s.parameter].name;
@@ -136,6 +147,14 @@ std::string suggestion_text(const RunResult& run_result) {
       "tried, {} stay within {:.4g} .. {:.4g} m, {:.3g} m/s and {:.3g} V.",
       motion_text(s.experiment.motion), s.experiment.duration, name, s.tried, s.feasible,
       *s.limits.lowest, *s.limits.highest, *s.limits.speed, *s.limits.voltage);
+  text += fmt::format(
+      " For all values within the 95 % intervals, or the bounds of what is not determined, the "
+      "simulated arm stays within {:.4g} .. {:.4g} m and {:.3g} m/s, {:.2g} m and {:.2g} m/s from "
+      "the limits.",
+      s.reach.lowest + 0.0, s.reach.highest, s.reach.speed,  // no "-0"
+      std::max(0.0,
+               std::min(s.reach.lowest - *s.limits.lowest, *s.limits.highest - s.reach.highest)),
+      std::max(0.0, *s.limits.speed - s.reach.speed));
   const MachineLimits& given = run_result.baseline.limits;
   if (!given.lowest || !given.speed)
     text += " These limits are what the recordings covered; set 'limits' in the job to allow more.";

@@ -531,6 +531,7 @@ TEST(ResultTest, TheNextExperimentPredictsWhatIsKnownAfterIt) {
   Suggestion& s = run_result.suggestion.emplace();
   s.experiment = {.motion = StepMotion{3.0, 0.0}, .duration = 2.0};
   s.limits = {.lowest = -1.0, .highest = 1.0, .speed = 0.5, .voltage = 10.0};
+  s.reach = {.lowest = -0.25, .highest = 0.875, .speed = 0.375};
   const auto known = [](double value, double error) {
     return ParameterUncertainty{.determined = true,
                                 .standard_error = error,
@@ -548,6 +549,26 @@ TEST(ResultTest, TheNextExperimentPredictsWhatIsKnownAfterIt) {
                 .find("95 % interval now predicted unit M 3.00 .. 5.00 3.75 .. 4.25 kg"),
             std::string::npos)
       << suggestion_text(run_result);
+  EXPECT_EQ(result_json(run_result).at("next_experiment").at("reach"),
+            Json::parse(R"({"travel_m": [-0.25, 0.875], "speed_mps": 0.375})"));
+  EXPECT_NE(on_one_line(suggestion_text(run_result))
+                .find("stays within -0.25 .. 0.875 m and 0.375 m/s, 0.12 m and 0.12 m/s from the "
+                      "limits."),
+            std::string::npos)
+      << suggestion_text(run_result);
+}
+
+TEST(ResultTest, NoExperimentIsSuggestedWhereNoneIsSafe) {
+  RunResult run_result = Found(rubbing_job()).run_result;
+  run_result.options.suggest_experiment = true;
+  const auto told = [&] { return on_one_line(suggestion_text(run_result)); };
+  EXPECT_NE(told().find("no motion that was tried stays within the limits"), std::string::npos);
+  run_result.first.parameters[0].uncertainty = {.at_bound = true};
+  EXPECT_NE(told().find("none is suggested, for M is at its bound"), std::string::npos) << told();
+  run_result.grade = {.grade = Grade::model_wrong};
+  EXPECT_NE(told().find("the simulation does not show what the machine would do"),
+            std::string::npos);
+  EXPECT_EQ(result_json(run_result).at("next_experiment"), nullptr);
 }
 
 TEST(ResultTest, TheTimeOfAFitIsSaidToItsFirstDigit) {

@@ -26,7 +26,7 @@ class DiscriminationTest : public testing::Test {
     UndecidedPair rivals{"this", "that", model_, model_};
     rivals.with_rival.instruments[index_of(signal)].bias = bias;
     selection_.result.job.limits = limits;
-    return discriminate(selection_, rivals);
+    return discriminate(selection_, rivals, true);
   }
 
   /// No motion keeps to these: only those that were recorded are left.

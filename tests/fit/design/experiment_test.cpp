@@ -92,6 +92,78 @@ TEST(SuggestExperiment, KeepsToWhatTheRecordingsCovered) {
   EXPECT_DOUBLE_EQ(*suggestion->limits.highest, highest);
 }
 
+// Motions that are safe at the estimates, but not for all that the fit leaves open, are not.
+TEST(SuggestExperiment, IsSafeForWhateverTheParametersMayBe) {
+  Job job = slow_job(5);
+  job.limits = kLimits;
+  FitResult fit = estimate(job);
+  const auto sure = suggest_experiment(job, fit);
+  ASSERT_TRUE(sure);
+  // The friction is a tenth of what the fit says: with the same force the slide goes ten times as
+  // far.
+  ParameterUncertainty& friction = fit.parameters[1].uncertainty;
+  friction.lower = 0.1 * fit.parameters[1].value;
+  EXPECT_FALSE(reach_of(sure->experiment, job, fit, kLimits));
+  const auto careful = suggest_experiment(job, fit);
+  ASSERT_TRUE(careful);
+  Job slippery = job;
+  slippery.model.axis.B_a = 3.0;
+  slippery.free.resize(1);
+  slippery.recordings = {
+      recorded(slippery.model, careful->experiment.motion, careful->experiment.duration, 6)};
+  const auto [lowest, highest, speed] = careful->reach;
+  for (const Sample& s : result_at_start(slippery).recordings[0].free_running.samples) {
+    EXPECT_GE(s.position, lowest - 1e-3);
+    EXPECT_LE(s.position, highest + 1e-3);
+    EXPECT_LE(std::abs(s.velocity), speed + 1e-3);
+  }
+  EXPECT_GE(lowest, *kLimits.lowest - 1e-6);
+  EXPECT_LE(highest, *kLimits.highest + 1e-6);
+  EXPECT_LE(speed, *kLimits.speed + 1e-6);
+}
+
+// At a bound, and with no interval, any value that the bounds allow may be the true one.
+TEST(SuggestExperiment, TrustsNoParameterAtItsBound) {
+  Job job = slow_job(5);
+  job.limits = kLimits;
+  FitResult fit = estimate(job);
+  fit.parameters[1].value = job.free[1].upper;
+  fit.parameters[1].uncertainty = {.at_bound = true};
+  for (const double u : {0.5, 1.0, 5.0, 10.0})
+    EXPECT_FALSE(reach_of({StepMotion{u, 0.0}, 2.5}, job, fit, {-0.05, 0.05, 0.1, 10.0})) << u;
+  // What lies beyond a bound that the user chose, no simulation shows.
+  EXPECT_EQ(held_by_bound(job, fit), 1u);
+  EXPECT_FALSE(suggest_experiment(job, fit));
+  // Beyond the end of a quantity's range there is nothing.
+  fit.parameters[1].value = job.free[1].upper =
+      quantity_list()[job.free[1].quantity].quantity.upper;
+  EXPECT_FALSE(held_by_bound(job, fit));
+}
+
+// What is not determined may be anything within its bounds. A motion that is safe then may show it.
+TEST(SuggestExperiment, DeterminesWhatWasNotDetermined) {
+  const Model<double> truth = motor_axis();
+  Job job = two_recordings(truth, truth, {"V_L", "T_p"});
+  job.recordings = {recorded(truth, SineMotion{0.4, 2.0, 2.0}, 1.0, 3)};
+  job.limits = {-1.0, 1.0, 1.0, 10.0};
+  const FitResult fit = estimate(job);
+  ASSERT_FALSE(fit.parameters[0].uncertainty.determined);
+  const auto suggestion = suggest_experiment(job, fit);
+  ASSERT_TRUE(suggestion);
+  EXPECT_EQ(suggestion->parameter, 0u);
+  EXPECT_TRUE(suggestion->predicted.parameters[0].determined);
+  // With the machine's preamplifier, and with any other.
+  for (const double V_L : {job.free[0].lower, truth.axis.V_L, job.free[0].upper}) {
+    Job machine = job;
+    machine.model.axis.V_L = V_L;
+    machine.free.erase(machine.free.begin());
+    machine.recordings = {
+        recorded(machine.model, suggestion->experiment.motion, suggestion->experiment.duration, 6)};
+    for (const Sample& s : result_at_start(machine).recordings[0].free_running.samples)
+      EXPECT_TRUE(is_within(job.limits, s.position, s.velocity)) << V_L;
+  }
+}
+
 TEST(SuggestExperiment, HasNoneWhereNothingIsAllowed) {
   Job job = slow_job(7);
   job.limits = {0.0, 0.0, 1e-9, 1.0};

@@ -56,7 +56,7 @@ TEST_P(SelectEffectsTwin, IsLeftUndecided) {
   ASSERT_EQ(selection.rivals.size(), 1u);
   EXPECT_EQ((Names{selection.rivals[0].chosen, selection.rivals[0].rival}),
             (Names{secret.name, secret.twin}));
-  const Discrimination advice = discriminate(selection, selection.rivals[0]);
+  const Discrimination advice = discriminate(selection, selection.rivals[0], true);
   EXPECT_EQ((Names{advice.chosen, advice.rival}), (Names{secret.name, secret.twin}));
   EXPECT_EQ(advice.signal.has_value(), advice.size >= 0.1);
   // Neither is added: the result is the model as declared.
