@@ -142,8 +142,8 @@ const Experiment* next_experiment(const RunResult& result) {
 
 std::optional<ExcludedSamples> excluded_samples(const Measurement& measurement) {
   ExcludedSamples excluded;
-  for (std::size_t i = 0; i < measurement.values.size(); ++i) {
-    if (measurement.counts(i)) continue;
+  for (std::size_t i = 0; i < measurement.excluded.size(); ++i) {
+    if (!measurement.excluded[i]) continue;
     ++excluded.samples;
     excluded.mean += measurement.values[i];
   }

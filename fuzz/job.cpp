@@ -26,6 +26,8 @@ void check_recording(const Recording& r) {
     require(m.values.size() == r.times.size() && finite(m.values), "values are missing");
     require(std::isfinite(m.sigma) && m.sigma > 0.0, "a sigma is not above zero");
     require(m.excluded.empty() || m.excluded.size() == r.times.size(), "samples are lost");
+    require(m.uninformative.empty() || m.uninformative.size() == r.times.size(),
+            "samples are lost");
   }
 }
 

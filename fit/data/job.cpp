@@ -5,6 +5,23 @@
 
 namespace axisfit {
 
+void exclude_uninformative(Measurement& measurement) {
+  const std::size_t n = measurement.values.size();
+  const Filter& filter = measurement.filter;
+  const std::vector<bool> fresh = fresh_samples(measurement.values, measurement.hold);
+  measurement.values = between_fresh(measurement.values, fresh);
+  const std::size_t reach = reach_of(filter);
+  measurement.uninformative.assign(n, false);
+  for (std::size_t i = 0; i < n; ++i)
+    measurement.uninformative[i] =
+        !fresh[i] || i < reach || (filter.zero_phase && n - 1 - i < reach);
+}
+
+double noise_correlation_time(const Measurement& measurement) {
+  return std::max(1.0, autocorrelation_time(measurement.filter) /
+                           static_cast<double>(measurement.hold));
+}
+
 bool share_samples(const Recording& a, const Recording& b) {
   constexpr std::size_t kFewest = 9;
   std::size_t shared = 0;

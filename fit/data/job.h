@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "fit/data/filter.h"
 #include "sim/command.h"
 #include "sim/controller_settings.h"
 #include "sim/model.h"
@@ -43,9 +44,27 @@ struct Measurement {
   bool fitted = true;  ///< false: compared and reported, not part of the fit
   /// Samples that are neither fitted nor judged, see standstill.h; empty: none.
   std::vector<bool> excluded;
+  Filter filter;         ///< that the samples went through before they were recorded
+  std::size_t hold = 1;  ///< how often each of them was then recorded
+  /// Samples that are neither fitted nor judged because of the two, see exclude_uninformative();
+  /// empty: none.
+  std::vector<bool> uninformative;
 
-  bool counts(std::size_t sample) const { return excluded.empty() || !excluded[sample]; }
+  bool counts(std::size_t sample) const {
+    return (excluded.empty() || !excluded[sample]) &&
+           (uninformative.empty() || !uninformative[sample]);
+  }
 };
+
+/// For a measurement that is filtered or held: sets `uninformative` to the samples that only
+/// repeat, and to those closer to an end than the filter reaches (with a causal one, to the first),
+/// since it saw what was not recorded. What repeats is replaced by a curve between the samples that
+/// do not, so that everything that goes by the values sees the signal and not its stairs.
+void exclude_uninformative(Measurement& measurement);
+
+/// How many samples of the measurement's noise carry as much information as one independent one;
+/// above one where its filter correlates them. Those that only repeat do not count.
+double noise_correlation_time(const Measurement& measurement);
 
 /// One recording. Samples run over `times`.
 struct Recording {

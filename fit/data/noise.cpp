@@ -1,6 +1,7 @@
 #include "fit/data/noise.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -30,31 +31,40 @@ double resolution_of(std::span<const double> values) {
 
 namespace {
 
-/// What noise_from_differences() finds where there is no grid.
-double white_part(std::span<const double> values) {
-  constexpr std::size_t kOrder = 6;
-  constexpr double kGain = 924.0;  // sum of the squared binomial coefficients of the sixth order
-  if (values.size() < kOrder + 3) return 0.0;
-  std::vector<double> d(values.begin(), values.end());
-  for (std::size_t order = 0; order < kOrder; ++order) {
-    for (std::size_t i = 0; i + 1 < d.size(); ++i) d[i] = d[i + 1] - d[i];
-    d.pop_back();
-  }
+constexpr std::size_t kOrder = 6;
+/// Sums of products of the binomial coefficients of the sixth order, with their signs, that are so
+/// many places apart.
+constexpr std::array<double, kOrder + 1> kGain{924.0, -792.0, 495.0, -220.0, 66.0, -12.0, 1.0};
+
+/// Their standard deviation, by the median.
+double spread_of_differences(std::span<const double> values, std::size_t stride) {
+  std::vector<double> d = sixth_differences(values, stride);
+  if (d.size() < 3) return 0.0;
   for (double& x : d) x = std::abs(x);
   const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
   std::nth_element(d.begin(), middle, d.end());
-  const double spread = *middle / 0.6745;  // median of |N(0, 1)|
-  return spread / std::sqrt(kGain);
+  return *middle / 0.6745;  // median of |N(0, 1)|
 }
 
 }  // namespace
 
+std::vector<double> sixth_differences(std::span<const double> values, std::size_t stride) {
+  if (values.size() <= kOrder * stride) return {};
+  std::vector<double> d(values.begin(), values.end());
+  for (std::size_t order = 0; order < kOrder; ++order) {
+    for (std::size_t i = 0; i + stride < d.size(); ++i) d[i] = d[i + stride] - d[i];
+    d.resize(d.size() - stride);
+  }
+  return d;
+}
+
 double noise_from_differences(std::span<const double> values) {
-  return std::max(white_part(values), resolution_of(values) / std::sqrt(12.0));
+  return std::max(spread_of_differences(values, 1) / std::sqrt(kGain[0]),
+                  resolution_of(values) / std::sqrt(12.0));
 }
 
 double noise_of_input(std::span<const double> values) {
-  return white_part(values) > 0.0 ? noise_from_differences(values) : 0.0;
+  return spread_of_differences(values, 1) > 0.0 ? noise_from_differences(values) : 0.0;
 }
 
 double standard_deviation(std::span<const double> values) {
@@ -63,6 +73,28 @@ double standard_deviation(std::span<const double> values) {
   double sum = 0.0;
   for (const double x : values) sum += (x - mean) * (x - mean);
   return std::sqrt(sum / n);
+}
+
+double noise_from_differences(const Measurement& measurement) {
+  std::vector<double> fresh;
+  for (std::size_t i = 0; i < measurement.values.size(); ++i)
+    if (measurement.uninformative.empty() || !measurement.uninformative[i])
+      fresh.push_back(measurement.values[i]);
+  if (measurement.filter == Filter()) return noise_from_differences(fresh);
+  const double rounding = std::pow(resolution_of(fresh), 2) / 12.0;
+  constexpr double kLeastPart = 0.003;
+  for (std::size_t stride = 1; kOrder * stride + 3 <= fresh.size(); stride *= 2) {
+    const std::vector<double> covariance =
+        noise_autocovariance(measurement.filter, stride * measurement.hold, kGain.size());
+    double part = covariance[0];
+    for (std::size_t k = 1; k < kGain.size(); ++k)
+      part += 2.0 * kGain[k] / kGain[0] * covariance[k];
+    part /= covariance[0];
+    if (part < kLeastPart) continue;
+    const double variance = std::pow(spread_of_differences(fresh, stride), 2) / kGain[0];
+    return std::sqrt(std::max(0.0, variance - rounding) / part + rounding);
+  }
+  return 0.0;
 }
 
 }  // namespace axisfit

@@ -86,8 +86,11 @@ ValueCheck check_values(const Recording& recording, const Measurement& measureme
   ValueCheck check;
   const std::vector<double>& values = measurement.values;
   std::tie(check.low, check.high) = std::pair(std::ranges::min(values), std::ranges::max(values));
-  check.noise = noise_from_differences(values);
+  check.noise = noise_from_differences(measurement);
   check.resolution = resolution_of(values);
+  if (measurement.hold == 1) check.repetition = repetition_of(values);
+  if (measurement.hold == 1 && check.repetition == 1 && measurement.filter == Filter())
+    check.filter = suspected_filter(values);
   // A position that stays is an arm at rest, or at its stop; the voltages have limits of their own.
   const Signal signal = measurement.signal;
   if (signal == Signal::position || signal == Signal::preamplifier_voltage ||

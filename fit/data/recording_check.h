@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "fit/data/filter_check.h"
 #include "fit/data/job.h"
 
 namespace axisfit {
@@ -19,6 +20,9 @@ struct Sampling {
   std::size_t gaps = 0;   ///< intervals of more than 1.5 medians
   double largest_gap = 0.0;  ///< s, zero without gaps
   double gap_at = 0.0;       ///< s, recorded time where the largest one begins
+
+  /// As even as anything that goes from sample to sample needs it.
+  bool is_even() const { return jitter <= 0.1; }
 };
 Sampling sampling(std::span<const double> times);
 
@@ -35,6 +39,10 @@ struct ValueCheck {
   /// ever put there: a range that the signal left. Zero where there are none.
   std::size_t clipped = 0;
   double clipped_at = 0.0;  ///< that value
+  /// How often each value is recorded, and a filter that the samples show; 1 and none for a signal
+  /// with a hold or a filter.
+  std::size_t repetition = 1;
+  std::optional<SuspectedFilter> filter{};
 };
 
 /// Largest logarithm of the ratio of two sizes of one unit: more than noise makes of a measured

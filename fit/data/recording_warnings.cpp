@@ -61,13 +61,12 @@ std::optional<warning::TimeUnit> wrong_time_unit(const std::vector<RateCheck>& r
 
 std::vector<RecordingWarning> warnings_of(const Job& job, const Recording& recording,
                                           const RecordingCheck& check) {
-  constexpr double kMaxJitter = 0.1;
   constexpr double kMinInterval = 2e-6, kMaxInterval = 0.2;  // s
   std::vector<RecordingWarning> warnings;
   const Sampling& sampling = check.sampling;
   if (sampling.gaps > 0)
     warnings.push_back(warning::Gaps{sampling.gaps, sampling.largest_gap, sampling.gap_at});
-  if (sampling.jitter > kMaxJitter) warnings.push_back(warning::UnevenSampling{sampling.jitter});
+  if (!sampling.is_even()) warnings.push_back(warning::UnevenSampling{sampling.jitter});
   if (const auto time = wrong_time_unit(check.rates)) {
     warnings.push_back(*time);
   } else {
@@ -101,6 +100,11 @@ std::vector<RecordingWarning> warnings_of(const Job& job, const Recording& recor
     if (values.stuck > 0) warnings.push_back(warning::Stuck{signal, values.stuck, values.stuck_at});
     if (values.clipped > 0)
       warnings.push_back(warning::Clipped{signal, values.clipped, values.clipped_at});
+    if (values.repetition > 1)
+      warnings.push_back(warning::Repeated{signal, values.repetition});
+    if (values.filter && sampling.is_even())
+      warnings.push_back(warning::Filtered{signal, values.filter->corner / sampling.interval,
+                                           values.filter->average});
     constexpr double kMaxExcessScatter = 3.0, kMaxExcessSigma = 10.0;
     if (measurement.noise == NoiseSource::given && values.noise > 0.0 &&
         (values.noise > kMaxExcessScatter * measurement.sigma ||

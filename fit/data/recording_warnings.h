@@ -80,6 +80,19 @@ struct Clipped {
   double value = 0.0;  ///< in the signal's unit
 };
 
+/// Each value is recorded several times.
+struct Repeated {
+  Signal signal = Signal::velocity;
+  std::size_t times = 1;
+};
+
+/// A low-pass filter that is not declared.
+struct Filtered {
+  Signal signal = Signal::velocity;
+  double corner = 0.0;      ///< Hz, within a factor of two
+  std::size_t average = 0;  ///< samples of a moving average; zero: another filter
+};
+
 /// The noise that is given is not that of the samples.
 struct UnlikelySigma {
   Signal signal = Signal::velocity;
@@ -91,7 +104,8 @@ struct UnlikelySigma {
 using RecordingWarning = std::variant<warning::Gaps, warning::UnevenSampling, warning::TimeUnit,
                                       warning::UnlikelyInterval, warning::WrongRate,
                                       warning::NoCommand, warning::UnlikelySpeed, warning::Constant,
-                                      warning::Stuck, warning::Clipped, warning::UnlikelySigma>;
+                                      warning::Stuck, warning::Clipped, warning::Repeated,
+                                      warning::Filtered, warning::UnlikelySigma>;
 
 /// In the order of the alternatives, those of a signal after those of the whole recording.
 std::vector<RecordingWarning> warnings_of(const Job& job, const Recording& recording,

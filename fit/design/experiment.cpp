@@ -46,7 +46,9 @@ Job with_next(const Job& job, const std::vector<ResidualSeries>& residuals) {
     if (!m.fitted) continue;
     Measurement& measurement = recording.measurements.emplace_back();
     measurement.signal = m.signal;
-    measurement.sigma = m.sigma * std::sqrt(excess_of(residuals, job, m.signal));
+    measurement.filter = m.filter;
+    measurement.sigma =
+        m.sigma * std::sqrt(excess_of(residuals, job, m.signal) * static_cast<double>(m.hold));
   }
   for (Recording& r : next.recordings) r.role = Role::validate;
   next.recordings.push_back(std::move(recording));

@@ -15,6 +15,11 @@ Forecast forecast(const Job& job, const std::vector<double>& values) {
   result.finite = at.finite;
   if (!at.finite) return result;
   at.residuals.setZero();  // what the data are does not matter, only where they would be
+  // The noise of a filtered signal is correlated.
+  for (const SeriesRows& rows : at.series) {
+    const Measurement& m = job.recordings[rows.recording].measurements[rows.measurement];
+    at.jacobian.middleRows(rows.first, rows.count) /= std::sqrt(noise_correlation_time(m));
+  }
   result.uncertainty = uncertainty(space, u, at);
   result.identifiability = identifiability(space, u, at, 1.0);
   result.series = std::move(at.series);

@@ -70,7 +70,9 @@ void add_recording(Hash& hash, const Recording& r) {
   for (const auto& [quantity, value] : r.overrides) hash << quantity << value;
   hash << r.measurements.size();
   for (const Measurement& m : r.measurements)
-    hash << m.signal << m.values << m.sigma << m.fitted << m.excluded;
+    hash << m.signal << m.values << m.sigma << m.fitted << m.excluded << m.filter.kind
+         << m.filter.length << m.filter.order << m.filter.cutoff << m.filter.zero_phase
+         << m.uninformative;
 }
 
 void add_parameter(Hash& hash, const FreeParameter& p) {

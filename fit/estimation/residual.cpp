@@ -9,6 +9,15 @@
 namespace axisfit {
 namespace {
 
+/// The measured values that an observer tracks: without the delay of the filter that they went
+/// through, or a high gain would make the axis late. Empty where there are none.
+std::vector<double> target_values(const Recording& recording, Signal signal) {
+  const Measurement* m = recording.find(signal);
+  if (m == nullptr) return {};
+  const double delay = delay_of(m->filter);
+  return delay > 0.0 ? advanced(m->values, delay) : std::vector<double>(m->values);
+}
+
 /// Runs a recording through a model, read by a recorder of these signals; `also` sees the axis at
 /// every sample.
 template <class T, class Also>
@@ -22,11 +31,11 @@ SimulationResult run(const Job& job, const Recording& recording, const Model<T>&
   // are the curve.
   const bool curved_velocity = !capabilities(model.structure).is_force_driven;
   const auto series = [&](Signal signal) {
-    const Measurement* m = observer.active() ? recording.find(signal) : nullptr;
-    if (m == nullptr) return std::vector<double>{};
+    if (!observer.active()) return std::vector<double>{};
+    const std::vector<double> values = target_values(recording, signal);
     const bool curved = signal == Signal::position || curved_velocity;
-    if (!curved) return recorder.refined(m->values);
-    return recorder.refined(target_corners(recording.times, m->values));
+    return recorder.refined(curved && !values.empty() ? target_corners(recording.times, values)
+                                                      : values);
   };
   const std::vector<double> velocity = series(Signal::velocity),
                             position = series(Signal::position);
@@ -66,12 +75,11 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
   const Model<double> model = model_at(job, space, u, index);
   Recorder<double> recorder(model.instruments, signals, recording.times);
   SimulatedRecording simulation;
+  const std::vector<double> velocity = target_values(recording, Signal::velocity),
+                            position = target_values(recording, Signal::position);
   // The force is the sample's: that of the target is periodic between samples, and not zero at
   // them.
-  const auto measured = [&](Signal signal) {
-    const Measurement* m = recording.find(signal);
-    return m == nullptr ? 0.0 : m->values[simulation.samples.size()];
-  };
+  const TargetSeries measured{velocity, position};
   const SimulationResult simulation_result = run(
       job, recording, model, observer, recorder,
       [&](const Integrator<double>& axis) {
@@ -83,13 +91,14 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
              equations.current(axis.mode(), y, axis.input()), drive,
              capabilities(model.structure).has_backlash ? equations.gear_force(axis.mode(), y)
                                                         : drive,
-             observer.active() ? equations.observer_force(y, Target{measured(Signal::velocity),
-                                                                    measured(Signal::position)})
-                               : 0.0});
+             observer.active()
+                 ? equations.observer_force(y, measured.at(simulation.samples.size()))
+                 : 0.0});
       },
       &simulation.modes);
   for (std::size_t m = 0; m < signals.size(); ++m)
-    simulation.simulated.push_back(recorder.readings(m));
+    simulation.simulated.push_back(
+        filtered(recording.measurements[m].filter, recorder.readings(m)));
   simulation.finished = simulation_result.finished;
   simulation.events = simulation_result.events;
   return simulation;
@@ -133,7 +142,7 @@ bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobia
   std::size_t row = 0;
   for (std::size_t f = 0; f < fitted_.size(); ++f) {
     const Measurement& m = recording.measurements[fitted_[f]];
-    const std::vector<T> simulated = recorder.readings(f);
+    const std::vector<T> simulated = filtered(m.filter, recorder.readings(f));
     for (std::size_t i = 0; i < simulated.size(); ++i) {
       if (!recording.fits(m, i)) continue;
       double r = (m.values[i] - value_of(simulated[i])) / m.sigma, weight = 1.0;

@@ -13,22 +13,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// One Butterworth section by the bilinear transform, in place; begins as if the first value had
-/// been there for ever.
-void section(std::vector<double>& values, double q, double interval, double cutoff) {
-  const double w = std::tan(kPi * cutoff * interval);
-  const double norm = 1.0 / (1.0 + w / q + w * w);
-  const double b0 = w * w * norm, b1 = 2.0 * b0;
-  const double a1 = 2.0 * (w * w - 1.0) * norm, a2 = (1.0 - w / q + w * w) * norm;
-  double s1 = values.front() * (1.0 - b0), s2 = values.front() * (b0 - a2);
-  for (double& x : values) {
-    const double y = b0 * x + s1;
-    s1 = b1 * x - a1 * y + s2;
-    s2 = b0 * x - a2 * y;
-    x = y;
-  }
-}
-
 double rms(const std::vector<double>& values, std::size_t first) {
   double sum = 0.0;
   for (std::size_t i = first; i < values.size(); ++i) sum += values[i] * values[i];
@@ -57,7 +41,9 @@ double noise_floor(const Recording& recording, const Observer& observer, double 
     const double low = 1.0 / (1.0 + std::pow(f / cutoff, 8));  // amplitude of both runs
     power += std::norm(h) * low * low * df / nyquist;
   }
-  return mass * m->sigma * std::sqrt(power);
+  // At these frequencies correlated noise is that much stronger than white noise of the same size.
+  return mass * m->sigma *
+         std::sqrt(power * noise_correlation_time(*m) * static_cast<double>(m->hold));
 }
 
 }  // namespace
@@ -71,11 +57,12 @@ std::vector<double> low_pass(std::vector<double> values, double interval, double
   std::vector<double> extended(values.rend() - edge - 1, values.rend() - 1);
   extended.insert(extended.end(), values.begin(), values.end());
   extended.insert(extended.end(), values.rbegin() + 1, values.rbegin() + 1 + edge);
-  for (int run = 0; run < 2; ++run) {
-    section(extended, 0.5411961, interval, cutoff);
-    section(extended, 1.3065630, interval, cutoff);
-    std::ranges::reverse(extended);
-  }
+  extended = filtered({.kind = Filter::Kind::butterworth,
+                       .length = 1,
+                       .order = 4,
+                       .cutoff = cutoff * interval,
+                       .zero_phase = true},
+                      std::move(extended));
   std::copy_n(extended.begin() + edge, values.size(), values.begin());
   return values;
 }

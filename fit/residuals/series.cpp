@@ -41,6 +41,7 @@ std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& res
       fitted.noise = measurement.noise;
       // From other samples than these.
       if (measurement.noise != NoiseSource::fit) unfitted.noise = measurement.noise;
+      fitted.noise_time = unfitted.noise_time = noise_correlation_time(measurement);
       const std::size_t first = recording.score_initial_samples ? 0 : recording.initial_samples;
       for (std::size_t i = first; i < recording.times.size(); ++i) {
         if (!measurement.counts(i)) continue;
@@ -122,9 +123,10 @@ void allow_for_parameters(const Job& job, const FitResult& result,
 }
 
 bool is_explained(const ResidualSeries& series) {
-  const double root = std::sqrt(static_cast<double>(series.values.size()));
+  const double root = std::sqrt(static_cast<double>(series.values.size()) / series.noise_time);
   if (series.noise == NoiseSource::fit)
-    return autocorrelation_time(series.values) < 1.0 + std::max(0.25, 8.0 / root);
+    return autocorrelation_time(series.values) <
+           series.noise_time * (1.0 + std::max(0.25, 8.0 / root));
   // Standard error of the mean square of white noise, times root: about the true size, or about one
   // that noise_from_differences() found in as many samples (both scatter; by simulation).
   const double spread = series.noise == NoiseSource::given ? std::sqrt(2.0) : 3.2;

@@ -29,6 +29,9 @@ struct ResidualSeries : SeriesKey {
   NoiseSource noise = NoiseSource::given;  ///< fit: estimated from this series
   std::vector<std::size_t> samples;        ///< that count, in order
   std::vector<double> values;              ///< (measured - simulated) / sigma at those
+  /// Samples of the noise per independent one: above one where the filter of the measurement made
+  /// it so.
+  double noise_time = 1.0;
   /// What the uncertainty of the estimates alone adds to the mean square, on average; zero where
   /// the series was fitted, and until allow_for_parameters() finds it.
   double allowance = 0.0;
@@ -61,9 +64,10 @@ void allow_for_parameters(const Job& job, const FitResult& result,
 
 /// Whether a series shows no more than its noise: a mean square within 5 % of one, or within four
 /// standard errors of that of white noise, the allowance four times, and noise of the input where
-/// its size is given. The colour of the residual
-/// widens nothing, for what a model lacks is coloured, too. Where the noise was estimated from the
-/// series itself, its size carries no information: then, whether it is white.
+/// its size is given. The colour of the residual widens nothing, for what a model lacks is coloured,
+/// too; that which a filter of the measurement gives its noise does. Where the noise was estimated
+/// from the series itself, its size carries no information: then, whether it is no more coloured
+/// than that.
 bool is_explained(const ResidualSeries& series);
 
 }  // namespace axisfit

@@ -9,6 +9,7 @@
 
 #include "base/units.h"
 #include "fit/data/noise.h"
+#include "fit/data/recording_check.h"
 #include "fit/data/standstill.h"
 #include "fit/estimation/continuation.h"
 #include "fit/estimation/initial_state.h"
@@ -38,6 +39,21 @@ Section override_keys() {
   return keys;
 }
 
+/// What a recorder did to a signal.
+Section filter_keys() {
+  const Filter none;
+  return {Key::optional("moving_average", Integer{2, 100000}, DefaultText{"none"},
+                        "mean of so many samples; odd with `zero_phase`"),
+          Key::optional("butterworth",
+                        Map{{Key::required("order", Integer{1, kHighestFilterOrder}, "order"),
+                             Key::required("cutoff", NumberWithUnit{"Hz", 1e-6, 1e9},
+                                           "where the amplitude of one pass is 1/sqrt(2)")}},
+                        DefaultText{"none"}, "a Butterworth low-pass"),
+          Key::optional("zero_phase", Boolean{}, none.zero_phase,
+                        "`true`: without delay; the mean about each sample, or the Butterworth "
+                        "filter forwards and backwards (filtfilt)")};
+}
+
 /// The input and all that can be measured.
 Section signal_keys() {
   const Map column{column_keys(), 0, false, "column"};
@@ -63,6 +79,14 @@ Section signal_keys() {
         DefaultText{"estimated from the samples"}, "standard deviation of the noise"));
     measured.push_back(Key::optional("fit", Boolean{}, Measurement().fitted,
                                      "`false`: compare and report, do not fit"));
+    measured.push_back(Key::optional("filter", Map{filter_keys(), 1, false, "filter"},
+                                     DefaultText{"none"},
+                                     "digital filter that the samples went through before they "
+                                     "were recorded; the simulated ones go through it too"));
+    measured.push_back(Key::optional("hold", Integer{1, 100000},
+                                     static_cast<double>(Measurement().hold),
+                                     "how often each value is recorded (sample and hold); only "
+                                     "the first of each counts"));
     keys.push_back(Key::optional(
         std::string(signal.name), Map{std::move(measured), 0, false, "measured_column"},
         DefaultText{"not measured"}, fmt::format("{}, in {}", signal.meaning, signal.unit)));
@@ -297,6 +321,8 @@ class RecordingReader {
     measurement.signal = signal.signal;
     const auto values = read_column(data, map, signal.unit);
     map.read("fit", measurement.fitted);
+    const auto hold = map.read("hold", measurement.hold);
+    const auto filter = map.optional("filter");
     if (const auto sigma = map.optional("sigma")) {
       if (sigma->text() == "fit") {
         measurement.noise = NoiseSource::fit;
@@ -309,9 +335,14 @@ class RecordingReader {
     }
     map.finish();
     if (!values || !times || !same_length(node, *values, *times)) return std::nullopt;
+    const Values kept = trimmed(*times, *times, trim);
     measurement.values = trimmed(*values, *times, trim);
+    if (kept.size() < 10) return measurement;  // which read_samples() reports
+    if (filter) read_filter(*filter, sampling(kept), measurement.filter);
+    if (measurement.filter != Filter() || measurement.hold > 1)
+      prepare(filter ? *filter : hold.value_or(node), measurement);
     if (measurement.noise != NoiseSource::given) {
-      measurement.sigma = noise_from_differences(measurement.values);
+      measurement.sigma = noise_from_differences(measurement);
       if (!(measurement.sigma >= kMinSigma))
         node.error(
             fmt::format("the noise of {} cannot be estimated from these samples: give its "
@@ -319,6 +350,73 @@ class RecordingReader {
                         signal.name, with_unit("0.01", signal.unit)));
     }
     return measurement;
+  }
+
+  static void read_filter(const ConfigNode& node, const Sampling& sampling, Filter& filter) {
+    const Section& keys = keys_below(measurement_keys(kSignalTable.front().name), "filter");
+    ConfigMap map(node, keys);
+    const auto average = map.read("moving_average", filter.length);
+    const auto butterworth = map.optional("butterworth");
+    map.read("zero_phase", filter.zero_phase);
+    map.finish();
+    if (average.has_value() == butterworth.has_value()) {
+      if (node.is_map()) node.error("give either a moving_average or a butterworth filter");
+      return;
+    }
+    if (!sampling.is_even() || sampling.gaps > 0) {
+      node.error(
+          "a filter needs even sampling, and these sample times are uneven: fit the unfiltered "
+          "samples, or remove the filter");
+      return;
+    }
+    if (average) {
+      filter.kind = Filter::Kind::moving_average;
+      if (filter.zero_phase && filter.length % 2 == 0)
+        average->error(fmt::format(
+            "an average of {} samples has none in the middle: with zero_phase give an odd number",
+            filter.length));
+      return;
+    }
+    filter.kind = Filter::Kind::butterworth;
+    ConfigMap of_butterworth(*butterworth, keys_below(keys, "butterworth"));
+    of_butterworth.read("order", filter.order);
+    std::optional<double> cutoff;
+    const auto at = of_butterworth.read("cutoff", cutoff);
+    of_butterworth.finish();
+    if (!cutoff) return;
+    filter.cutoff = *cutoff * sampling.interval;
+    if (!(filter.cutoff < 0.5)) {
+      at->error(fmt::format("the cutoff must be below {:.4g} Hz, half the sampling rate",
+                            0.5 / sampling.interval));
+      filter = Filter();
+    }
+  }
+
+  /// Leaves the samples that a filter or a hold leaves, with a diagnostic where that cannot be.
+  static void prepare(const ConfigNode& node, Measurement& measurement) {
+    const std::string_view signal = info(measurement.signal).name;
+    const auto n = static_cast<double>(measurement.values.size());
+    constexpr double kLeastCycles = 2.0;  // of the cutoff, in the recording
+    const Filter& filter = measurement.filter;
+    const bool is_short = filter.kind == Filter::Kind::butterworth
+                              ? filter.cutoff * n < kLeastCycles
+                              : static_cast<double>(filter.length) > n;
+    if (!is_short) exclude_uninformative(measurement);
+    const auto informative =
+        static_cast<std::size_t>(std::ranges::count(measurement.uninformative, false));
+    if (static_cast<double>(informative * measurement.hold) > 1.5 * n) {
+      node.error(fmt::format("the values of {} do not repeat {} times: correct or remove the hold",
+                             signal, measurement.hold));
+      return;
+    }
+    if (is_short || informative < 10) {
+      node.error(fmt::format(
+          "this leaves fewer than 10 samples of the {} that do not depend on what was before "
+          "the recording or only repeat: at least 10 are needed",
+          signal));
+      measurement.filter = Filter();
+      measurement.uninformative.clear();
+    }
   }
 
   /// Whether the recording has what its role and the options of the fit need.
@@ -345,6 +443,14 @@ class RecordingReader {
       if (const auto reason = ignored_by_observer(entry, observer_, recording);
           !reason.empty() && *member[entry.index] != 0.0)
         signals_node.error(reason);
+    for (const Signal target : {Signal::position, Signal::velocity})
+      if (const Measurement* m = recording.find(target);
+          m != nullptr && observer_ == ObserverMode::fixed && m->filter != Filter() &&
+          !m->filter.zero_phase)
+        signals_node.error(fmt::format(
+            "a fixed observer gain assumes that the recorded {} is not delayed, as this filter "
+            "does without zero_phase: record it unfiltered or use observer: continuation",
+            info(target).name));
     if (recording.initial_state == InitialState::data && !can_track)
       signals_node.error("initial_state: data needs a recorded position or velocity");
   }

@@ -96,6 +96,8 @@ std::map<std::string, Section> tables() {
       {"job.recordings", recording},
       {"job.recordings.signals", signals},
       {"job.recordings.signals.SIGNAL", keys_below(signals, "position")},
+      {"job.recordings.signals.SIGNAL.filter",
+       keys_below(keys_below(signals, "position"), "filter")},
       {"job.free.NAME", keys_below(keys_below(job, "free"), "M")},
       {"job.fit", keys_below(job, "fit")},
       {"job.limits", keys_below(job, "limits")},

@@ -133,6 +133,25 @@ std::string text_of(const warning::Clipped& w) {
       info(w.signal).name, short_number(w.value, w.signal), w.samples);
 }
 
+std::string text_of(const warning::Repeated& w) {
+  return fmt::format("{}: each value is recorded {} times, by a sample and hold. Set 'hold: {}'.",
+                     info(w.signal).name, w.times, w.times);
+}
+
+std::string text_of(const warning::Filtered& w) {
+  const std::string filter =
+      w.average > 0
+          ? fmt::format("is a moving average of {} samples: the fit takes that for a part of the "
+                        "axis. Set 'filter: {{moving_average: {}}}', with 'zero_phase: true' if "
+                        "each is the mean of the samples about it",
+                        w.average, w.average)
+          : fmt::format("hardly has noise above about {:.1g} Hz: it went through a low-pass "
+                        "filter, which the fit takes for a part of the axis. Set 'filter' as the "
+                        "drive or recorder has it",
+                        w.corner);
+  return fmt::format("{} {}, or record it unfiltered.", info(w.signal).name, filter);
+}
+
 std::string text_of(const warning::UnlikelySigma& w) {
   return fmt::format(
       "{} scatters by {} from sample to sample, but its sigma is {}. Without a sigma the scatter "

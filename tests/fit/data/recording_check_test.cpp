@@ -137,6 +137,33 @@ TEST(RecordingCheckTest, FindsASensorThatHangs) {
   EXPECT_EQ(check.clipped, 0u);
 }
 
+TEST(RecordingCheckTest, FindsAFilterAndAHoldThatAreNotDeclared) {
+  Recording recording = moving();
+  Measurement& velocity = recording.measurements[1];
+  Measurement& acceleration = recording.measurements[2];
+  Filter filter;
+  filter.kind = Filter::Kind::moving_average;
+  filter.length = 21;
+  velocity.values = filtered(filter, std::vector<double>(velocity.values));
+  for (std::size_t i = 0; i < kSamples; ++i)
+    acceleration.values.edit()[i] = acceleration.values[i - i % 4];
+  RecordingCheck check = check_recording(recording);
+  ASSERT_TRUE(check.measurements[1].filter);
+  EXPECT_EQ(check.measurements[1].filter->average, 21u);
+  EXPECT_EQ(check.measurements[2].repetition, 4u);
+  EXPECT_FALSE(check.measurements[2].filter);
+
+  velocity.filter = filter;
+  acceleration.hold = 4;
+  exclude_uninformative(velocity);
+  exclude_uninformative(acceleration);
+  check = check_recording(recording);
+  for (const ValueCheck& values : check.measurements) {
+    EXPECT_FALSE(values.filter);
+    EXPECT_EQ(values.repetition, 1u);
+  }
+}
+
 TEST(RecordingCheckTest, FindsASensorOutOfItsRange) {
   Recording recording = moving();
   for (double& a : recording.measurements[2].values.edit()) a = std::min(a, 15.0);

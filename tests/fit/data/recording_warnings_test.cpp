@@ -156,6 +156,20 @@ TEST_F(RecordingWarningsTest, OfASignal) {
   EXPECT_EQ(clipped.signal, Signal::acceleration);
   EXPECT_EQ(clipped.samples, 7u);
   EXPECT_EQ(clipped.value, 20.0);
+  values = usual;
+  values.repetition = 10;
+  EXPECT_EQ(only<warning::Repeated>().signal, Signal::acceleration);
+  EXPECT_EQ(only<warning::Repeated>().times, 10u);
+}
+
+TEST_F(RecordingWarningsTest, OfAFilterWhereTheSamplingIsEven) {
+  check_.measurements[0].filter = SuspectedFilter{0.05, 8};
+  const auto filtered = only<warning::Filtered>();
+  EXPECT_EQ(filtered.signal, Signal::velocity);
+  EXPECT_DOUBLE_EQ(filtered.corner, 50.0);
+  EXPECT_EQ(filtered.average, 8u);
+  check_.sampling.jitter = 0.2;
+  EXPECT_EQ(only<warning::UnevenSampling>().jitter, 0.2);
 }
 
 TEST_F(RecordingWarningsTest, OfASigmaThatIsNotTheScatter) {

@@ -114,6 +114,52 @@ TEST(RecordingCost, JacobianIsThatOfDifferencesForAnyNumberOfParameters) {
   }
 }
 
+TEST(RecordingCost, JacobianIsThatOfDifferencesThroughAFilter) {
+  for (const bool zero_phase : {false, true}) {
+    Job job = example_job();
+    Measurement& velocity = job.recordings[0].measurements[0];
+    const Evaluated plain = evaluate(RecordingCost(job, ParameterSpace(job), 0, {}),
+                                     ParameterSpace(job).internal({{2.6, 190.0, 1600.0, 5.1e6, 0.041}}));
+    velocity.filter.kind = Filter::Kind::butterworth;
+    velocity.filter.order = 3;
+    velocity.filter.cutoff = 0.06;
+    velocity.filter.zero_phase = zero_phase;
+    const ParameterSpace space(job);
+    const RecordingCost cost(job, space, 0, {});
+    const Eigen::VectorXd u = space.internal({{2.6, 190.0, 1600.0, 5.1e6, 0.041}});
+    const Evaluated e = evaluate(cost, u);
+    ASSERT_TRUE(e.finite);
+    EXPECT_NE(e.residuals, plain.residuals);
+    for (std::size_t k = 0; k < space.size(); ++k) {
+      constexpr double kStep = 1e-5;
+      Eigen::VectorXd above = u, below = u;
+      above[static_cast<Eigen::Index>(k)] += kStep;
+      below[static_cast<Eigen::Index>(k)] -= kStep;
+      const Evaluated a = evaluate(cost, above), b = evaluate(cost, below);
+      double error = 0.0, size = 0.0;
+      for (std::size_t i = 0; i < e.residuals.size() / 2; ++i) {
+        const double difference = (a.residuals[i] - b.residuals[i]) / (2.0 * kStep);
+        error += std::pow(e.jacobian[i * space.size() + k] - difference, 2);
+        size += std::pow(difference, 2);
+      }
+      EXPECT_LT(std::sqrt(error), 1e-4 * std::sqrt(size)) << space.name(k);
+    }
+  }
+}
+
+TEST(SimulateRecording, FiltersWhatItSimulates) {
+  Job job = example_job();
+  const ParameterSpace space(job);
+  const Eigen::VectorXd u = space.internal({{2.7, 200.0, 1500.0, 5e6, 0.04}});
+  const SimulatedRecording plain = simulate_recording(job, space, 0, u.data(), {});
+  Filter& filter = job.recordings[0].measurements[0].filter;
+  filter.kind = Filter::Kind::moving_average;
+  filter.length = 21;
+  const SimulatedRecording through = simulate_recording(job, space, 0, u.data(), {});
+  EXPECT_EQ(through.simulated[0], filtered(filter, plain.simulated[0]));
+  EXPECT_EQ(through.simulated[1], plain.simulated[1]);
+}
+
 TEST(RecordingCost, RejectsWhatCannotBeSimulated) {
   Job job = example_job();
   job.free[4].upper = 1e300;

@@ -427,6 +427,36 @@ TEST_F(JobFileTest, UnscoredInitialSamplesMustLeaveSomeToScore) {
             "score");
 }
 
+TEST_F(JobFileTest, FiltersAndHoldsAreRead) {
+  std::vector<Column> columns{{"t_ms", {}}, {"u", {}}, {"v", {}}};
+  for (int i = 0; i < 300; ++i) {
+    columns[0].values.push_back(i);
+    columns[1].values.push_back(1.0);
+    columns[2].values.push_back(std::sin(0.1 * (i - i % 4)));
+  }
+  write_data("data.csv", columns);
+  const auto velocity = [&](const std::string& keys) {
+    return read(replaced(kJob, "sigma: 1 mm/s", "sigma: 1 mm/s, " + keys))
+        .job.recordings.front()
+        .measurements.front();
+  };
+  const Measurement average = velocity("filter: {moving_average: 21, zero_phase: true}");
+  EXPECT_EQ(average.filter, (Filter{Filter::Kind::moving_average, 21, 1, 0.25, true}));
+  EXPECT_FALSE(average.counts(9));
+  EXPECT_TRUE(average.counts(10));
+  const Measurement butterworth = velocity("filter: {butterworth: {order: 3, cutoff: 50 Hz}}");
+  EXPECT_EQ(butterworth.filter.kind, Filter::Kind::butterworth);
+  EXPECT_EQ(butterworth.filter.order, 3);
+  EXPECT_NEAR(butterworth.filter.cutoff, 0.05, 1e-12);
+  EXPECT_FALSE(butterworth.filter.zero_phase);
+  const Measurement held = velocity("hold: 4");
+  EXPECT_EQ(held.hold, 4u);
+  EXPECT_EQ(held.values[4], columns[2].values[4]);
+  EXPECT_NE(held.values[5], columns[2].values[5]);
+  EXPECT_TRUE(held.counts(4));
+  EXPECT_FALSE(held.counts(5));
+}
+
 TEST_F(JobFileTest, AccelerationAtRestIsLeftOutUnlessKept) {
   std::vector<Column> columns{{"t_ms", {}}, {"u", {}}, {"v", {}}, {"a", {}}};
   for (int i = 0; i < 200; ++i) {

@@ -65,6 +65,16 @@ TEST(WarningsTextTest, OfSignals) {
   EXPECT_EQ(warning_text(warning::Clipped{Signal::acceleration, 7, 20.0}),
             "acceleration is exactly 20 m/s^2 in 7 samples: it is clipped at the end of its range. "
             "Record with a wider range, or do not fit the signal ('fit: false').");
+  EXPECT_EQ(warning_text(warning::Repeated{Signal::position, 10}),
+            "position: each value is recorded 10 times, by a sample and hold. Set 'hold: 10'.");
+  EXPECT_EQ(warning_text(warning::Filtered{Signal::velocity, 21.0, 21}),
+            "velocity is a moving average of 21 samples: the fit takes that for a part of the "
+            "axis. Set 'filter: {moving_average: 21}', with 'zero_phase: true' if each is the mean "
+            "of the samples about it, or record it unfiltered.");
+  EXPECT_EQ(warning_text(warning::Filtered{Signal::velocity, 62.5, 0}),
+            "velocity hardly has noise above about 60 Hz: it went through a low-pass filter, which "
+            "the fit takes for a part of the axis. Set 'filter' as the drive or recorder has it, "
+            "or record it unfiltered.");
   EXPECT_EQ(warning_text(warning::UnlikelySigma{Signal::velocity, 0.001, 2e-5}),
             "velocity scatters by 0.001 m/s from sample to sample, but its sigma is 2e-05 m/s. "
             "Without a sigma the scatter is used.");
