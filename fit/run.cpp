@@ -119,6 +119,10 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
     }
   FitResult& last = result.selection ? result.selection->result.fit : result.first;
   result.grade = grade_of(result.job(), last, result.diagnosis);
+  // Something is missing, though it cannot be told what.
+  if (result.grade.grade == Grade::explained && result.selection &&
+      !result.selection->verdict.undecided.empty())
+    result.grade = {.grade = Grade::usable, .reason = FitGrade::Reason::residual};
   if (result.grade.grade == Grade::model_wrong)
     for (ParameterResult& p : last.parameters)
       p.uncertainty = {.of_wrong_model = true, .inflation = p.uncertainty.inflation};

@@ -70,10 +70,11 @@ struct Rejection {
     shape,            ///< the data leave a shape of it open
     distinct,         ///< other parameters can imitate it
     strength,         ///< the data leave its strength open
+    share,            ///< it lowers the validation error too little where most remains unexplained
   };
   Test test = Test::fit;
   /// Of significance, the fall of the sum of squares; of validation, the p-value; of
-  /// validation_size, the fall of the validation error, %; of strength, the standard errors from
+  /// validation_size and share, the fall of the validation error, %; of strength, the standard errors from
   /// zero.
   double found = 0.0;
   double required = 0.0;    ///< of significance: the least fall of the sum of squares

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/parallel.h"
+#include "fit/selection/alternatives.h"
 #include "fit/selection/extended_model.h"
 #include "fit/selection/shortlist.h"
 
@@ -35,6 +36,7 @@ class EffectSelector {
         search();
         last_valid_ = snapshot();
         eliminate_backward();
+        drop_imitators();
         record_rivals();
         drop_undecided();
       } catch (const Interrupted&) {
@@ -50,6 +52,8 @@ class EffectSelector {
   struct Rival {
     Candidate candidate;
     CandidateValues values;
+    /// Of the other free parameters, where its refit starts; empty: the fit without either.
+    std::vector<double> others{};
   };
   struct Accepted {
     Candidate candidate;
@@ -307,7 +311,10 @@ class EffectSelector {
   }
 
   /// The model without one accepted effect, refitted.
-  SelectionStep without(std::size_t index) { return with_accepted(declared_job(), index); }
+  SelectionStep without(std::size_t index) {
+    if (accepted_.size() == 1) return result_.models.front();
+    return with_accepted(declared_job(), index);
+  }
 
   /// A job with the accepted effects, but for one, refitted from where they are.
   SelectionStep with_accepted(const Job& declared, std::optional<std::size_t> except = {}) {
@@ -350,6 +357,36 @@ class EffectSelector {
       accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(a));
       rebuild(std::move(reduced));
       a = 0;
+    }
+  }
+
+  /// Where most remains unexplained, a flexible effect lowers every error a little, whatever is
+  /// missing: named is only what accounts for a good part of it.
+  void drop_imitators() {
+    constexpr double kLeastPercent = 25.0;
+    while (!accepted_.empty() && !explained()) {
+      const auto now = residual_series(current().job, current().fit);
+      SelectionStep least;
+      std::size_t place = 0;
+      double percent = kLeastPercent;
+      for (std::size_t a = 0; a < accepted_.size(); ++a) {
+        report_progress("what does " + accepted_[a].candidate.name + " explain?");
+        if (accepted_[a].candidate.is_curve) continue;
+        SelectionStep reduced = without(a);
+        const Improvement gain = improvement(residual_series(reduced.job, reduced.fit), now);
+        if (!reduced.fit.usable || gain.validate_percent >= percent) continue;
+        percent = gain.validate_percent;
+        place = a;
+        least = std::move(reduced);
+      }
+      if (!least.fit.usable) return;
+      if (EffectTrial* trial = trial_of(accepted_[place].candidate)) {
+        trial->decision = Decision::rejected;
+        trial->reason = Reason::failed_test;
+        trial->rejection = {.test = Rejection::Test::share, .found = percent};
+      }
+      accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(place));
+      rebuild(std::move(least));
     }
   }
 
@@ -402,24 +439,40 @@ class EffectSelector {
       places.insert(r.place);
     }
     for (const std::size_t place : places) {
-      SelectionStep reduced = accepted_.size() == 1 ? result_.models.front() : without(place);
+      SelectionStep reduced = without(place);
       accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(place));
       rebuild(std::move(reduced));
+    }
+  }
+
+  /// The constants that may be wrong in place of one that was corrected.
+  void add_alternatives(Accepted& accepted) {
+    if (!accepted.candidate.is_constant) return;
+    const Job& job = current().job;
+    for (Alternative& a :
+         alternatives(job, current().fit, accepted.candidate, catalogue(job, {}))) {
+      std::erase_if(accepted.rivals,
+                    [&](const Rival& r) { return same_effect(r.candidate, a.candidate); });
+      accepted.rivals.insert(accepted.rivals.begin(),
+                             {a.candidate, {{a.strength}, {}}, std::move(a.values)});
     }
   }
 
   bool try_rivals(bool only_record) {
     for (std::size_t a = 0; a < accepted_.size(); ++a) {
       Accepted& accepted = accepted_[a];
+      if (only_record) add_alternatives(accepted);
       if (accepted.rivals.empty()) continue;
-      const SelectionStep reduced = accepted_.size() == 1 ? result_.models.front() : without(a);
+      const SelectionStep reduced = without(a);
       const auto best = residual_series(current().job, current().fit);
-      std::vector<ExtendedModel> list(std::min<std::size_t>(accepted.rivals.size(), 4));
+      std::vector<ExtendedModel> list(std::min<std::size_t>(accepted.rivals.size(), 8));
       report_progress("any rivals of " + accepted.candidate.name + "?");
       parallel_for(list.size(), [&](std::size_t i) {
         const Rival& rival = accepted.rivals[i];
-        list[i] = fit_extended_model(reduced.job, rival.candidate, values_of(reduced.fit),
-                                     rival.values.strengths, rival.values.shapes, context_);
+        list[i] = fit_extended_model(
+            reduced.job, rival.candidate,
+            rival.others.empty() ? values_of(reduced.fit) : rival.others, rival.values.strengths,
+            rival.values.shapes, context_);
       });
       for (std::size_t i = 0; i < list.size(); ++i) {
         ExtendedModel& e = list[i];
@@ -432,8 +485,9 @@ class EffectSelector {
         if (present) continue;
         if (only_record) {
           const bool simpler = e.candidate.parameters() <= accepted.candidate.parameters();
-          if (!is_clearly_worse(loss) && simpler)
-            rival_pairs_.push_back({a, e.candidate, fitted_model(e.job, e.fit)});
+          if (is_clearly_worse(loss) || !simpler) continue;
+          if (trial_of(e.candidate) == nullptr) record_trial(e, &e);
+          rival_pairs_.push_back({a, e.candidate, fitted_model(e.job, e.fit)});
           continue;
         }
         if (!is_clearly_worse(-loss)) continue;

@@ -38,6 +38,11 @@ std::string rejection_text(const Rejection& rejection) {
     case strength:
       return fmt::format("its strength is not determined: {:.2g} standard errors from zero",
                          rejection.found);
+    case share:
+      return fmt::format(
+          "lowers the validation error by no more than {:.2g} %, where most remains unexplained: it "
+          "may imitate what is missing",
+          rejection.found);
   }
   return "";
 }
