@@ -343,10 +343,9 @@ Json recording_check_json(const Job& job, const Recording& recording, const Reco
                        {"noise", values.noise},
                        {"resolution", values.resolution},
                        {"repetition", values.repetition},
-                       {"filter_corner_hz", optional(values.filter.has_value(),
-                                                     values.filter ? values.filter->corner /
-                                                                         sampling.interval
-                                                                   : 0.0)},
+                       {"filter_corner_hz",
+                        optional(values.filter.has_value(),
+                                 values.filter ? values.filter->corner / sampling.interval : 0.0)},
                        {"stuck_samples", values.stuck},
                        {"stuck_at_s", optional(values.stuck > 0, values.stuck_at)},
                        {"clipped_samples", values.clipped},

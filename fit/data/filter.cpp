@@ -111,8 +111,9 @@ std::vector<double> between_fresh(std::vector<double> values, const std::vector<
     const double begin = slope(k) * length, end = slope(k + 1) * length;
     for (std::size_t i = from + 1; i < to; ++i) {
       const double t = static_cast<double>(i - from) / length;
-      curve[i] = values[from] +
-                 t * (begin + t * (3.0 * rise - 2.0 * begin - end + t * (begin + end - 2.0 * rise)));
+      curve[i] =
+          values[from] +
+          t * (begin + t * (3.0 * rise - 2.0 * begin - end + t * (begin + end - 2.0 * rise)));
     }
   }
   return curve;

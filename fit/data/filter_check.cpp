@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "fit/data/noise.h"
@@ -11,9 +13,9 @@ namespace axisfit {
 namespace {
 
 /// The value below which this part of the values lies; reorders them.
-double quantile(std::vector<double>& values, double part) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(
-                                       part * static_cast<double>(values.size() - 1));
+double quantile(std::span<double> values, double part) {
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
   std::ranges::nth_element(values, at);
   return *at;
 }
@@ -29,41 +31,67 @@ double correlation_of_signs(std::span<const double> values, std::size_t lag) {
   return std::sin(0.5 * std::numbers::pi * sum / static_cast<double>(values.size() - lag));
 }
 
-/// What differences of the sixth order of samples `stride` apart show: the octave about
-/// 0.5 / stride cycles per sample.
-struct Octave {
-  double scale = 0.0;  ///< standard deviation of the noise there, if it is noise
-  bool is_noise = false;
+/// The quieter half of a signal's sixth differences in two neighbouring octaves of its spectrum:
+/// about 0.5 / stride cycles per sample, and half of that.
+struct TwoOctaves {
+  double high = 0.0, low = 0.0;  ///< standard deviation of the noise in them, if it is noise
+  bool alternates = false;  ///< as noise does, and neither smooth motion nor a tone: the low one
+  bool is_noise = false;    ///< the same, and it is distributed like noise
 
-  Octave(std::span<const double> values, std::size_t stride) {
-    std::vector<double> d = sixth_differences(values, stride);
+  TwoOctaves(std::span<const double> values, std::size_t stride) {
+    const std::vector<double> highs = sixth_differences(values, stride),
+                              lows = sixth_differences(values, 2 * stride);
+    // Where a gear rings or a command jumps, an octave holds more than noise.
+    constexpr std::size_t kBlocks = 16;
+    const std::size_t size = lows.size() / kBlocks;
+    std::vector<std::pair<double, std::size_t>> blocks;
+    for (std::size_t from = 0; blocks.size() < kBlocks; from += size) {
+      std::vector<double> block = magnitudes(std::span(lows).subspan(from, size));
+      blocks.emplace_back(quantile(block, 0.5), from);
+    }
+    std::ranges::sort(blocks);
+    std::vector<double> quiet_highs, quiet_lows;
+    double correlation = 0.0;
+    for (std::size_t b = 0; b < kBlocks / 2; ++b) {
+      const std::span of_low = std::span(lows).subspan(blocks[b].second, size);
+      correlation += 2.0 / kBlocks * correlation_of_signs(of_low, 2 * stride);
+      std::ranges::copy(magnitudes(of_low), std::back_inserter(quiet_lows));
+      std::ranges::copy(magnitudes(std::span(highs).subspan(blocks[b].second, size)),
+                        std::back_inserter(quiet_highs));
+    }
+    constexpr double kMedian = 0.6745, kGain = 924.0;
+    high = quantile(quiet_highs, 0.5) / (kMedian * std::sqrt(kGain));
+    const double middle = quantile(quiet_lows, 0.5);
+    low = middle / (kMedian * std::sqrt(kGain));
     // White noise has -0.86, noise that falls by 12 dB per octave -0.8; a smooth motion nearly 1.
-    constexpr double kNoise = -0.5;
-    const bool alternates = correlation_of_signs(d, stride) < kNoise;
-    for (double& x : d) x = std::abs(x);
-    const double middle = quantile(d, 0.5);
-    scale = middle / (0.6745 * std::sqrt(924.0));
-    // 2.9 for normal values, 1.4 for a tone.
-    is_noise = alternates && quantile(d, 0.95) > 2.2 * middle;
+    // Of normal values the tail is 2.9, of a tone 1.4; of a gear that rings now and then it is
+    // long.
+    const double tail = quantile(quiet_lows, 0.95) / middle;
+    alternates = correlation < -0.5 && tail > 2.2;
+    is_noise = alternates && tail < 4.0;
+  }
+
+ private:
+  static std::vector<double> magnitudes(std::span<const double> values) {
+    std::vector<double> sizes;
+    for (const double x : values) sizes.push_back(std::abs(x));
+    return sizes;
   }
 };
 
-/// Length of a moving average of white noise: a difference of it is the difference of what enters
-/// and what leaves, so that differences so far apart are opposite. Zero where there is none.
+/// Length of a moving average of white noise: a difference of it is that of what enters and what
+/// leaves, so that differences so far apart are opposite, and their neighbours are not. Zero where
+/// there is none.
 std::size_t moving_average_in(std::span<const double> values) {
   const std::vector<double> d = sixth_differences(values, 1);
-  constexpr std::size_t kLeast = 7;  // nearer ones overlap
-  constexpr double kOpposite = -0.4;  // of -0.5
+  constexpr std::size_t kLeast = 5;                     // nearer ones overlap
+  constexpr double kOpposite = -0.4, kNeighbour = 0.2;  // of -0.5, and of 0.42
   const std::size_t most = std::min<std::size_t>(500, d.size() / 8);
-  std::size_t length = 0;
-  double least = kOpposite;
-  for (std::size_t lag = kLeast; lag <= most; ++lag) {
-    const double correlation = correlation_of_signs(d, lag);
-    if (correlation > least) continue;
-    least = correlation;
-    length = lag;
-  }
-  return length;
+  for (std::size_t lag = kLeast; lag <= most; ++lag)
+    if (correlation_of_signs(d, lag) < kOpposite && correlation_of_signs(d, lag - 1) > kNeighbour &&
+        correlation_of_signs(d, lag + 1) > kNeighbour)
+      return lag;
+  return 0;
 }
 
 }  // namespace
@@ -90,33 +118,24 @@ std::size_t repetition_of(std::span<const double> values) {
 std::optional<SuspectedFilter> suspected_filter(std::span<const double> values) {
   constexpr std::size_t kLeastValues = 500;
   if (values.size() < kLeastValues) return std::nullopt;
-  // By how much the noise has to rise from each octave to the next lower one: what a gear that
-  // rings after every reversal adds is more in the lower ones.
-  constexpr struct {
-    std::size_t stride;
-    double rise;
-  } kOctaves[]{{1, 1.3}, {2, 2.0}, {4, 3.0}};
-  const std::size_t average = moving_average_in(values);
-  constexpr double kRiseOfAverage = 1.15;  // of 1.41: that it is one says more
-  const double scatter = 5.0 / std::sqrt(static_cast<double>(values.size()));
-  const double resolution = resolution_of(values);
-  for (const auto& [stride, rise] : kOctaves) {
-    const Octave high(values, stride);
-    // Rounding is white only where the noise makes it so.
-    if (!(high.scale > 0.5 * resolution)) continue;
-    Octave low(values, 2 * stride);
-    const double least = average > 0 && stride == 1 ? kRiseOfAverage : rise + scatter;
-    if (!low.is_noise || low.scale < least * high.scale) continue;
-    if (average > 0) return SuspectedFilter{0.44 / static_cast<double>(average), average};
-    std::size_t passes = 2 * stride;
-    for (constexpr double kStillRises = 1.25; 16 * passes < values.size(); passes *= 2) {
-      const Octave next(values, 2 * passes);
-      if (!next.is_noise || next.scale < kStillRises * low.scale) break;
-      low = next;
-    }
-    return SuspectedFilter{0.5 / static_cast<double>(passes)};
-  }
-  return std::nullopt;
+  TwoOctaves octaves(values, 1);
+  if (octaves.alternates && octaves.low > octaves.high)
+    if (const std::size_t average = moving_average_in(values); average > 0)
+      return SuspectedFilter{0.44 / static_cast<double>(average), average};
+  // Rounding is white only where the noise makes it so.
+  if (!(octaves.high > 0.5 * resolution_of(values))) return std::nullopt;
+  // From the highest octave on: what rings in a lower one leaves the noise above it white.
+  const double rise = 1.3 + 5.0 / std::sqrt(static_cast<double>(values.size()));
+  constexpr std::size_t kLowest = 8;
+  std::size_t stride = 1;
+  while (octaves.low > rise * octaves.high && !octaves.is_noise && stride < kLowest)
+    octaves = TwoOctaves(values, stride *= 2);
+  if (!octaves.is_noise || !(octaves.low > rise * octaves.high)) return std::nullopt;
+  constexpr double kStillRises = 1.25;
+  while (octaves.is_noise && octaves.low > kStillRises * octaves.high &&
+         64 * stride < values.size())
+    octaves = TwoOctaves(values, stride *= 2);
+  return SuspectedFilter{0.5 / static_cast<double>(stride)};
 }
 
 }  // namespace axisfit

@@ -14,7 +14,7 @@ std::size_t repetition_of(std::span<const double> values);
 
 /// A low-pass filter of evenly sampled values.
 struct SuspectedFilter {
-  double corner = 0.0;      ///< cycles per sample, within a factor of two: it lets the noise below pass
+  double corner = 0.0;  ///< cycles per sample, within a factor of two: it lets the noise below pass
   std::size_t average = 0;  ///< samples of a moving average; zero where it is none or another
 };
 
@@ -22,7 +22,8 @@ struct SuspectedFilter {
 /// the highest octave of the spectrum as in those below, and that of rounding is, too. What the
 /// axis does at such frequencies passes or is a tone, and smooth motion is stronger by far in every
 /// lower octave: neither looks like noise that is lacking in the highest octave all the time. At
-/// least 500 values are needed.
+/// least 500 values are needed. A command of stairs, every few samples another value, has such a
+/// spectrum and causes it.
 std::optional<SuspectedFilter> suspected_filter(std::span<const double> values);
 
 }  // namespace axisfit

@@ -18,8 +18,8 @@ void exclude_uninformative(Measurement& measurement) {
 }
 
 double noise_correlation_time(const Measurement& measurement) {
-  return std::max(1.0, autocorrelation_time(measurement.filter) /
-                           static_cast<double>(measurement.hold));
+  return std::max(1.0,
+                  autocorrelation_time(measurement.filter) / static_cast<double>(measurement.hold));
 }
 
 bool share_samples(const Recording& a, const Recording& b) {

@@ -81,15 +81,29 @@ void find_clipped(const std::vector<double>& values, const std::vector<bool>& st
   }
 }
 
+/// The command in force at every sample.
+std::vector<double> sampled_command(const Recording& recording) {
+  const Schedule& command = recording.command;
+  std::vector<double> values;
+  std::size_t next = 0;
+  for (const double t : recording.times) {
+    while (next < command.times.size() && command.times[next] <= t) ++next;
+    values.push_back(next > 0 ? command.values[next - 1] : 0.0);
+  }
+  return values;
+}
+
 ValueCheck check_values(const Recording& recording, const Measurement& measurement,
-                        const std::vector<bool>& standstill) {
+                        const std::vector<bool>& standstill, bool command_is_held) {
   ValueCheck check;
   const std::vector<double>& values = measurement.values;
   std::tie(check.low, check.high) = std::pair(std::ranges::min(values), std::ranges::max(values));
   check.noise = noise_from_differences(measurement);
   check.resolution = resolution_of(values);
   if (measurement.hold == 1) check.repetition = repetition_of(values);
-  if (measurement.hold == 1 && check.repetition == 1 && measurement.filter == Filter())
+  // Stairs have the spectrum of a moving average, and the motion that they cause has it, too.
+  if (measurement.hold == 1 && check.repetition == 1 && measurement.filter == Filter() &&
+      !command_is_held)
     check.filter = suspected_filter(values);
   // A position that stays is an arm at rest, or at its stop; the voltages have limits of their own.
   const Signal signal = measurement.signal;
@@ -188,8 +202,9 @@ RecordingCheck check_recording(const Recording& recording) {
   RecordingCheck check;
   check.sampling = sampling(recording.times);
   const std::vector<bool> standstill = at_standstill(recording);
+  const bool command_is_held = repetition_of(sampled_command(recording)) > 1;
   for (const Measurement& m : recording.measurements)
-    check.measurements.push_back(check_values(recording, m, standstill));
+    check.measurements.push_back(check_values(recording, m, standstill, command_is_held));
 
   // The command in force from the first sample on.
   const Schedule& command = recording.command;

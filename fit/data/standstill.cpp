@@ -17,7 +17,10 @@ std::vector<bool> at_standstill(const Recording& recording) {
   // position may also move by the two steps of its noise that a window can show.
   std::vector<bool> still(n, false);
   if (velocity != nullptr) {
-    const double limit = 4.0 * velocity->sigma / std::sqrt(double(kWidth));
+    const double correlated =
+        noise_correlation_time(*velocity) * static_cast<double>(velocity->hold);
+    const double limit =
+        4.0 * velocity->sigma * std::sqrt(std::min(1.0, correlated / double(kWidth)));
     double sum = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
       sum += velocity->values[i];

@@ -91,9 +91,8 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
              equations.current(axis.mode(), y, axis.input()), drive,
              capabilities(model.structure).has_backlash ? equations.gear_force(axis.mode(), y)
                                                         : drive,
-             observer.active()
-                 ? equations.observer_force(y, measured.at(simulation.samples.size()))
-                 : 0.0});
+             observer.active() ? equations.observer_force(y, measured.at(simulation.samples.size()))
+                               : 0.0});
       },
       &simulation.modes);
   for (std::size_t m = 0; m < signals.size(); ++m)

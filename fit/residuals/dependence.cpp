@@ -64,8 +64,12 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
     test.reduced_chi_square = mean_square(series.values);
     test.autocorrelation_time = autocorrelation_time(series.values);
     test.explained = is_explained(series);
+    // Its noise is that of the signal, and has the colour that the filter gave it.
+    Measurement like_signal = job.recordings[series.recording].measurements[series.measurement];
+    like_signal.values = series.values;
+    like_signal.uninformative.clear();
     const double noise =
-        series.noise == NoiseSource::fit ? noise_from_differences(series.values) : 1.0;
+        series.noise == NoiseSource::fit ? noise_from_differences(like_signal) : 1.0;
     const double explicable = noise * noise + series.allowance +
                               (series.input_noise_given ? series.input_noise : 0.0);
     test.unexplained_percent =

@@ -338,7 +338,7 @@ class RecordingReader {
     const Values kept = trimmed(*times, *times, trim);
     measurement.values = trimmed(*values, *times, trim);
     if (kept.size() < 10) return measurement;  // which read_samples() reports
-    if (filter) read_filter(*filter, sampling(kept), measurement.filter);
+    if (filter) measurement.filter = read_filter(*filter, sampling(kept));
     if (measurement.filter != Filter() || measurement.hold > 1)
       prepare(filter ? *filter : hold.value_or(node), measurement);
     if (measurement.noise != NoiseSource::given) {
@@ -352,44 +352,47 @@ class RecordingReader {
     return measurement;
   }
 
-  static void read_filter(const ConfigNode& node, const Sampling& sampling, Filter& filter) {
+  /// None, with a diagnostic, where anything is wrong.
+  static Filter read_filter(const ConfigNode& node, const Sampling& sampling) {
     const Section& keys = keys_below(measurement_keys(kSignalTable.front().name), "filter");
     ConfigMap map(node, keys);
+    Filter filter;
     const auto average = map.read("moving_average", filter.length);
     const auto butterworth = map.optional("butterworth");
     map.read("zero_phase", filter.zero_phase);
     map.finish();
     if (average.has_value() == butterworth.has_value()) {
       if (node.is_map()) node.error("give either a moving_average or a butterworth filter");
-      return;
+      return {};
     }
     if (!sampling.is_even() || sampling.gaps > 0) {
       node.error(
           "a filter needs even sampling, and these sample times are uneven: fit the unfiltered "
           "samples, or remove the filter");
-      return;
+      return {};
     }
     if (average) {
       filter.kind = Filter::Kind::moving_average;
-      if (filter.zero_phase && filter.length % 2 == 0)
-        average->error(fmt::format(
-            "an average of {} samples has none in the middle: with zero_phase give an odd number",
-            filter.length));
-      return;
+      if (!filter.zero_phase || filter.length % 2 == 1) return filter;
+      average->error(fmt::format(
+          "an average of {} samples has none in the middle: with zero_phase give an odd number",
+          filter.length));
+      return {};
     }
     filter.kind = Filter::Kind::butterworth;
-    ConfigMap of_butterworth(*butterworth, keys_below(keys, "butterworth"));
-    of_butterworth.read("order", filter.order);
     std::optional<double> cutoff;
+    std::optional<int> order;
+    ConfigMap of_butterworth(*butterworth, keys_below(keys, "butterworth"));
+    of_butterworth.read("order", order);
     const auto at = of_butterworth.read("cutoff", cutoff);
     of_butterworth.finish();
-    if (!cutoff) return;
+    if (!order || !cutoff) return {};
+    filter.order = *order;
     filter.cutoff = *cutoff * sampling.interval;
-    if (!(filter.cutoff < 0.5)) {
-      at->error(fmt::format("the cutoff must be below {:.4g} Hz, half the sampling rate",
-                            0.5 / sampling.interval));
-      filter = Filter();
-    }
+    if (filter.cutoff < 0.5) return filter;
+    at->error(fmt::format("the cutoff must be below {:.4g} Hz, half the sampling rate",
+                          0.5 / sampling.interval));
+    return {};
   }
 
   /// Leaves the samples that a filter or a hold leaves, with a diagnostic where that cannot be.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/rounding.h"
 #include "base/units.h"
 #include "report/text/report_text.h"
 
@@ -140,15 +141,16 @@ std::string text_of(const warning::Repeated& w) {
 
 std::string text_of(const warning::Filtered& w) {
   const std::string filter =
-      w.average > 0
-          ? fmt::format("is a moving average of {} samples: the fit takes that for a part of the "
-                        "axis. Set 'filter: {{moving_average: {}}}', with 'zero_phase: true' if "
-                        "each is the mean of the samples about it",
-                        w.average, w.average)
-          : fmt::format("hardly has noise above about {:.1g} Hz: it went through a low-pass "
-                        "filter, which the fit takes for a part of the axis. Set 'filter' as the "
-                        "drive or recorder has it",
-                        w.corner);
+      w.average > 0 ? fmt::format(
+                          "is a moving average of {} samples: the fit takes that for a part of the "
+                          "axis. Set 'filter: {{moving_average: {}}}', with 'zero_phase: true' if "
+                          "each is the mean of the samples about it",
+                          w.average, w.average)
+                    : fmt::format(
+                          "hardly has noise above about {:g} Hz: it went through a low-pass "
+                          "filter, which the fit takes for a part of the axis. Set 'filter' as the "
+                          "drive or recorder has it",
+                          round_to_digits(w.corner, 1));
   return fmt::format("{} {}, or record it unfiltered.", info(w.signal).name, filter);
 }
 

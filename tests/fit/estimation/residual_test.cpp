@@ -118,8 +118,9 @@ TEST(RecordingCost, JacobianIsThatOfDifferencesThroughAFilter) {
   for (const bool zero_phase : {false, true}) {
     Job job = example_job();
     Measurement& velocity = job.recordings[0].measurements[0];
-    const Evaluated plain = evaluate(RecordingCost(job, ParameterSpace(job), 0, {}),
-                                     ParameterSpace(job).internal({{2.6, 190.0, 1600.0, 5.1e6, 0.041}}));
+    const Evaluated plain =
+        evaluate(RecordingCost(job, ParameterSpace(job), 0, {}),
+                 ParameterSpace(job).internal({{2.6, 190.0, 1600.0, 5.1e6, 0.041}}));
     velocity.filter.kind = Filter::Kind::butterworth;
     velocity.filter.order = 3;
     velocity.filter.cutoff = 0.06;
