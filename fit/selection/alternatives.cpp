@@ -2,8 +2,9 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
-#include <optional>
 
 #include "base/parallel.h"
 #include "fit/estimation/solve.h"
@@ -36,14 +37,18 @@ std::vector<Alternative> alternatives(const Job& job, const FitResult& fit,
   for (Eigen::Index& k : others) k += k >= place ? 1 : 0;
 
   const ParameterSpace space(job);
-  const double from = space.internal(static_cast<std::size_t>(place), values[own - job.free.begin()]);
+  const double from = space.internal(static_cast<std::size_t>(place), values[static_cast<std::size_t>(place)]);
   const double back = space.internal(static_cast<std::size_t>(place), accepted.neutral.front()) - from;
   // What takes the correction back; the others have to do it again.
   const Eigen::VectorXd change = back * fit.at_solution->jacobian.col(place);
   const double alone =
       imitated(fit.at_solution->jacobian(Eigen::all, others), change).first;
 
-  std::vector<std::optional<std::pair<double, Alternative>>> found(candidates.size());
+  struct Found {
+    double left = std::numeric_limits<double>::infinity();  ///< of the change
+    Alternative alternative{};
+  };
+  std::vector<Found> found(candidates.size());
   parallel_for(candidates.size(), [&](std::size_t i) {
     const Candidate& candidate = candidates[i];
     if (candidate.parameters() != 1 || same_effect(candidate, accepted)) return;
@@ -70,13 +75,12 @@ std::vector<Alternative> alternatives(const Job& job, const FitResult& fit,
     }
     alternative.strength = alternative.values.back();
     alternative.values.pop_back();
-    found[i].emplace(left, std::move(alternative));
+    found[i] = {left, std::move(alternative)};
   });
-  std::erase(found, std::nullopt);
-  std::ranges::stable_sort(found, {}, [](const auto& f) { return f->first; });
+  std::ranges::stable_sort(found, {}, &Found::left);
   std::vector<Alternative> list;
-  for (auto& f : found)
-    if (list.size() < kMost) list.push_back(std::move(f->second));
+  for (Found& f : found)
+    if (std::isfinite(f.left) && list.size() < kMost) list.push_back(std::move(f.alternative));
   return list;
 }
 
