@@ -172,7 +172,7 @@ def table(results):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("build", nargs="?", default=ROOT / "build/release")
-    parser.add_argument("--seeds", type=int, default=40)
+    parser.add_argument("--seeds", type=int, default=24)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     given = parser.parse_args()
     with concurrent.futures.ProcessPoolExecutor(given.jobs) as pool:

@@ -26,6 +26,9 @@ namespace fs = std::filesystem;
 /// Of a noise, in any unit. Below this squares of residuals over it overflow.
 constexpr double kMinSigma = 1e-40;
 
+/// Of a recording.
+constexpr std::size_t kLeastSamples = 10;
+
 /// Every quantity of the list, as a value that differs from the axis file's.
 Section override_keys() {
   Section keys;
@@ -127,7 +130,7 @@ class RecordingReader {
       }
     }
     if (data && time && signals) read_samples(*data, *time, *signals, trim, recording);
-    if (!recording.score_initial_samples && recording.times.size() >= 10 &&
+    if (!recording.score_initial_samples && recording.times.size() >= kLeastSamples &&
         recording.initial_samples >= recording.times.size())
       initial_samples.value_or(node).error(fmt::format(
           "with {} unscored initial samples, nothing of the {} samples is left to score",
@@ -197,7 +200,7 @@ class RecordingReader {
       for (double& t : recording.times.edit()) t -= times->front();
     }
     recording.command = schedule_from_samples(command_times, commands);
-    if (recording.times.size() < 10) {
+    if (recording.times.size() < kLeastSamples) {
       const std::size_t left = recording.times.size();
       const std::string samples = fmt::format("{} sample{}", left, left == 1 ? "" : "s");
       trim_node.value_or(time_node).error(
@@ -322,7 +325,9 @@ class RecordingReader {
     const auto values = read_column(data, map, signal.unit);
     map.read("fit", measurement.fitted);
     const auto hold = map.read("hold", measurement.hold);
+    const Values kept = times ? trimmed(*times, *times, trim) : Values();
     const auto filter = map.optional("filter");
+    if (filter) measurement.filter = read_filter(*filter, sampling(kept));
     if (const auto sigma = map.optional("sigma")) {
       if (sigma->text() == "fit") {
         measurement.noise = NoiseSource::fit;
@@ -335,11 +340,8 @@ class RecordingReader {
     }
     map.finish();
     if (!values || !times || !same_length(node, *values, *times)) return std::nullopt;
-    const Values kept = trimmed(*times, *times, trim);
     measurement.values = trimmed(*values, *times, trim);
-    if (kept.size() < 10) return measurement;  // which read_samples() reports
-    if (filter) measurement.filter = read_filter(*filter, sampling(kept));
-    if (measurement.filter != Filter() || measurement.hold > 1)
+    if (kept.size() >= kLeastSamples && (measurement.filter != Filter() || measurement.hold > 1))
       prepare(filter ? *filter : hold.value_or(node), measurement);
     if (measurement.noise != NoiseSource::given) {
       measurement.sigma = noise_from_differences(measurement);
@@ -352,19 +354,29 @@ class RecordingReader {
     return measurement;
   }
 
-  /// None, with a diagnostic, where anything is wrong.
+  /// None where anything is wrong, with a diagnostic, or without enough samples.
   static Filter read_filter(const ConfigNode& node, const Sampling& sampling) {
     const Section& keys = keys_below(measurement_keys(kSignalTable.front().name), "filter");
     ConfigMap map(node, keys);
     Filter filter;
     const auto average = map.read("moving_average", filter.length);
+    std::optional<double> cutoff;
+    std::optional<int> order;
+    std::optional<ConfigNode> at;
     const auto butterworth = map.optional("butterworth");
+    if (butterworth) {
+      ConfigMap of_butterworth(*butterworth, keys_below(keys, "butterworth"));
+      of_butterworth.read("order", order);
+      at = of_butterworth.read("cutoff", cutoff);
+      of_butterworth.finish();
+    }
     map.read("zero_phase", filter.zero_phase);
     map.finish();
     if (average.has_value() == butterworth.has_value()) {
       if (node.is_map()) node.error("give either a moving_average or a butterworth filter");
       return {};
     }
+    if (sampling.samples < kLeastSamples) return {};
     if (!sampling.is_even() || sampling.gaps > 0) {
       node.error(
           "a filter needs even sampling, and these sample times are uneven: fit the unfiltered "
@@ -379,14 +391,8 @@ class RecordingReader {
           filter.length));
       return {};
     }
-    filter.kind = Filter::Kind::butterworth;
-    std::optional<double> cutoff;
-    std::optional<int> order;
-    ConfigMap of_butterworth(*butterworth, keys_below(keys, "butterworth"));
-    of_butterworth.read("order", order);
-    const auto at = of_butterworth.read("cutoff", cutoff);
-    of_butterworth.finish();
     if (!order || !cutoff) return {};
+    filter.kind = Filter::Kind::butterworth;
     filter.order = *order;
     filter.cutoff = *cutoff * sampling.interval;
     if (filter.cutoff < 0.5) return filter;
@@ -412,7 +418,7 @@ class RecordingReader {
                              signal, measurement.hold));
       return;
     }
-    if (is_short || informative < 10) {
+    if (is_short || informative < kLeastSamples) {
       node.error(fmt::format(
           "this leaves fewer than 10 samples of the {} that do not depend on what was before "
           "the recording or only repeat: at least 10 are needed",
