@@ -1,4 +1,5 @@
-// What a recorder does to a signal before it writes it: it filters the samples, and it repeats them.
+// What a recorder does to a signal before it writes it: it filters the samples, and it repeats
+// them.
 //
 // A fit does the same to the simulated samples (residual.cpp), so that measured and simulated ones
 // are compared after the same filter. It is linear: applied to dual numbers it filters the

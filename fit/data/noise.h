@@ -23,13 +23,14 @@ double noise_of_input(std::span<const double> values);
 /// About the mean; zero for no values.
 double standard_deviation(std::span<const double> values);
 
-/// The same of a measurement that may be filtered or held: the standard deviation of the noise after
-/// the filter, taken to be white before. The differences are of samples so far apart that the filter
-/// leaves them a part of that noise; only new samples count. exclude_uninformative() comes first.
+/// The same of a measurement that may be filtered or held: the standard deviation of the noise
+/// after the filter, taken to be white before. The differences are of samples so far apart that the
+/// filter leaves them a part of that noise; only new samples count. exclude_uninformative() comes
+/// first.
 double noise_from_differences(const Measurement& measurement);
 
-/// Differences of the sixth order of samples `stride` apart; empty where there are too few. Those of
-/// white noise are sqrt(924) times as large as it.
+/// Differences of the sixth order of samples `stride` apart; empty where there are too few. Those
+/// of white noise are sqrt(924) times as large as it.
 std::vector<double> sixth_differences(std::span<const double> values, std::size_t stride);
 
 /// The step of the grid on which the values lie; zero when they lie on none.

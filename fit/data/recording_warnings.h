@@ -101,11 +101,11 @@ struct UnlikelySigma {
 
 }  // namespace warning
 
-using RecordingWarning = std::variant<warning::Gaps, warning::UnevenSampling, warning::TimeUnit,
-                                      warning::UnlikelyInterval, warning::WrongRate,
-                                      warning::NoCommand, warning::UnlikelySpeed, warning::Constant,
-                                      warning::Stuck, warning::Clipped, warning::Repeated,
-                                      warning::Filtered, warning::UnlikelySigma>;
+using RecordingWarning =
+    std::variant<warning::Gaps, warning::UnevenSampling, warning::TimeUnit,
+                 warning::UnlikelyInterval, warning::WrongRate, warning::NoCommand,
+                 warning::UnlikelySpeed, warning::Constant, warning::Stuck, warning::Clipped,
+                 warning::Repeated, warning::Filtered, warning::UnlikelySigma>;
 
 /// In the order of the alternatives, those of a signal after those of the whole recording.
 std::vector<RecordingWarning> warnings_of(const Job& job, const Recording& recording,
