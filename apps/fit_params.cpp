@@ -193,6 +193,10 @@ Files files_of(const Arguments& arguments, const JobFile& file, const RunResult&
                const std::string& json) {
   Rig fitted = file.rig;
   fitted.model = fitted_model(run_result.job(), run_result.fit());
+  // What was estimated is no guess any more.
+  std::erase_if(fitted.guessed, [&](std::size_t g) {
+    return std::ranges::count(run_result.job().free, g, &FreeParameter::quantity) > 0;
+  });
   const std::string origin = fmt::format("axisfit {} from {}, starting from {}", version(),
                                          arguments.files.front(), file.axis_file);
   Files files{

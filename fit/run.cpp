@@ -8,6 +8,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "fit/estimation/guesses.h"
+
 namespace axisfit {
 namespace {
 
@@ -94,6 +96,13 @@ void run_requested_analyses(RunResult& result, const RunContext& context) {
     result.suggestion = suggest_experiment(result.job(), result.fit(), context);
 }
 
+void find_guess_influences(const Job& job, FitResult& fit) {
+  if (job.guessed.empty() || !fit.usable) return;
+  std::vector<std::vector<GuessInfluence>> found = guess_influences(job, fit);
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i)
+    fit.parameters[i].rests_on = std::move(found[i]);
+}
+
 }  // namespace
 
 RunResult run(Job job, const RunOptions& options, const RunContext& context) {
@@ -126,6 +135,12 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   if (result.grade.grade == Grade::model_wrong)
     for (ParameterResult& p : last.parameters)
       p.uncertainty = {.of_wrong_model = true, .inflation = p.uncertainty.inflation};
+  find_guess_influences(result.baseline, result.first);
+  if (result.selection) {
+    for (SelectionStep& model : result.selection->models)
+      find_guess_influences(model.job, model.fit);
+    find_guess_influences(result.job(), last);
+  }
   const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - begin;
   result.wall_time = wall_time.count();
   return result;

@@ -1,6 +1,7 @@
 #include "init/starter_axis.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -43,10 +44,15 @@ std::string gain_comment(const DrivenMass& seen) {
 StarterAxis velocity_loop_starter(const std::string& recording) {
   StarterAxis starter;
   starter.structure = {Drive::velocity_loop, Transmission::backlash, {}};
+  std::vector<std::string> guessed;
+  for (const QuantityEntry& entry : quantity_list())
+    if (entry.group.empty() && is_used(entry, starter.structure)) guessed.push_back(entry.name);
   starter.text = fmt::format(
       "{}# GUESSED: everything. The recordings look like those of a velocity loop, so these\n# are "
-      "the values of a published axis. Replace them by yours; docs/axis-file.md.\n#\n{}",
-      origin(recording), paper_axis());
+      "the values of a published axis. Replace them by yours; docs/axis-file.md.\n#\n{}guessed:   "
+      "# "
+      "delete what you have replaced\n  [{}]\n",
+      origin(recording), paper_axis(), fmt::join(guessed, ", "));
   return starter;
 }
 
@@ -75,10 +81,13 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
       "{}# One mass with viscous and Coulomb friction, driven by a force: the simplest model\n# of "
       "an axis. fit-params reports what it lacks, and --close-loop adds it. All\n# keys: "
       "docs/axis-file.md.\nname: starter axis\ndrive: force_source   # driven by {}\ntransmission: "
-      "rigid   # motor and arm move as one; backlash needs a motor\nparameters:\n{}  K_f: {}\n  # "
+      "rigid   # motor and arm move as one; backlash needs a motor\n{}parameters:\n{}  K_f: {}\n  "
+      "# "
       "{}\n  M: {}\n  B_a: {}\neffects:   # initial values, as above\n  coulomb_friction: {{F_c: "
       "{}}}\n  constant_force: {{F_0: {}}}   # gravity, or an offset of the drive\n",
-      origin(recording), sanitized(seen.column), gain_comment(seen), with_unit(gain, "N/V"),
+      origin(recording), sanitized(seen.column),
+      gain_guessed ? "guessed: [K_f]   # delete this line when it is that of a data sheet\n" : "",
+      gain_comment(seen), with_unit(gain, "N/V"),
       sound ? "Fitted by the job; initial values from an impulse balance."
             : "GUESSED, because no impulse balance could be computed; fitted by the job.",
       with_unit(within(balance.mass * gain, 1e-3, 1e5), "kg"),

@@ -99,13 +99,16 @@ Json interval_json(const ParameterUncertainty& u) {
 Json estimate_json(const ParameterResult& p) {
   const Quantity& quantity = find_quantity(p.name.substr(0, p.name.find('@')))->quantity;
   const ParameterUncertainty& u = p.uncertainty;
-  return {{"name", p.name},
-          {"unit", quantity.unit},
-          {"meaning", quantity.meaning},
-          {"value", p.value},
-          {"verdict", verdict_name(u.verdict())},
-          {"standard_error", optional(u.determined, u.standard_error)},
-          {"confidence_interval", interval_json(u)}};
+  Json estimate{{"name", p.name},
+                {"unit", quantity.unit},
+                {"meaning", quantity.meaning},
+                {"value", p.value},
+                {"verdict", verdict_name(u.verdict())},
+                {"standard_error", optional(u.determined, u.standard_error)},
+                {"confidence_interval", interval_json(u)}};
+  for (const GuessInfluence& guess : p.rests_on)
+    estimate["rests_on"].push_back({{"name", guess.name}, {"elasticity", guess.elasticity}});
+  return estimate;
 }
 
 Json parameter_json(const ParameterResult& p, const FreeParameter& free) {

@@ -19,6 +19,7 @@ struct Rig {
   Model<double> model;
   ControllerSettings controller;
   std::array<double, kSignals> noise{};  ///< standard deviation of white noise, signal's unit
+  std::vector<std::size_t> guessed{};    ///< quantities whose values nobody knows, in the list
 };
 
 struct RecordingOptions {

@@ -169,6 +169,7 @@ struct Job {
   MachineLimits limits;
   std::vector<Recording> recordings;
   std::vector<FreeParameter> free;
+  std::vector<std::size_t> guessed{};  ///< quantities whose values are guesses, in quantity_list()
   FitOptions options;
 };
 

@@ -283,7 +283,10 @@ std::optional<Suggestion> suggest_experiment(const Job& job, const FitResult& fi
     }
     return worst;
   };
-  const Eigen::MatrixXd normal = normal_of(job, *fit.at_solution, residuals);
+  const ParameterSpace space(job);
+  const Eigen::VectorXd u = space.internal(values_of(fit));
+  const Linearization at_solution = linearize(job, space, u, fit.observer_gain);
+  const Eigen::MatrixXd normal = normal_of(job, at_solution, residuals);
   suggestion.parameter = worst_of(errors_of(normal)).first;
   std::vector<double> worst(candidates.size(), INFINITY);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -311,10 +314,7 @@ std::optional<Suggestion> suggest_experiment(const Job& job, const FitResult& fi
   if (best == nullptr) return std::nullopt;
 
   // As the fit itself will judge.
-  const ParameterSpace space(job);
-  const Eigen::VectorXd u = space.internal(values_of(fit));
-  suggestion.now = uncertainty(space, u, *fit.at_solution);
-  suggestion.predicted = uncertainty(space, u, joined(*best, *fit.at_solution));
+  suggestion.predicted = uncertainty(space, u, joined(*best, at_solution));
   return suggestion;
 }
 

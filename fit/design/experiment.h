@@ -63,7 +63,6 @@ struct Suggestion {
   Experiment experiment;
   Reach reach;
   std::size_t parameter = 0;  ///< the one whose interval is the widest now
-  Uncertainty now;            ///< of the estimates
   Uncertainty predicted;      ///< after one more recording, of that motion
   MachineLimits limits;       ///< as they were taken, all given
   int tried = 0;              ///< motions of the family

@@ -44,10 +44,17 @@ struct RecordingResult {
   const SimulatedRecording& as_fitted() const { return tracking ? *tracking : free_running; }
 };
 
+/// A quantity whose value is a guess, and what becomes of an estimate when that changes.
+struct GuessInfluence {
+  std::string name;
+  double elasticity = 0.0;  ///< d ln estimate / d ln guess
+};
+
 struct ParameterResult {
   std::string name;
   double value = 0.0;
   ParameterUncertainty uncertainty;
+  std::vector<GuessInfluence> rests_on{};  ///< see guesses.h; found by run()
 };
 
 /// How one start of a multistart ended.
@@ -96,7 +103,9 @@ struct FitResult {
   std::vector<RecordingResult> recordings;
   /// Of what was fitted, degrees of freedom counted; not a number where nothing was.
   double reduced_chi_square = std::numeric_limits<double>::quiet_NaN();
-  /// Where nothing was fitted, not finite. Shared between copies, for it is large.
+  /// Where nothing was fitted, not finite. With respect to the u of the job as it was solved: with
+  /// other initial values, linear parameters have another scale. Shared between copies, for it is
+  /// large.
   std::shared_ptr<const Linearization> at_solution;
   Eigen::MatrixXd correlation;      ///< of the estimates, see uncertainty.h
   double degrees_of_freedom = 0.0;  ///< independent samples, parameters subtracted

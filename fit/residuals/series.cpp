@@ -99,9 +99,9 @@ void allow_for_parameters(const Job& job, const FitResult& result,
   Job other = job;
   for (Recording& r : other.recordings) r.role = r.role == Role::fit ? Role::validate : Role::fit;
   const ParameterSpace space(other);
-  const Linearization& fitted = *result.at_solution;
-  const Linearization unfitted =
-      linearize(other, space, space.internal(values_of(result)), result.observer_gain);
+  const Eigen::VectorXd u = space.internal(values_of(result));
+  const Linearization fitted = linearize(job, space, u, result.observer_gain);
+  const Linearization unfitted = linearize(other, space, u, result.observer_gain);
   if (!fitted.finite || !unfitted.finite || unfitted.jacobian.rows() == 0) return;
   // Columns of equal length, and what is not determined to one part in a thousand left out: an
   // undetermined parameter must not excuse everything.

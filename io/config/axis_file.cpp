@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -113,6 +114,19 @@ void read_controller(const ConfigNode& node, ControllerSettings& settings) {
   map.finish();
 }
 
+void read_guessed(const ConfigNode& node, Rig& rig) {
+  const auto entries = node.as_sequence();
+  if (!entries) return;
+  for (const ConfigNode& entry : *entries) {
+    const QuantityEntry* quantity =
+        entry.as_string() ? quantity_named(entry, rig.model.structure) : nullptr;
+    if (quantity == nullptr) continue;
+    if (std::ranges::count(rig.guessed, quantity->index) > 0)
+      entry.error(fmt::format("{} is listed twice", quantity->name));
+    rig.guessed.push_back(quantity->index);
+  }
+}
+
 }  // namespace
 
 const Section& axis_keys() {
@@ -127,6 +141,9 @@ const Section& axis_keys() {
                     Choice{{{"backlash", "rack and pinion with backlash, stiffness and damping"},
                             {"rigid", "motor and arm move as one mass"}}},
                     "what transmits the force to the arm"),
+      Key::optional("guessed", List{{Text{}}}, DefaultText{"none"},
+                    "quantities whose values here are guesses, such as `[K_f]`; the report names "
+                    "the estimates that rest on them"),
       Key::required("parameters", Map{quantity_keys("")}, "parameters of the paper's model"),
       Key::optional(
           "effects", Map{effect_keys()}, DefaultText{"none"},
@@ -225,9 +242,11 @@ std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
   if (const auto effects = map.optional("effects")) read_effects(*effects, rig.model);
   const auto parameters = map.required("parameters");
   const auto initial = map.optional("initial");
+  const auto guessed = map.optional("guessed");
   if (drive && transmission) {  // what quantities an axis has depends on them
     if (parameters) read_parameters(*parameters, rig.model);
     if (initial) read_initial(*initial, rig.model);
+    if (guessed) read_guessed(*guessed, rig);
   }
   normalize(rig.model);
   if (const auto instruments = map.optional("instruments")) read_instruments(*instruments, rig);
@@ -253,6 +272,11 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
       << drive_names()[static_cast<std::size_t>(structure.drive)];
   out << YAML::Key << "transmission" << YAML::Value
       << transmission_names()[static_cast<std::size_t>(structure.transmission)];
+  if (!rig.guessed.empty()) {
+    out << YAML::Key << "guessed" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+    for (const std::size_t g : rig.guessed) out << quantity_list()[g].name;
+    out << YAML::EndSeq;
+  }
 
   // The quantities in use by group, in the order of the list; those at their standard value are
   // left out where that is the custom (instruments, initial state).

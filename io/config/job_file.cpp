@@ -85,6 +85,7 @@ class JobReader {
       result_.job.axis = result_.rig.name;
       result_.job.model = result_.rig.model;
       result_.job.controller = result_.rig.controller;
+      result_.job.guessed = result_.rig.guessed;
       const auto recordings = map.required("recordings");
       const auto free = map.required("free");
       if (const auto fit = map.optional("fit")) read_options(*fit);

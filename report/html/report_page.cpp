@@ -235,7 +235,8 @@ class Page {
                 drawing);
   }
 
-  static Html badge(const ParameterUncertainty& u) {
+  static Html badge(const ParameterResult& p) {
+    const ParameterUncertainty& u = p.uncertainty;
     const auto kind = [&] {
       switch (u.verdict()) {
         case ParameterVerdict::at_bound:
@@ -250,8 +251,11 @@ class Page {
       }
       return "determined";
     };
-    return html(R"(<span class="badge {}">{}</span>)", kind(),
-                std::string(verdict_name(u.verdict())));
+    Html all =
+        html(R"(<span class="badge {}">{}</span>)", kind(), std::string(verdict_name(u.verdict())));
+    for (const GuessInfluence& guess : p.rests_on)
+      all += html(" <small>{}</small>", guess_text(guess));
+    return all;
   }
 
   Html parameters() {
@@ -271,7 +275,7 @@ class Page {
                                                : "-") +
                   html(R"(<td class="unit">{}</td>)", std::string(quantity.unit)) +
                   number_cell(number(as_specified(run_result_, i).initial)) +
-                  cell(interval_bar(i)) + cell(badge(u)));
+                  cell(interval_bar(i)) + cell(badge(p)));
     }
     Html all = table({"Parameter", "#value", "#standard error", "#95 % interval", "Unit",
                       "#initial", "Within its bounds", "Verdict"},

@@ -39,6 +39,15 @@ std::string correlation_text(const FitResult& result) {
   return paragraph(fmt::format("Strongly correlated: {}{}.", fmt::join(names, ", "), more), 2);
 }
 
+/// The estimates whose error bars leave out that a value beneath them is a guess.
+std::string guesses_text(const FitResult& result) {
+  std::string text;
+  for (const ParameterResult& p : result.parameters)
+    for (const GuessInfluence& guess : p.rests_on)
+      text += paragraph(fmt::format("{}: {}.", p.name, guess_text(guess)), 2);
+  return text;
+}
+
 }  // namespace
 
 std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty>& known,
@@ -74,7 +83,8 @@ std::string uncertainty_text(const Job& job, const FitResult& result) {
     noise += fmt::format(", and {}, which makes up to {:.2g} % of their squares",
                          input_noise_text(job), 100.0 * result.input_part);
   return paragraph("Standard errors and intervals assume " + noise + ".", 2) +
-         correlation_text(result) + identifiability_text(result.identifiability);
+         guesses_text(result) + correlation_text(result) +
+         identifiability_text(result.identifiability);
 }
 
 std::string identifiability_text(const Identifiability& known) {
@@ -167,7 +177,7 @@ std::string suggestion_text(const RunResult& run_result) {
   text = "Next experiment\n" + paragraph(text, 2);
   std::vector<std::vector<std::string>> rows{{"", "95 % interval now", "predicted", "unit"}};
   for (std::size_t i = 0; i < fit.parameters.size(); ++i)
-    rows.push_back({fit.parameters[i].name, interval_text(s.now.parameters[i]),
+    rows.push_back({fit.parameters[i].name, interval_text(fit.parameters[i].uncertainty),
                     interval_text(s.predicted.parameters[i]),
                     std::string(unit_of(run_result.job(), i))});
   return text +

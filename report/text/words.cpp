@@ -288,6 +288,16 @@ std::string motion_text(const Motion& motion) {
   return std::visit([](const auto& m) { return text_of(m); }, motion);
 }
 
+std::string guess_text(const GuessInfluence& guess) {
+  constexpr double kWhole = 0.005;  // of an elasticity of one
+  if (std::abs(guess.elasticity - 1.0) < kWhole)
+    return fmt::format("known only as a ratio to {}, which is a guess", guess.name);
+  if (std::abs(guess.elasticity + 1.0) < kWhole)
+    return fmt::format("known only as a product with {}, which is a guess", guess.name);
+  return fmt::format("rests on {}, which is a guess: 1 % more of that makes {:+.2g} % here",
+                     guess.name, guess.elasticity);
+}
+
 std::string discrimination_text(const Discrimination& discrimination) {
   std::string text = fmt::format("{} and {} explain these recordings equally well; ",
                                  discrimination.chosen, discrimination.rival);

@@ -146,8 +146,11 @@ TEST_F(InitJobTest, TheUsersGainIsAllThatABentScrewNeeds) {
   std::string axis = folder_.read("axis.yaml");
   const std::string guessed = "K_f: 1 N/V";
   ASSERT_NE(axis.find(guessed), std::string::npos) << axis;
+  EXPECT_EQ(read().job.guessed, std::vector{find_quantity("K_f")->index});
   axis.replace(axis.find(guessed), guessed.size(), "K_f: 113.0973 N/V");
+  axis.erase(axis.find("guessed: [K_f]"), axis.find("parameters:") - axis.find("guessed: [K_f]"));
   folder_.write("axis.yaml", axis);
+  EXPECT_TRUE(read().job.guessed.empty());
   const FitResult result = estimate(read().job);
   ASSERT_TRUE(result.usable) << result.message;
   EXPECT_NEAR(result.parameters[0].value, 85.687, 0.01 * 85.687);  // bent by what is missing

@@ -19,6 +19,7 @@
 #include "fit/run.h"
 #include "io/config/axis_file.h"
 #include "io/config/job_file.h"
+#include "report/html/report_page.h"
 #include "report/text/report_text.h"
 #include "report/text/words.h"
 #include "tests/apps/files.h"
@@ -525,6 +526,25 @@ TEST(ResultTest, StrongCorrelationsOfEitherSignAreNamed) {
       << uncertainty_text({}, fit);
 }
 
+TEST(ResultTest, WhatRestsOnAGuessIsSaid) {
+  Found found(rubbing_job());
+  EXPECT_FALSE(found.json.at("parameters")[0].contains("rests_on"));
+  found.run_result.first.parameters[0].rests_on = {{"K_f", 1.0}, {"F_s", -0.25}};
+  found.run_result.first.parameters[1].rests_on = {{"K_f", -1.0}};
+  EXPECT_EQ(result_json(found.run_result).at("parameters")[0].at("rests_on"),
+            Json::parse(R"([{"name": "K_f", "elasticity": 1.0},
+                            {"name": "F_s", "elasticity": -0.25}])"));
+  EXPECT_NE(
+      on_one_line(report_text(found.run_result))
+          .find("M: known only as a ratio to K_f, which is a guess. M: rests on F_s, which is "
+                "a guess: 1 % more of that makes -0.25 % here. B_a: known only as a product "
+                "with K_f, which is a guess."),
+      std::string::npos);
+  EXPECT_NE(report_page(found.run_result, {})
+                .find("</span> <small>known only as a ratio to K_f, which is a guess</small>"),
+            std::string::npos);
+}
+
 TEST(ResultTest, TheNextExperimentPredictsWhatIsKnownAfterIt) {
   RunResult run_result = Found(rubbing_job()).run_result;
   run_result.options.suggest_experiment = true;
@@ -539,9 +559,10 @@ TEST(ResultTest, TheNextExperimentPredictsWhatIsKnownAfterIt) {
                                 .upper = value + 2.0 * error};
   };
   for (const double value : {4.0, 8.0}) {
-    s.now.parameters.push_back(known(value, 0.5));
     s.predicted.parameters.push_back(known(value, 0.125));
   }
+  // What is known now is as in the table of parameters.
+  run_result.first.parameters[0].uncertainty = known(4.0, 0.5);
   EXPECT_EQ(result_json(run_result).at("next_experiment").at("predicted"), Json::parse(R"([
     {"name": "M", "standard_error": 0.125, "confidence_interval": [3.75, 4.25]},
     {"name": "B_a", "standard_error": 0.125, "confidence_interval": [7.75, 8.25]}])"));

@@ -58,8 +58,11 @@ TEST(SuggestExperiment, IsFollowedWithTheSuccessPredicted) {
     return u.parameters[i].standard_error / before.parameters[i].value;
   };
   const std::size_t worst = suggestion->parameter;
-  EXPECT_GT(relative(suggestion->now, worst), relative(suggestion->now, 1 - worst));
-  EXPECT_LT(relative(suggestion->predicted, worst), 0.5 * relative(suggestion->now, worst));
+  const auto now = [&](std::size_t i) {
+    return before.parameters[i].uncertainty.standard_error / before.parameters[i].value;
+  };
+  EXPECT_GT(now(worst), now(1 - worst));
+  EXPECT_LT(relative(suggestion->predicted, worst), 0.5 * now(worst));
 
   job.recordings.push_back(
       recorded(slide(), suggestion->experiment.motion, suggestion->experiment.duration, 6));
@@ -140,6 +143,23 @@ TEST(SuggestExperiment, TrustsNoParameterAtItsBound) {
   EXPECT_FALSE(held_by_bound(job, fit));
 }
 
+// A search for effects leaves a job with other initial values than those that it was solved from.
+TEST(SuggestExperiment, DoesNotDependOnWhereTheFitStarted) {
+  Job job = slow_job(5);
+  job.limits = kLimits;
+  FreeParameter& mass = job.free[0];
+  mass.logarithmic = false;
+  const FitResult fit = estimate(job);
+  const auto expected = suggest_experiment(job, fit);
+  mass.initial *= 3.0;
+  const auto found = suggest_experiment(job, fit);
+  ASSERT_TRUE(expected && found);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double error = expected->predicted.parameters[i].standard_error;
+    EXPECT_NEAR(found->predicted.parameters[i].standard_error, error, 1e-6 * error);
+  }
+}
+
 // What is not determined may be anything within its bounds. A motion that is safe then may show it.
 TEST(SuggestExperiment, DeterminesWhatWasNotDetermined) {
   const Model<double> truth = motor_axis();
@@ -175,15 +195,16 @@ TEST(SuggestExperiment, HasNoneWhereNothingIsAllowed) {
 TEST(SuggestExperiment, PromisesNoMoreWhereTheNoiseIsUnderstated) {
   Job job = slow_job(5);
   job.limits = kLimits;
-  const auto expected = suggest_experiment(job, estimate(job));
+  const FitResult stated = estimate(job);
+  const auto expected = suggest_experiment(job, stated);
   for (Measurement& m : job.recordings[0].measurements) m.sigma /= 3.0;
   const FitResult hopeful = estimate(job);
   EXPECT_NEAR(hopeful.reduced_chi_square, 9.0, 0.5);
   const auto found = suggest_experiment(job, hopeful);
   ASSERT_TRUE(expected && found);
   for (std::size_t i = 0; i < 2; ++i) {
-    const double now = expected->now.parameters[i].standard_error;
-    EXPECT_NEAR(found->now.parameters[i].standard_error, now, 0.05 * now);
+    const double now = stated.parameters[i].uncertainty.standard_error;
+    EXPECT_NEAR(hopeful.parameters[i].uncertainty.standard_error, now, 0.05 * now);
     EXPECT_GT(found->predicted.parameters[i].standard_error,
               0.95 * expected->predicted.parameters[i].standard_error);
   }

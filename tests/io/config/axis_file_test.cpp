@@ -246,6 +246,14 @@ TEST_F(AxisFileTest, QuantitiesOfAnEffectMayHaveAStandardValue) {
             "force_source and transmission rigid: remove it\n");
 }
 
+TEST_F(AxisFileTest, GuessesSurviveWriting) {
+  const Rig rig = read(std::string(kMass) + "guessed: [K_f, coulomb_friction.F_c]\n" +
+                       "effects: {coulomb_friction: {F_c: 2 N}}\n");
+  EXPECT_EQ(rig.guessed, (std::vector<std::size_t>{find_quantity("K_f")->index,
+                                                   find_quantity("coulomb_friction.F_c")->index}));
+  EXPECT_EQ(read(format_axis_file(rig, "")).guessed, rig.guessed);
+}
+
 TEST_F(AxisFileTest, InstrumentsMayLagAndBeLate) {
   const Rig rig = read(std::string(kMass) +
                        "instruments: {velocity: {lag: 3 ms, delay: -200 us}, "
