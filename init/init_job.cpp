@@ -367,9 +367,9 @@ class Initialiser {
       if (!effect_named(entry.group) || !is_used(entry, structure_) || entry.quantity.shape)
         continue;
       const bool force = starter_ && entry.quantity.unit == "N";
-      const double most = force ? std::min((any_gain ? 1e4 : 2.0) * starter_->largest_force,
-                                           entry.quantity.upper)
-                                : 0.0;
+      const double most =
+          force ? std::min((any_gain ? 1e4 : 2.0) * starter_->largest_force, entry.quantity.upper)
+                : 0.0;
       add(entry.name, force ? bounds(entry.quantity.lower < 0.0 ? -most : 0.0, most, "N") : "{}");
     }
     if (starter_ && !force_source()) add("K_1");

@@ -191,9 +191,8 @@ double suggested_observer_gain(std::span<const double> times, std::span<const do
       of_velocity ? kMissing * acceleration / moved : std::sqrt(kMissing * acceleration / moved);
   const Sampling found = sampling(times);
   const double command_noise = noise_of_input(command) / standard_deviation(command);
-  const double highest =
-      std::min(0.3 / found.interval,
-               kBias / (command_noise * std::sqrt(found.interval * found.duration)));
+  const double highest = std::min(
+      0.3 / found.interval, kBias / (command_noise * std::sqrt(found.interval * found.duration)));
   return std::isfinite(rate) ? std::clamp(rate, std::min(10.0 / found.duration, highest), highest)
                              : highest;
 }

@@ -72,9 +72,9 @@ std::optional<RateRatio> rate_ratio(std::span<const double> times, std::span<con
 /// where that is empty rad/s to the position.
 ///
 /// `command` is the force that drives the axis, in any unit, one value per sample. The higher the
-/// gain, the more its noise biases the estimates, a mass too large: by the ratio of noise to signal,
-/// times gain, times the root of interval and duration, in standard errors. The gain keeps that
-/// below a quarter.
+/// gain, the more its noise biases the estimates, a mass too large: by the ratio of noise to
+/// signal, times gain, times the root of interval and duration, in standard errors. The gain keeps
+/// that below a quarter.
 double suggested_observer_gain(std::span<const double> times, std::span<const double> position,
                                std::span<const double> velocity, std::span<const double> command);
 

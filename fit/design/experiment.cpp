@@ -9,6 +9,7 @@
 #include "base/linear_algebra.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "fit/estimation/input_noise.h"
 #include "fit/estimation/residual.h"
 #include "fit/estimation/solve.h"
 #include "fit/residuals/series.h"
@@ -99,7 +100,7 @@ Eigen::Index rows_of(const Linearization& linear) {
   return linear.series.empty() ? 0 : linear.series.back().first + linear.series.back().count;
 }
 
-/// Both, the rows of the first without its priors, before all others.
+/// Both, the rows of the first without its priors and with an exact input, before all others.
 Linearization joined(const Linearization& first, const Linearization& second) {
   const Eigen::Index rows = rows_of(first);
   Linearization both;
@@ -113,6 +114,7 @@ Linearization joined(const Linearization& first, const Linearization& second) {
   both.residuals << first.residuals.head(rows), second.residuals;
   both.jacobian.resize(both.residuals.size(), second.jacobian.cols());
   both.jacobian << first.jacobian.topRows(rows), second.jacobian;
+  both.input_noise = second.input_noise;
   return both;
 }
 
@@ -285,7 +287,8 @@ std::optional<Suggestion> suggest_experiment(const Job& job, const FitResult& fi
   };
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values_of(fit));
-  const Linearization at_solution = linearize(job, space, u, fit.observer_gain);
+  Linearization at_solution = linearize(job, space, u, fit.observer_gain);
+  at_solution.input_noise = input_noise(job, space, u, fit.observer_gain, at_solution);
   const Eigen::MatrixXd normal = normal_of(job, at_solution, residuals);
   suggestion.parameter = worst_of(errors_of(normal)).first;
   std::vector<double> worst(candidates.size(), INFINITY);

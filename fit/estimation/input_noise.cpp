@@ -34,8 +34,7 @@ double bearable_scale(const InputNoise& noise, const Linearization& at) {
     const double least = noise.mean_squares.row(static_cast<Eigen::Index>(s)).minCoeff();
     const SeriesRows& rows = at.series[s];
     if (least > 0.0)
-      square =
-          std::min(square, mean_square(at.residuals.segment(rows.first, rows.count)) / least);
+      square = std::min(square, mean_square(at.residuals.segment(rows.first, rows.count)) / least);
   }
   return std::sqrt(square);
 }

@@ -6,10 +6,10 @@
 
 namespace axisfit {
 
-/// Simulates every `fit` recording at u with draws of its command's noise (Recording::command_sigma)
-/// added to the command: errors of the input then pass through the same model, events included, as
-/// the input itself. `at` is the linearization there. Nothing where every input is exact, or `at` is
-/// not finite.
+/// Simulates every `fit` recording at u with draws of its command's noise
+/// (Recording::command_sigma) added to the command: errors of the input then pass through the same
+/// model, events included, as the input itself. `at` is the linearization there. Nothing where
+/// every input is exact, or `at` is not finite.
 ///
 /// Where the noise was estimated from differences, a part of it may have moved the axis. The draws
 /// are therefore scaled down to where the smallest of them is no larger than the residual.

@@ -76,9 +76,10 @@ double student_95(double degrees_of_freedom);
 ///   covariance = (J'J)^-1 J'G J (J'J)^-1
 ///
 /// through a singular value decomposition of J, columns scaled. Intervals are Student's. Priors
-/// count as one more measurement each. Where the inputs are noisy, no standard error is smaller than
-/// white noise of the stated sizes, in readings and inputs, makes it (see input_noise.h): a residual
-/// that drifts as slowly as that of a noisy input shows too little of itself in one recording.
+/// count as one more measurement each. Where the inputs are noisy, no standard error is smaller
+/// than white noise of the stated sizes, in readings and inputs, makes it (see input_noise.h): a
+/// residual that drifts as slowly as that of a noisy input shows too little of itself in one
+/// recording.
 ///  A parameter at its bound has the interval inside it whose
 /// likelihood ratio is not significant, with the others free; the others have theirs with it fixed.
 ///

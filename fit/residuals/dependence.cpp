@@ -70,8 +70,8 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
     like_signal.uninformative.clear();
     const double noise =
         series.noise == NoiseSource::fit ? noise_from_differences(like_signal) : 1.0;
-    const double explicable = noise * noise + series.allowance +
-                              (series.input_noise_given ? series.input_noise : 0.0);
+    const double explicable =
+        noise * noise + series.allowance + (series.input_noise_given ? series.input_noise : 0.0);
     test.unexplained_percent =
         100.0 * std::sqrt(std::max(0.0, 1.0 - explicable / test.reduced_chi_square));
     const auto& samples = result.recordings[series.recording].as_fitted().samples;

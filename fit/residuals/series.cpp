@@ -19,8 +19,7 @@ void add_input_noise(const Job& job, const Linearization& at, const InputNoise& 
     ResidualSeries* series = find_series(list, {rows.recording, rows.measurement, fitted});
     if (series == nullptr) continue;
     series->input_noise = noise.mean_squares.row(static_cast<Eigen::Index>(s)).maxCoeff();
-    series->input_noise_given =
-        job.recordings[rows.recording].command_noise == NoiseSource::given;
+    series->input_noise_given = job.recordings[rows.recording].command_noise == NoiseSource::given;
   }
 }
 

@@ -64,10 +64,10 @@ void allow_for_parameters(const Job& job, const FitResult& result,
 
 /// Whether a series shows no more than its noise: a mean square within 5 % of one, or within four
 /// standard errors of that of white noise, the allowance four times, and noise of the input where
-/// its size is given. The colour of the residual widens nothing, for what a model lacks is coloured,
-/// too; that which a filter of the measurement gives its noise does. Where the noise was estimated
-/// from the series itself, its size carries no information: then, whether it is no more coloured
-/// than that.
+/// its size is given. The colour of the residual widens nothing, for what a model lacks is
+/// coloured, too; that which a filter of the measurement gives its noise does. Where the noise was
+/// estimated from the series itself, its size carries no information: then, whether it is no more
+/// coloured than that.
 bool is_explained(const ResidualSeries& series);
 
 }  // namespace axisfit

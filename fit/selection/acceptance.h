@@ -74,8 +74,8 @@ struct Rejection {
   };
   Test test = Test::fit;
   /// Of significance, the fall of the sum of squares; of validation, the p-value; of
-  /// validation_size and share, the fall of the validation error, %; of strength, the standard errors from
-  /// zero.
+  /// validation_size and share, the fall of the validation error, %; of strength, the standard
+  /// errors from zero.
   double found = 0.0;
   double required = 0.0;    ///< of significance: the least fall of the sum of squares
   std::size_t tried = 0;    ///< of significance: candidates and settings among which it was chosen

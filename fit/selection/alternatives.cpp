@@ -29,7 +29,8 @@ std::vector<Alternative> alternatives(const Job& job, const FitResult& fit,
   constexpr double kLeft = 0.1;
   constexpr std::size_t kMost = 4;
   const std::vector<double> values = values_of(fit);
-  const auto own = std::ranges::find(job.free, accepted.strengths.front(), &FreeParameter::quantity);
+  const auto own =
+      std::ranges::find(job.free, accepted.strengths.front(), &FreeParameter::quantity);
   if (!fit.at_solution->finite || own == job.free.end()) return {};
   const Eigen::Index place = own - job.free.begin();
   std::vector<Eigen::Index> others(job.free.size() - 1);
@@ -37,12 +38,13 @@ std::vector<Alternative> alternatives(const Job& job, const FitResult& fit,
   for (Eigen::Index& k : others) k += k >= place ? 1 : 0;
 
   const ParameterSpace space(job);
-  const double from = space.internal(static_cast<std::size_t>(place), values[static_cast<std::size_t>(place)]);
-  const double back = space.internal(static_cast<std::size_t>(place), accepted.neutral.front()) - from;
+  const double from =
+      space.internal(static_cast<std::size_t>(place), values[static_cast<std::size_t>(place)]);
+  const double back =
+      space.internal(static_cast<std::size_t>(place), accepted.neutral.front()) - from;
   // What takes the correction back; the others have to do it again.
   const Eigen::VectorXd change = back * fit.at_solution->jacobian.col(place);
-  const double alone =
-      imitated(fit.at_solution->jacobian(Eigen::all, others), change).first;
+  const double alone = imitated(fit.at_solution->jacobian(Eigen::all, others), change).first;
 
   struct Found {
     double left = std::numeric_limits<double>::infinity();  ///< of the change
@@ -68,9 +70,9 @@ std::vector<Alternative> alternatives(const Job& job, const FitResult& fit,
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const auto parameter = static_cast<std::size_t>(columns[k]);
       const FreeParameter& free = extended.free[parameter];
-      const double moved = std::clamp(
-          wider.value(parameter, u[columns[k]] + step[static_cast<Eigen::Index>(k)]), free.lower,
-          free.upper);
+      const double moved =
+          std::clamp(wider.value(parameter, u[columns[k]] + step[static_cast<Eigen::Index>(k)]),
+                     free.lower, free.upper);
       alternative.values.push_back(moved);
     }
     alternative.strength = alternative.values.back();

@@ -360,15 +360,17 @@ class EffectSelector {
     }
   }
 
-  /// Where most remains unexplained, a flexible effect lowers every error a little, whatever is
-  /// missing: named is only what accounts for a good part of it.
+  /// Where the fit stays far from the noise, a flexible effect lowers every error a little,
+  /// whatever is missing: named is only what accounts for a good part of it, and nothing where half
+  /// remains.
   void drop_imitators() {
     constexpr double kLeastPercent = 25.0;
+    constexpr double kLeastPercentAlone = 50.0;
     while (!accepted_.empty() && !explained()) {
       const auto now = residual_series(current().job, current().fit);
       SelectionStep least;
       std::size_t place = 0;
-      double percent = kLeastPercent;
+      double percent = accepted_.size() == 1 ? kLeastPercentAlone : kLeastPercent;
       for (std::size_t a = 0; a < accepted_.size(); ++a) {
         report_progress("what does " + accepted_[a].candidate.name + " explain?");
         if (accepted_[a].candidate.is_curve) continue;
@@ -469,10 +471,9 @@ class EffectSelector {
       report_progress("any rivals of " + accepted.candidate.name + "?");
       parallel_for(list.size(), [&](std::size_t i) {
         const Rival& rival = accepted.rivals[i];
-        list[i] = fit_extended_model(
-            reduced.job, rival.candidate,
-            rival.others.empty() ? values_of(reduced.fit) : rival.others, rival.values.strengths,
-            rival.values.shapes, context_);
+        list[i] = fit_extended_model(reduced.job, rival.candidate,
+                                     rival.others.empty() ? values_of(reduced.fit) : rival.others,
+                                     rival.values.strengths, rival.values.shapes, context_);
       });
       for (std::size_t i = 0; i < list.size(); ++i) {
         ExtendedModel& e = list[i];

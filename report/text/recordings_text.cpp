@@ -37,12 +37,11 @@ std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& c
     const bool force = drives_by_force(recording, job.model);
     std::vector<std::vector<std::string>> rows{
         {"", "lowest", "highest", "unit", "sigma", "noise", "resolution", ""}};
-    rows.push_back({force ? "drive_force" : "command", short_number(check.command.low),
-                    short_number(check.command.high), force ? "N" : "V",
-                    recording.command_sigma > 0.0 ? fmt::format("{:.2g}", recording.command_sigma)
-                                                  : "",
-                    "", "",
-                    fmt::format("{} switches", check.switches)});
+    rows.push_back(
+        {force ? "drive_force" : "command", short_number(check.command.low),
+         short_number(check.command.high), force ? "N" : "V",
+         recording.command_sigma > 0.0 ? fmt::format("{:.2g}", recording.command_sigma) : "", "",
+         "", fmt::format("{} switches", check.switches)});
     const double largest = std::max(std::abs(check.command.low), std::abs(check.command.high));
     if (!force && largest >= job.controller.limit && check.at_maximum > 0.01)
       rows.back().back() = fmt::format("at limit {:.0f} %", 100.0 * check.at_maximum);

@@ -40,7 +40,8 @@ std::string rejection_text(const Rejection& rejection) {
                          rejection.found);
     case share:
       return fmt::format(
-          "lowers the validation error by no more than {:.2g} %, where most remains unexplained: it "
+          "lowers the validation error by no more than {:.2g} %, where most remains unexplained: "
+          "it "
           "may imitate what is missing",
           rejection.found);
   }
@@ -320,11 +321,11 @@ std::string input_noise_text(const Job& job) {
   const Recording& noisiest =
       *std::ranges::max_element(job.recordings, {}, &Recording::command_sigma);
   const bool force = drives_by_force(noisiest, job.model);
-  return fmt::format("noise of {} in the {}{}",
-                     with_unit(fmt::format("{:.3g}", noisiest.command_sigma), force ? "N" : "V"),
-                     force ? "drive force" : "command",
-                     noisiest.command_noise == NoiseSource::given ? ""
-                                                                  : ", estimated from its samples");
+  return fmt::format(
+      "noise of {} in the {}{}",
+      with_unit(fmt::format("{:.3g}", noisiest.command_sigma), force ? "N" : "V"),
+      force ? "drive force" : "command",
+      noisiest.command_noise == NoiseSource::given ? "" : ", estimated from its samples");
 }
 
 std::string stop_reason(const RunResult& run_result) {

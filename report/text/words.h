@@ -30,9 +30,10 @@ std::string weak_direction_text(const WeakDirection& weak);
 /// "a step of 10 V"
 std::string motion_text(const Motion& motion);
 
-/// In which motion and signal two undecided effects differ, one sentence.
 /// "known only as a ratio to K_f, which is a guess"
 std::string guess_text(const GuessInfluence& guess);
+
+/// In which motion and signal two undecided effects differ, one sentence.
 std::string discrimination_text(const Discrimination& discrimination);
 
 /// Whether the input of a recording is a force in newtons.

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/fit/example.h"
+#include "tests/fit/selection/selection.h"
 
 namespace axisfit {
 namespace {
@@ -29,11 +29,11 @@ TEST(Run, TellsOfEveryModelWhatRestsOnGuesses) {
 }
 
 TEST(Run, TellsNothingOfTheParametersOfAWrongModel) {
-  Job job = two_recordings(slide(), slide(), {"M", "B_a"});
+  // A stiff spring that nobody declared.
+  HiddenEffect spring = hidden_effect_named("stroke_spring");
+  spring.strengths[0].second = 1000.0;
+  Job job = two_recordings(spring.truth(), slide(), {"M", "B_a"});
   job.guessed = {find_quantity("K_f")->index};
-  // The mass cannot become what it is.
-  job.free[0].initial = job.free[0].lower = 200.0;
-  job.free[0].upper = 201.0;
   const RunResult result = run(job);
   ASSERT_EQ(result.grade.grade, Grade::model_wrong);
   for (const ParameterResult& p : result.first.parameters) EXPECT_TRUE(p.rests_on.empty());

@@ -178,11 +178,10 @@ TEST_F(InitJobTest, NothingButShortNamesIsEnough) {
 }
 
 TEST_F(InitJobTest, ALargeCurrentLeavesNoRoomBeyondTheBounds) {
-  folder_.write("a.csv", renamed(driven(), {{"t_s", 1.0},
-                                            {"current_a", 20.0},
-                                            {"x_m", 1.0},
-                                            {"v_mps", 1.0},
-                                            {"a_mps2", 1.0}}));
+  folder_.write(
+      "a.csv",
+      renamed(driven(),
+              {{"t_s", 1.0}, {"current_a", 20.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}}));
   make({"a.csv"});
   const std::string bounds = "coulomb_friction.F_c: {bounds: [0 N, 100000 N]}";
   EXPECT_NE(folder_.read("job.yaml").find(bounds), std::string::npos) << folder_.read("job.yaml");

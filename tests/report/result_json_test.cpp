@@ -122,10 +122,10 @@ TEST(ResultTest, JsonHasItsDocumentedKeys) {
     EXPECT_EQ(keys(force), (std::vector<std::string>{"recording", "rms_n", "noise_n", "cutoff_hz",
                                                      "drive_rms_n"}));
   for (const Json& recording : json.at("recordings")) {
-    EXPECT_EQ(keys(recording),
-              (std::vector<std::string>{"name", "file", "role", "samples", "start_s", "end_s",
-                                        "events", "command_sigma", "command_sigma_source",
-                                        "warnings", "signals"}));
+    EXPECT_EQ(
+        keys(recording),
+        (std::vector<std::string>{"name", "file", "role", "samples", "start_s", "end_s", "events",
+                                  "command_sigma", "command_sigma_source", "warnings", "signals"}));
     for (const Json& signal : recording.at("signals"))
       EXPECT_EQ(keys(signal),
                 (std::vector<std::string>{"name", "unit", "fitted", "rmse", "nrmse_percent",

@@ -35,7 +35,11 @@ inline EffectSelection close(const Job& job) {
   std::cout << "reduced chi-square " << fit.reduced_chi_square << "\n";
   for (const EffectTrial& t : selection.effects)
     std::cout << "  " << t.candidate.name << ": decision " << static_cast<int>(t.decision)
-              << ", reason " << static_cast<int>(t.reason) << " " << t.other << "\n";
+              << ", reason " << static_cast<int>(t.reason) << " " << t.other
+              << (t.rejection
+                      ? ", failed test " + std::to_string(static_cast<int>(t.rejection->test))
+                      : "")
+              << "\n";
   return selection;
 }
 

@@ -381,7 +381,8 @@ instruments:
 controller: {limit: 0 V}
 )"),
             "axis.yaml:3:1: unknown key 'colour'; known keys: name, drive, transmission, effects, "
-            "parameters, initial, instruments, controller\naxis.yaml:5:3: key 'B_a' is missing in "
+            "parameters, initial, guessed, instruments, controller\naxis.yaml:5:3: key 'B_a' is "
+            "missing in "
             "parameters\naxis.yaml:5:8: K_f: 'N' cannot be converted to 'N/V'; use for example "
             "'N/V'\naxis.yaml:6:6: M needs a unit, for example '95 kg'\naxis.yaml:7:8: r_g is not "
             "used by an axis with drive force_source and transmission rigid: remove "

@@ -349,8 +349,9 @@ TEST_F(JobFileTest, TheNoiseOfAnInputIsGivenOrOfAForceSourceEstimated) {
   const Recording sent = read(replaced(kJob, "mass.yaml", "driven.yaml")).job.recordings.front();
   EXPECT_EQ(sent.command_sigma, 0.0);
   EXPECT_EQ(sent.command_noise, NoiseSource::given);
-  const Recording force = read(replaced(kJob, command, "drive_force: {column: f, unit: kN, "
-                                                       "sigma: 2 N"))
+  const Recording force = read(replaced(kJob, command,
+                                        "drive_force: {column: f, unit: kN, "
+                                        "sigma: 2 N"))
                               .job.recordings.front();
   EXPECT_EQ(force.command_sigma, 2.0);
 }
