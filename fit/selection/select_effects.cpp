@@ -43,6 +43,7 @@ class EffectSelector {
         result_.interrupted = true;
         restore(std::move(last_valid_));
       }
+      drop_all_where_half_remains();
     }
     finish();
     return std::move(result_);
@@ -361,16 +362,14 @@ class EffectSelector {
   }
 
   /// Where the fit stays far from the noise, a flexible effect lowers every error a little,
-  /// whatever is missing: named is only what accounts for a good part of it, and nothing where half
-  /// remains.
+  /// whatever is missing: named is only what accounts for a good part of it.
   void drop_imitators() {
     constexpr double kLeastPercent = 25.0;
-    constexpr double kLeastPercentAlone = 50.0;
     while (!accepted_.empty() && !explained()) {
       const auto now = residual_series(current().job, current().fit);
       SelectionStep least;
       std::size_t place = 0;
-      double percent = accepted_.size() == 1 ? kLeastPercentAlone : kLeastPercent;
+      double percent = kLeastPercent;
       for (std::size_t a = 0; a < accepted_.size(); ++a) {
         report_progress("what does " + accepted_[a].candidate.name + " explain?");
         if (accepted_[a].candidate.is_curve) continue;
@@ -382,14 +381,36 @@ class EffectSelector {
         least = std::move(reduced);
       }
       if (!least.fit.usable) return;
-      if (EffectTrial* trial = trial_of(accepted_[place].candidate)) {
-        trial->decision = Decision::rejected;
-        trial->reason = Reason::failed_test;
-        trial->rejection = {.test = Rejection::Test::share, .found = percent};
-      }
+      reject_for_share(accepted_[place].candidate, percent);
       accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(place));
       rebuild(std::move(least));
     }
+  }
+
+  /// Of a model with which most of the error remains, no part is named.
+  void drop_all_where_half_remains() {
+    constexpr double kLeastPercent = 50.0;
+    if (accepted_.empty() || explained()) return;
+    const double percent = percent_of_all();
+    if (percent >= kLeastPercent) return;
+    for (const Accepted& a : accepted_) reject_for_share(a.candidate, percent);
+    accepted_.clear();
+    result_.models.resize(1);
+  }
+
+  void reject_for_share(const Candidate& candidate, double percent) {
+    if (EffectTrial* trial = trial_of(candidate)) {
+      trial->decision = Decision::rejected;
+      trial->reason = Reason::failed_test;
+      trial->rejection = {.test = Rejection::Test::share, .found = percent};
+    }
+  }
+
+  /// By how much all accepted effects lower the validation error.
+  double percent_of_all() {
+    return improvement(residual_series(declared_job(), result_.models.front().fit),
+                       residual_series(current().job, current().fit))
+        .validate_percent;
   }
 
   /// Refits the intermediate models after an effect was removed or swapped; the last one is given.
@@ -582,10 +603,7 @@ void EffectSelector::decide() {
   }
   if (!verdict.accepted.empty()) {
     verdict.kind = effects_accepted;
-    verdict.validate_percent =
-        improvement(residual_series(declared_job(), result_.models.front().fit),
-                    residual_series(result_.models.back().job, result_.models.back().fit))
-            .validate_percent;
+    verdict.validate_percent = percent_of_all();
   } else if (result_.explained && verdict.undecided.empty()) {
     verdict.kind = nothing_missing;
   } else if (!verdict.small.empty() && verdict.undecided.empty() && explained()) {

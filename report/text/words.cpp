@@ -41,8 +41,7 @@ std::string rejection_text(const Rejection& rejection) {
     case share:
       return fmt::format(
           "lowers the validation error by no more than {:.2g} %, where most remains unexplained: "
-          "it "
-          "may imitate what is missing",
+          "it may imitate what is missing",
           rejection.found);
   }
   return "";

@@ -41,10 +41,11 @@ std::vector<Filter> all_kinds() {
 /// Of a sine of this many cycles per sample.
 std::complex<double> response(const Filter& filter, double frequency) {
   const std::vector<double> h = impulse_response(filter);
+  const std::size_t centre = h.size() / 2;
   std::complex<double> sum = 0.0;
   for (std::size_t i = 0; i < h.size(); ++i)
     sum += h[i] * std::polar(1.0, -2.0 * std::numbers::pi * frequency *
-                                      (static_cast<double>(i) - static_cast<double>(h.size() / 2)));
+                                      (static_cast<double>(i) - static_cast<double>(centre)));
   return sum;
 }
 

@@ -214,5 +214,27 @@ TEST(SelectEffects, NeedsAUsableFit) {
   EXPECT_EQ(selection.verdict.kind, SelectionVerdict::Kind::no_usable_fit);
 }
 
+// Of two effects one alone leaves most of the error, and a flexible one that is not there would
+// lower it as much.
+TEST(SelectEffects, NamesNothingWhereMostRemains) {
+  Model<double> truth = slide();
+  hidden_effect_named("coulomb_friction").put_into(truth);
+  hidden_effect_named("velocity.gain").put_into(truth);
+  const Job job = two_recordings(truth, slide(), {"M", "B_a"});
+  const FitResult fit = estimate(job);
+  SelectionOptions options;
+  options.max_effects = 1;
+  const EffectSelection one = select_effects(job, fit, options);
+  EXPECT_TRUE(accepted(one).empty());
+  const auto friction = std::ranges::find(one.effects, "coulomb_friction",
+                                          [](const EffectTrial& t) { return t.candidate.name; });
+  ASSERT_NE(friction, one.effects.end());
+  ASSERT_TRUE(friction->rejection);
+  EXPECT_EQ(friction->rejection->test, Rejection::Test::share);
+  EXPECT_GT(friction->rejection->found, 25.0);
+  EXPECT_LT(friction->rejection->found, 50.0);
+  EXPECT_EQ(one.result.job.free.size(), job.free.size());
+}
+
 }  // namespace
 }  // namespace axisfit
