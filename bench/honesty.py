@@ -14,6 +14,7 @@ free-running simulation over the signals, in per cent of the standard deviation 
 errors. It is shown where the truth is known, and does not decide. By the deserved grade, a model
 that lacks something is usable if that error is well below 50 %, and wrong if it is well above."""
 import argparse
+import collections
 import concurrent.futures
 import dataclasses
 import json
@@ -1198,6 +1199,16 @@ def judge(name, program, keep=None):
         not_better and not wrong, not_better and given != what.deserved, seconds)  # fmt: skip
 
 
+def print_counts(counts):
+    """How many situations deserved a grade (rows) and were given one (columns)."""
+    grades = [g for g in GRADES if any(g in pair for pair in counts)]
+    print(f"{'deserved, given':<20}" + "".join(f"{g:>20}" for g in grades))
+    for row in grades:
+        cells = [counts[row, column] or "-" for column in grades]
+        if any(c != "-" for c in cells):
+            print(f"{row:<20}" + "".join(f"{c:>20}" for c in cells))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("build", nargs="?", type=pathlib.Path, default=ROOT / "build" / "release")
@@ -1215,16 +1226,19 @@ def main():
     print(f"{'situation':<26} {'deserved':<18} {'given':<25} {'error':>8}  {'worst parameter':<32} "
           f"{'s':>4}  effects claimed wrongly")  # fmt: skip
     passed = 0
+    counts = collections.Counter()
     with concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
         judged = pool.map(judge, names, [program] * len(names), [options.keep] * len(names))
         for name, j in zip(names, judged):
             passed += j.passed
+            counts[SITUATIONS[name].deserved, j.given.split()[0]] += 1
             worst = f"{j.worst[0]:6.1f} {j.worst[1]}" if j.worst[1] else ""
             verdict = ("strict" if j.strict else "pass") if j.passed else "FAIL"
             print(f"{name:<26} {SITUATIONS[name].deserved:<18} {j.given:<25} {j.error:>7.1f}%  "
                   f"{worst:<32} {j.seconds:>4.0f}  {verdict} {' '.join(j.wrong_effects)}",
                   flush=True)  # fmt: skip
-    print(f"{passed} of {len(names)} pass")
+    print(f"{passed} of {len(names)} pass\n")
+    print_counts(counts)
     return 0 if passed == len(names) else 1
 
 

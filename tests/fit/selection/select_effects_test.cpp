@@ -214,6 +214,17 @@ TEST(SelectEffects, NeedsAUsableFit) {
   EXPECT_EQ(selection.verdict.kind, SelectionVerdict::Kind::no_usable_fit);
 }
 
+// The size of the residual is that of the noise, but its shape is not.
+TEST(SelectEffects, FindsWhatHidesInTheNoise) {
+  HiddenEffect friction = hidden_effect_named("coulomb_friction");
+  friction.strengths[0].second = 0.3;
+  const Job job = friction.job();
+  const FitResult fit = estimate(job);
+  EXPECT_LT(fit.reduced_chi_square, 1.05);
+  const EffectSelection selection = select_effects(job, fit);
+  EXPECT_EQ(accepted(selection), std::set<std::string>{"coulomb_friction"});
+}
+
 // Of two effects one alone leaves most of the error, and a flexible one that is not there would
 // lower it as much.
 TEST(SelectEffects, NamesNothingWhereMostRemains) {
