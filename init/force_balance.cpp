@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "base/linear_algebra.h"
@@ -22,6 +23,8 @@ std::optional<ForceBalance> force_balance(std::span<const double> times,
   const std::size_t n = times.size();
   const std::size_t stretches = std::min(kStretches, n / 8);
   if (stretches < 4 * kTerms || (position.empty() && velocity.empty())) return std::nullopt;
+  // A constant alone would balance one that never changes.
+  if (std::ranges::adjacent_find(force, std::not_equal_to<>()) == force.end()) return std::nullopt;
   std::vector<double> way(n, 0.0), impulse(n, 0.0);
   for (std::size_t i = 1; i < n; ++i) {
     const double dt = times[i] - times[i - 1];

@@ -109,6 +109,11 @@ bool has_input(const RecordingGuess& recording, const Input& input) {
   return recording.find(input.kind, input.is_setpoint) != nullptr;
 }
 
+bool has_changing_input(const RecordingGuess& recording, const Input& input) {
+  const GuessedColumn* column = recording.find(input.kind, input.is_setpoint);
+  return column != nullptr && !column->is_constant();
+}
+
 struct Source {
   std::string name, file;  ///< as the job has them
   RecordingGuess guess;
@@ -174,6 +179,9 @@ class Initialiser {
       list_guess(source.guess.time);
       for (const GuessedColumn& c : source.guess.columns)
         if (is_measured(c) || &c == &input_of(source)) list_guess(c);
+      for (const std::string& name : source.guess.constant)
+        if (seen.insert(name).second)
+          guesses_.push_back(sanitized(name + ": not used, for it never changes"));
     }
   }
 
@@ -184,7 +192,7 @@ class Initialiser {
   /// Whether the job compares the model with the column, unless it drives it.
   bool is_measured(const GuessedColumn& c) const {
     const auto signal = signal_of(c.kind);
-    return signal && !c.is_setpoint && has_signal(*signal, structure_) &&
+    return signal && !c.is_setpoint && !c.is_constant() && has_signal(*signal, structure_) &&
            !(force_source() && c.kind == Kind::force);
   }
 
@@ -219,8 +227,8 @@ class Initialiser {
     });
   }
 
-  /// One input for all recordings of a force source, since K_f belongs to it: one that all have, or
-  /// else the first of them.
+  /// One input for all recordings of a force source, since K_f belongs to it: one that all have, at
+  /// best one that changes in all, or else the first of them.
   void choose_inputs() {
     if (!force_source()) {
       for (Source& source : sources_) {
@@ -233,13 +241,17 @@ class Initialiser {
       }
       return;
     }
-    const auto all = std::ranges::find_if(kForceInputs, [&](const Input& input) {
-      return std::ranges::all_of(sources_,
-                                 [&](const Source& s) { return has_input(s.guess, input); });
-    });
-    const auto first = std::ranges::find_if(
-        kForceInputs, [&](const Input& input) { return has_input(sources_.front().guess, input); });
-    const auto chosen = all != kForceInputs.end() ? all : first;
+    const auto of_all = [&](auto&& has) {
+      return std::ranges::find_if(kForceInputs, [&](const Input& input) {
+        return std::ranges::all_of(sources_, [&](const Source& s) { return has(s.guess, input); });
+      });
+    };
+    auto chosen = of_all(has_changing_input);
+    if (chosen == kForceInputs.end()) chosen = of_all(has_input);
+    if (chosen == kForceInputs.end())
+      chosen = std::ranges::find_if(kForceInputs, [&](const Input& input) {
+        return has_input(sources_.front().guess, input);
+      });
     for (Source& source : sources_)
       if (chosen != kForceInputs.end() && has_input(source.guess, *chosen)) source.input = *chosen;
   }
@@ -252,7 +264,9 @@ class Initialiser {
       std::vector<std::string> found;
       for (const GuessedColumn& c : source.guess.columns) found.push_back(c.column);
       for (const std::string& name : source.guess.unused)
-        found.push_back(name + " (not recognised)");
+        found.push_back(name + (std::ranges::count(source.guess.constant, name) > 0
+                                    ? " (never changes)"
+                                    : " (not recognised)"));
       unusable.push_back(sanitized(fmt::format(
           "{}: no column {}; the columns are {}. If one of them does, rename it, for example to "
           "{}; otherwise record that signal.",

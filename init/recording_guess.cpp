@@ -30,6 +30,16 @@ bool increases(const Values& values) {
   return std::ranges::adjacent_find(values, std::greater_equal<>()) == values.end();
 }
 
+bool never_changes(const Values& values) {
+  return std::ranges::adjacent_find(values, std::not_equal_to<>()) == values.end();
+}
+
+/// What may be of one value throughout, as that of a step or of a free run.
+bool may_be_constant(Kind kind) {
+  return kind == Kind::command || kind == Kind::set_velocity || kind == Kind::current ||
+         kind == Kind::motor_voltage || kind == Kind::force;
+}
+
 Values derivative(const Values& times, const Values& values) {
   Values rate(values.size(), 0.0);
   for (std::size_t i = 1; i + 1 < values.size(); ++i)
@@ -79,7 +89,7 @@ class Guesser {
     for (auto& [key, column] : columns_)
       if (column.size == 0.0) size_other(column);
     explain(time_);
-    RecordingGuess result{path_, finished(time_), {}, std::move(unused_)};
+    RecordingGuess result{path_, finished(time_), {}, std::move(unused_), std::move(constant_)};
     for (auto& [key, column] : columns_) {
       explain(column);
       result.columns.push_back(finished(column));
@@ -147,7 +157,14 @@ class Guesser {
       const bool command = guess->kind == Kind::command || guess->kind == Kind::set_velocity;
       const Key key{guess->kind, guess->is_setpoint && !command};
       const auto there = columns_.find(key);
-      if (there != columns_.end() && there->second.rank >= guess->rank) {
+      const bool constant = never_changes(values);
+      if (constant && (!may_be_constant(key.first) || there != columns_.end())) {
+        unused_.push_back(name);
+        constant_.push_back(name);
+        continue;
+      }
+      if (there != columns_.end() && there->second.rank >= guess->rank &&
+          !never_changes(*there->second.raw)) {
         unused_.push_back(name);
         continue;
       }
@@ -346,10 +363,12 @@ class Guesser {
   const std::string& path_;
   UnscaledColumn time_;
   std::map<Key, UnscaledColumn> columns_;
-  std::vector<std::string> unused_;
+  std::vector<std::string> unused_, constant_;
 };
 
 }  // namespace
+
+bool GuessedColumn::is_constant() const { return never_changes(values); }
 
 const GuessedColumn* RecordingGuess::find(Kind kind, bool is_setpoint) const {
   for (const GuessedColumn& c : columns)

@@ -20,6 +20,8 @@ struct GuessedColumn {
   std::vector<std::string> reasons;  ///< what was measured, sentences without a full stop
   bool guessed = false;              ///< something of it neither name nor measurement says
   std::vector<double> values;        ///< in the SI unit of its kind
+
+  bool is_constant() const;
 };
 
 struct RecordingGuess {
@@ -27,6 +29,7 @@ struct RecordingGuess {
   GuessedColumn time;
   std::vector<GuessedColumn> columns;  ///< one at most of each kind, measured and wanted
   std::vector<std::string> unused;     ///< names of all others
+  std::vector<std::string> constant;   ///< of these, names of what would be signals if they changed
 
   const GuessedColumn* find(Kind kind, bool is_setpoint = false) const;
   GuessedColumn* find(Kind kind, bool is_setpoint = false);
@@ -34,7 +37,8 @@ struct RecordingGuess {
 
 /// Names first. Where they leave a unit open, the derivative of the position against the velocity,
 /// and that of the velocity against the acceleration, tell the ratio of their units and their
-/// signs; last the size of the values. Throws RecordingError where nothing can be the time.
+/// signs; last the size of the values. What never changes measures nothing, but it may drive: the
+/// command of a step. Throws RecordingError where nothing can be the time.
 RecordingGuess guess_recording(const RecordingFile& file, const std::string& path);
 
 }  // namespace axisfit

@@ -70,7 +70,8 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
   starter.gain_guessed = gain_guessed;
   for (const char* effect : {"coulomb_friction", "constant_force"})
     starter.structure.effects.set(*effect_named(effect));
-  const double most = starter.largest_force = round_to_digits(input * gain, 2);
+  const double most = starter.largest_force = std::min(
+      round_to_digits(input * gain, 2), find_quantity("constant_force.F_0")->quantity.upper);
   const auto within = [](double value, double lower, double upper) {
     return std::clamp(round_to_digits(value, 2), lower, upper);
   };

@@ -222,6 +222,46 @@ TEST_F(InitJobTest, WhatIsNoTextIsNotUsed) {
       << folder_.read("job.yaml");
 }
 
+// A flag, a sensor that nobody connected, and a command that the drive was not in: none of them is
+// taken for a signal, nor do they stop anything.
+TEST_F(InitJobTest, WhatNeverChangesIsNotUsed) {
+  Table table = renamed(
+      driven(),
+      {{"t_s", 1.0}, {"i_A", 1.0}, {"x_m", 1.0}, {"velocity_mps", 0.0}, {"torque_enable", 0.0}});
+  for (double& x : table.columns.back().values) x = 1.0;
+  folder_.write("a.csv", table);
+  const InitialJob made = make({"a.csv"});
+  EXPECT_EQ(std::ranges::count(made.guesses, "velocity_mps: not used, for it never changes"), 1);
+  const JobFile file = read();
+  ASSERT_EQ(file.job.recordings[0].measurements.size(), 1u);
+  EXPECT_EQ(file.job.recordings[0].measurements[0].signal, Signal::position);
+  EXPECT_EQ(fitted(file).size(), 4u);
+  EXPECT_NE(folder_.read("job.yaml").find("command: {column: i_A"), std::string::npos);
+}
+
+TEST_F(InitJobTest, ACommandThatNeverChangesIsOne) {
+  Table table = driven();
+  for (double& x : table.columns[1].values) x = 2.0;
+  folder_.write("a.csv", table);
+  make({"a.csv"});
+  EXPECT_NE(folder_.read("job.yaml").find("command: {column: command_v"), std::string::npos);
+}
+
+TEST_F(InitJobTest, ACopyIsRefused) {
+  const Table table = driven();
+  folder_.write("a.csv", table);
+  folder_.write("b.csv", table);
+  for (const char* second : {"a.csv", "b.csv"}) {
+    try {
+      make({"a.csv", second});
+      ADD_FAILURE() << second;
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("a recording counts once"), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 TEST_F(InitJobTest, OneInputServesAllRecordings) {
   // What a current moves says nothing of what a force does: the force is not in both.
   Table both = renamed(
