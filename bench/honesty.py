@@ -1170,14 +1170,20 @@ class Judgement:
     seconds: float
 
 
+def write_situation(name, folder):
+    """Writes recordings, axis.yaml and job.yaml to the folder."""
+    job = Job(name)
+    SITUATIONS[name].make(job)
+    job.write(folder)
+    return job
+
+
 def judge(name, program, keep=None):
     what = SITUATIONS[name]
-    job = Job(name)
-    what.make(job)
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(keep, name) if keep else pathlib.Path(temporary)
         folder.mkdir(parents=True, exist_ok=True)
-        job.write(folder)
+        job = write_situation(name, folder)
         begin = time.monotonic()
         done = subprocess.run(
             [program, "job.yaml", "--json", "--time-limit", "60", "--threads", "1",

@@ -470,9 +470,17 @@ Json check_json(const Job& job, const std::vector<RecordingCheck>& checks, const
                           {"standard_error", optional(u.determined, u.standard_error)},
                           {"sensitivity", std::move(sensitivity)}});
   }
-  Json json{{"schema_version", kSchemaVersion},     {"axisfit", version()},
-            {"recordings", std::move(recordings)},  {"evaluation_time_s", run_time.evaluation},
-            {"expected_time_s", run_time.expected}, {"finite", forecast.finite},
+  Json json{{"schema_version", kSchemaVersion},
+            {"axisfit", version()},
+            {"recordings", std::move(recordings)},
+            {"evaluation_time_s", run_time.evaluation},
+            {"expected_time_s",
+             {{"explained", run_time.explained},
+              {"unexplained", run_time.unexplained},
+              {"close_loop_nothing_missing", run_time.nothing_missing},
+              {"close_loop_one_effect", run_time.one_effect},
+              {"close_loop_no_effect", run_time.no_effect}}},
+            {"finite", forecast.finite},
             {"parameters", std::move(parameters)}};
   json.update(
       identifiability_json(space, forecast.uncertainty.correlation, forecast.identifiability));

@@ -10,10 +10,6 @@
 namespace axisfit {
 
 RunTimeEstimate estimate_run_time(const Job& job) {
-  // Of the jobs in configs/jobs whose model explains them, and that with a generous hand: from a
-  // start to its end, by continuation or without, and then for the tests of the residual.
-  const double of_start = job.options.observer == ObserverMode::continuation ? 100.0 : 50.0;
-  constexpr double kOfDiagnosis = 10.0;
   using Clock = std::chrono::steady_clock;
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(draw_start(job, 0));
@@ -27,11 +23,22 @@ RunTimeEstimate estimate_run_time(const Job& job) {
     run_time.evaluation = turn == 0 ? time : std::min(run_time.evaluation, time);
     spent += time;
   }
+  // Evaluations on the two threads of one machine, medians over recordings that were explained or
+  // not (bench/results/run_times.md). Without a continuation there are fewer attempts.
+  constexpr double kStartUp = 0.03, kSearch = 0.05;  // s
+  const bool attempts = job.options.observer == ObserverMode::continuation;
+  const double unexplained = attempts ? 1500.0 : 500.0;
   const double starts = std::max(1, job.options.starts);
-  const auto recordings = std::ranges::count(job.recordings, Role::fit, &Recording::role);
-  const double threads =
-      std::min<double>(thread_count(job.options.threads), starts * static_cast<double>(recordings));
-  run_time.expected = run_time.evaluation * (of_start * starts / threads + kOfDiagnosis);
+  const double threads = thread_count(job.options.threads);
+  const double per_start = run_time.evaluation * starts / std::min(threads, starts);
+  const double slower = 2.0 / std::min(threads, 8.0);  // candidates share the threads
+  run_time.explained = kStartUp + 60.0 * per_start;
+  run_time.unexplained = kStartUp + unexplained * per_start;
+  run_time.nothing_missing = run_time.explained + kSearch + 350.0 * slower * run_time.evaluation;
+  run_time.one_effect =
+      run_time.unexplained + (attempts ? 4000.0 : 1500.0) * slower * run_time.evaluation;
+  run_time.no_effect =
+      run_time.unexplained + (attempts ? 15000.0 : 3000.0) * slower * run_time.evaluation;
   return run_time;
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <numeric>
 
+#include "base/convolution.h"
 #include "base/distributions.h"
 #include "base/linear_algebra.h"
 #include "fit/residuals/autocovariance.h"
@@ -88,14 +89,10 @@ Eigen::MatrixXd sandwich_middle(const Linearization& at, const Autocovariances& 
     const SeriesRows& rows = at.series[s];
     const auto block = j.middleRows(rows.first, rows.count);
     const std::vector<double>& g = autocovariances.autocovariance[s];
-    Eigen::MatrixXd spread = g[0] * block;
-    for (std::size_t i = 1; i < g.size(); ++i) {
-      const auto lag = static_cast<Eigen::Index>(i);
-      const Eigen::Index overlap = rows.count - lag;
-      spread.topRows(overlap) += g[i] * block.bottomRows(overlap);
-      spread.bottomRows(overlap) += g[i] * block.topRows(overlap);
-    }
-    sum += block.transpose() * spread;
+    if (g.size() == 1)
+      sum += g[0] * (block.transpose() * block);
+    else
+      sum += block.transpose() * toeplitz_product(g, block);
     end = rows.first + rows.count;
   }
   const auto priors = j.bottomRows(j.rows() - end);

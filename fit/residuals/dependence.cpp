@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/distributions.h"
+#include "base/parallel.h"
 #include "fit/data/noise.h"
 #include "fit/residuals/outliers.h"
 
@@ -55,11 +56,13 @@ std::vector<std::size_t> quantile_ranges(const std::vector<double>& x, std::size
 std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) {
   constexpr std::size_t kRanges = 12;
   constexpr double kSignificant = 1e-3;
-  std::vector<SeriesTest> tests;
   std::vector<ResidualSeries> list = residual_series(job, result);
   if (result.usable) allow_for_parameters(job, result, list);
-  for (ResidualSeries& series : list) {
-    SeriesTest test;
+  std::vector<SeriesTest> tests(list.size());
+  const ThreadPool pool(job.options.threads);
+  parallel_for(list.size(), [&](std::size_t s) {
+    ResidualSeries& series = list[s];
+    SeriesTest& test = tests[s];
     const double n = static_cast<double>(series.values.size());
     test.reduced_chi_square = mean_square(series.values);
     test.autocorrelation_time = autocorrelation_time(series.values);
@@ -119,8 +122,7 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
     }
     std::ranges::stable_sort(test.dependences, std::greater{}, &Dependence::fraction);
     test.series = std::move(series);
-    tests.push_back(std::move(test));
-  }
+  });
   return tests;
 }
 

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <vector>
 
+#include "base/convolution.h"
 #include "base/distributions.h"
 #include "fit/residuals/autocovariance.h"
 #include "fit/residuals/series.h"
@@ -42,11 +43,10 @@ Drift drift(std::span<const double> times, std::span<const double> values) {
   // t'G t, as the meat in uncertainty.cpp
   const std::vector<double> g = modelled_autocovariance(residual);
   double correlation_length = 1.0, meat = g[0] * square;
-  for (std::size_t lag = 1; lag < g.size(); ++lag) {
-    correlation_length += 2.0 * g[lag] / g[0];
-    double sum = 0.0;
-    for (std::size_t i = lag; i < n; ++i) sum += t[i] * t[i - lag];
-    meat += 2.0 * g[lag] * sum;
+  if (g.size() > 1) {
+    correlation_length += 2.0 * std::accumulate(g.begin() + 1, g.end(), 0.0) / g[0];
+    const Eigen::Map<const Eigen::VectorXd> line(t.data(), static_cast<Eigen::Index>(n));
+    meat = line.dot(toeplitz_product(g, line).col(0));
   }
   meat = std::max(meat, std::max(g[0], rounding * rounding) * square);
   correlation_length = std::max(1.0, correlation_length);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/convolution.h"
 #include "base/linear_algebra.h"
 #include "fit/estimation/input_noise.h"
 #include "fit/estimation/solve.h"
@@ -74,10 +75,17 @@ double autocorrelation_time(std::span<const double> values) {
   const std::size_t n = values.size();
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) /
                       static_cast<double>(std::max<std::size_t>(1, n));
+  std::vector<double> centred(values.begin(), values.end());
+  for (double& x : centred) x -= mean;
+  // Of a white residual, a few lags are enough.
+  constexpr std::size_t kDirect = 16;
+  std::vector<double> all;
   const auto covariance = [&](std::size_t lag) {
-    double sum = 0.0;
-    for (std::size_t i = lag; i < n; ++i) sum += (values[i] - mean) * (values[i - lag] - mean);
-    return sum;
+    if (lag < kDirect)
+      return std::inner_product(centred.begin() + static_cast<std::ptrdiff_t>(lag), centred.end(),
+                                centred.begin(), 0.0);
+    if (all.empty()) all = lagged_products(centred);
+    return all[lag];
   };
   const double variance = covariance(0);
   if (!(variance > 0.0)) return 1.0;

@@ -69,16 +69,17 @@ std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& c
 }
 
 std::string run_time_text(const Job& job, const RunTimeEstimate& run_time) {
+  const auto text = [](double seconds) {
+    return seconds < 90.0 ? fmt::format("{:g} s", round_to_digits(seconds, 1))
+                          : fmt::format("{:g} min", round_to_digits(seconds / 60.0, 1));
+  };
   const int threads = thread_count(job.options.threads);
-  const std::string time =
-      run_time.expected < 1.0 ? "about a second"
-      : run_time.expected < 90.0
-          ? fmt::format("about {:g} s", round_to_digits(run_time.expected, 1))
-          : fmt::format("about {:g} min", round_to_digits(run_time.expected / 60.0, 1));
-  return paragraph(
-      fmt::format("Estimated run time: {} on this machine with {} thread{}; up to ten times that "
-                  "if the model does not explain the recordings.",
-                  time, threads, threads == 1 ? "" : "s"));
+  return paragraph(fmt::format(
+      "Estimated run time on this machine with {} thread{}: {} if the model explains the "
+      "recordings, otherwise {}. With --close-loop: {} if nothing is missing, {} if one effect is, "
+      "and {} or more if no effect suffices.",
+      threads, threads == 1 ? "" : "s", text(run_time.explained), text(run_time.unexplained),
+      text(run_time.nothing_missing), text(run_time.one_effect), text(run_time.no_effect)));
 }
 
 }  // namespace axisfit

@@ -593,8 +593,7 @@ TEST_F(CommandLineTest, WhatCanBeDeterminedIsToldBeforeTheFit) {
       << text.out;
   EXPECT_NE(text.out.find("\nWhat these recordings determine"), std::string::npos) << text.out;
   // How long depends on what else the machine does.
-  const std::regex time(
-      "\nEstimated run time: about (a second|[0-9]+ s|[0-9]+ min) on this machine");
+  const std::regex time("\nEstimated run time on this machine with [0-9]+ threads?: [0-9.]+ s if");
   EXPECT_TRUE(std::regex_search(text.out, time)) << text.out;
   EXPECT_EQ(text.out.find("\n  ! "), std::string::npos) << text.out;  // nothing looks wrong
   EXPECT_EQ(text.out.find("chi-square"), std::string::npos);
@@ -610,7 +609,12 @@ TEST_F(CommandLineTest, WhatCanBeDeterminedIsToldBeforeTheFit) {
     more.insert(more.begin(), {job(), "--check", "--json", "--threads", "1"});
     const Json timed = Json::parse(fit(std::move(more)).out);
     EXPECT_GT(timed.at("evaluation_time_s"), 0.0);
-    return timed.at("expected_time_s").get<double>() / timed.at("evaluation_time_s").get<double>();
+    const Json& expected = timed.at("expected_time_s");
+    EXPECT_GT(expected.at("unexplained"), expected.at("explained"));
+    EXPECT_GT(expected.at("close_loop_nothing_missing"), expected.at("explained"));
+    EXPECT_GT(expected.at("close_loop_one_effect"), expected.at("unexplained"));
+    EXPECT_GT(expected.at("close_loop_no_effect"), expected.at("close_loop_one_effect"));
+    return expected.at("unexplained").get<double>() / timed.at("evaluation_time_s").get<double>();
   };
   EXPECT_GT(evaluations({"--starts", "40"}), 10.0 * evaluations({}));
   EXPECT_EQ(fit({job(), "--check", "--profile"}).exit_code, 2);

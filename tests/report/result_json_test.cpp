@@ -592,20 +592,20 @@ TEST(ResultTest, NoExperimentIsSuggestedWhereNoneIsSafe) {
   EXPECT_EQ(result_json(run_result).at("next_experiment"), nullptr);
 }
 
-TEST(ResultTest, TheTimeOfAFitIsSaidToItsFirstDigit) {
+TEST(ResultTest, RunTimesAreSaidToTheirFirstDigit) {
   Job job;
   job.options.threads = 1;
-  const auto told = [&](double seconds) {
-    return on_one_line(run_time_text(job, {.evaluation = 0.01, .expected = seconds}));
-  };
-  EXPECT_EQ(
-      told(0.9),
-      "Estimated run time: about a second on this machine with 1 thread; up to ten times that "
-      "if the model does not explain the recordings.");
-  EXPECT_EQ(told(36.0).find("Estimated run time: about 40 s on this machine"), 0u);
-  EXPECT_EQ(told(1300.0).find("Estimated run time: about 20 min on this machine"), 0u);
+  EXPECT_EQ(on_one_line(run_time_text(job, {.evaluation = 0.01,
+                                            .explained = 0.123,
+                                            .unexplained = 1.77,
+                                            .nothing_missing = 3.4,
+                                            .one_effect = 89.0,
+                                            .no_effect = 1300.0})),
+            "Estimated run time on this machine with 1 thread: 0.1 s if the model explains the "
+            "recordings, otherwise 2 s. With --close-loop: 3 s if nothing is missing, 90 s if one "
+            "effect is, and 20 min or more if no effect suffices.");
   job.options.threads = 3;
-  EXPECT_NE(told(0.9).find("with 3 threads; "), std::string::npos);
+  EXPECT_NE(on_one_line(run_time_text(job, {})).find("with 3 threads: "), std::string::npos);
 }
 
 TEST(ResultTest, ErrorsOfAHeldSimulationStandBesideTheFreeRunningOnes) {
