@@ -14,24 +14,24 @@ from honesty import ROOT, SITUATIONS, write_situation
 
 BUILD = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build" / "release").resolve()
 EXAMPLES = ("paper", "paper-move", "close-loop", "screw", "screw-viscous", "payload")
-LIMIT = 200  # s
+LIMIT = ("--time-limit", "200")  # s
 
 
 def run(job, *options):
     """The JSON, or nothing where there is none, and the time."""
     begin = time.monotonic()
-    command = [BUILD / "apps" / "fit-params", job.name, "--json", "--time-limit", str(LIMIT)]
-    result = subprocess.run([*command, *options], cwd=job.parent, capture_output=True, text=True)
+    command = [BUILD / "apps" / "fit-params", job.name, "--json", *options]
+    result = subprocess.run(command, cwd=job.parent, capture_output=True, text=True)
     taken = time.monotonic() - begin
     return json.loads(result.stdout) if result.stdout else None, taken
 
 
 def compare(name, job, ratios):
     check, _ = run(job, "--check")
-    fit, of_fit = run(job)
+    fit, of_fit = run(job, *LIMIT)
     if check is None or fit is None or fit["grade"] in ("not_converged", "nothing_determined"):
         return
-    loop, of_loop = run(job, "--close-loop")
+    loop, of_loop = run(job, "--close-loop", *LIMIT)
     fits = "explained" if fit["grade"] == "explained" else "unexplained"
     if loop and loop["grade"] == "explained":
         loops = "nothing_missing" if fits == "explained" else "one_effect"

@@ -63,6 +63,15 @@ std::string_view usual_writing(Kind kind, std::string_view text) {
                                        {position, "inc", "counts"},
                                        {position, "incs", "counts"},
                                        {position, "inkr", "counts"},
+                                       {position, "ink", "counts"},
+                                       {position, "inkremente", "counts"},
+                                       {position, "increments", "counts"},
+                                       {position, "pulses", "counts"},
+                                       {position, "pulse", "counts"},
+                                       {position, "grad", "deg"},
+                                       {position, "u", "rev"},
+                                       {position, "umdr", "rev"},
+                                       {position, "turns", "rev"},
                                        {velocity, "mps", "m/s"},
                                        {velocity, "mmps", "mm/s"},
                                        {velocity, "mms", "mm/s"},
@@ -74,6 +83,10 @@ std::string_view usual_writing(Kind kind, std::string_view text) {
                                        {velocity, "rads", "rad/s"},
                                        {velocity, "1/min", "rpm"},
                                        {velocity, "u/min", "rpm"},
+                                       {velocity, "r/min", "rpm"},
+                                       {velocity, "rev/min", "rpm"},
+                                       {velocity, "min-1", "rpm"},
+                                       {velocity, "grad/s", "deg/s"},
                                        {acceleration, "mps2", "m/s^2"},
                                        {acceleration, "m/s2", "m/s^2"},
                                        {acceleration, "m/s/s", "m/s^2"},
@@ -87,6 +100,17 @@ std::string_view usual_writing(Kind kind, std::string_view text) {
                                        {current, "amp", "A"},
                                        {current, "amps", "A"},
                                        {current, "arms", "A"},
+                                       {current, "percent", "%"},
+                                       {current, "prozent", "%"},
+                                       {current, "promille", "0.1%"},
+                                       {current, "per mille", "0.1%"},
+                                       {current, "1/1000", "0.1%"},
+                                       {force, "nm", "N m"},
+                                       {force, "percent", "%"},
+                                       {force, "prozent", "%"},
+                                       {force, "promille", "0.1%"},
+                                       {force, "permille", "0.1%"},
+                                       {force, "1/1000", "0.1%"},
                                        {tachometer, "volt", "V"},
                                        {tachometer, "volts", "V"},
                                        {motor_voltage, "volt", "V"},
@@ -160,6 +184,12 @@ constexpr Word kWords[]{
     {"winkel", position, 5},
     {"current", current, 8},
     {"strom", current, 8},
+    {"geber", position, 6},
+    {"lageist", position, 9},
+    {"lagesoll", position, 9},
+    {"lage", position, 7},
+    {"velo", velocity, 8},
+    {"moment", force, 6},
     {"torque", force, 7},
     {"drehmoment", force, 7},
     {"force", force, 8},
@@ -200,6 +230,21 @@ constexpr Word kWords[]{
     {"ddq", acceleration, 5},
     {"qdd", acceleration, 5},
     {"ddx", acceleration, 5},
+    // Kollmorgen's loops: PL.FB, VL.CMD.
+    {"pl", position, 6},
+    {"vl", velocity, 6},
+    {"il", current, 6},
+    // CiA 402
+    {"0x6062", position, 9},
+    {"0x6064", position, 9},
+    {"0x607a", position, 9},
+    {"0x606b", velocity, 9},
+    {"0x606c", velocity, 9},
+    {"0x60ff", velocity, 9},
+    {"0x6071", force, 7},
+    {"0x6074", force, 7},
+    {"0x6077", force, 9},
+    {"0x6078", current, 9},
     {"t", time, 5},
     {"x", position, 3},
     {"q", position, 4},
@@ -212,20 +257,25 @@ constexpr Word kWords[]{
 };
 
 constexpr std::string_view kSetpointWords[]{
-    "set",      "cmd",      "command", "commanded", "ref",     "target", "desired", "demand",
-    "setpoint", "sollwert", "soll",    "reference", "nominal", "goal",   "qg"};
+    "set",    "cmd",      "command",  "commanded", "ref",        "target",      "desired",
+    "demand", "setpoint", "sollwert", "soll",      "reference",  "nominal",     "goal",
+    "qg",     "vorgabe",  "planned",  "plan",      "trajectory", "feedforward", "dem",
+    "0x6062", "0x607a",   "0x606b",   "0x60ff",    "0x6071",     "0x6074"};
 constexpr std::string_view kMeasuredWords[]{"actual",   "act",      "ist", "meas",
                                             "measured", "feedback", "fb"};
 constexpr std::string_view kIgnoredWords[]{
-    "error",    "err",    "fehler", "deviation", "diff",      "lag",   "abweichung", "schlepp",
-    "residual", "status", "index",  "sample",    "simulated", "noise", "temp",       "temperature"};
+    "error",      "err",     "fehler",   "deviation",   "diff",   "lag",
+    "abweichung", "schlepp", "residual", "status",      "index",  "sample",
+    "simulated",  "noise",   "temp",     "temperature", "enable", "enabled",
+    "freigabe",   "limit",   "max",      "min",         "mode",   "anlage"};
 
 /// Whether one of the words is among these, or begins with one as German compounds do.
 bool has_word(const std::vector<std::string>& words, std::span<const std::string_view> list) {
   return std::ranges::any_of(words, [&](const std::string& word) {
     return std::ranges::any_of(list, [&](std::string_view known) {
       const bool compound = known == "soll" || known == "ist" || known == "schlepp";
-      return word == known || (compound && word.starts_with(known) && word.size() > 6);
+      return word == known || (compound && word.starts_with(known) && word.size() > 6) ||
+             (known == "soll" && word.starts_with("lagesoll"));
     });
   });
 }
@@ -355,9 +405,15 @@ const std::vector<StoredUnit>& stored_units(Kind kind) {
       {"rad/s^2", 1.0, "m/s^2", 1.0},
       {"deg/s^2", kDegree, "m/s^2", kDegree},
   };
-  static const std::vector<StoredUnit> kCurrent{{"A", 1.0}, {"mA", 1e-3}};
-  static const std::vector<StoredUnit> kForce{
-      {"N", 1.0}, {"kN", 1e3}, {"N m", 1.0, "N", 1.0}, {"N mm", 1e-3, "N", 1e-3}};
+  // Drives give torque and current in parts of their rating, too.
+  static const std::vector<StoredUnit> kCurrent{
+      {"A", 1.0}, {"mA", 1e-3}, {"%", 1.0, "A", 1.0}, {"0.1%", 0.1, "A", 0.1}};
+  static const std::vector<StoredUnit> kForce{{"N", 1.0},
+                                              {"kN", 1e3},
+                                              {"N m", 1.0, "N", 1.0},
+                                              {"N mm", 1e-3, "N", 1e-3},
+                                              {"%", 1.0, "N", 1.0},
+                                              {"0.1%", 0.1, "N", 0.1}};
   static const std::vector<StoredUnit> kVolts{{"V", 1.0}, {"mV", 1e-3}};
   static const std::vector<StoredUnit> kCommand{{"V", 1.0},           {"mV", 1e-3},
                                                 {"A", 1.0, "V", 1.0}, {"mA", 1e-3, "V", 1e-3},
@@ -381,6 +437,8 @@ const std::vector<StoredUnit>& stored_units(Kind kind) {
       return kVolts;
   }
 }
+
+bool is_part_of_rating(std::string_view unit) { return unit.ends_with('%'); }
 
 const StoredUnit* stored_unit(Kind kind, std::string_view text) {
   const auto& list = stored_units(kind);

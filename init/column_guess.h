@@ -51,6 +51,9 @@ struct StoredUnit {
   double factor = 1.0;
 };
 
+/// Whether it is a part of a rating, such as per cent of the rated torque.
+bool is_part_of_rating(std::string_view unit);
+
 /// The units of a kind, most usual first.
 const std::vector<StoredUnit>& stored_units(Kind kind);
 

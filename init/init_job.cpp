@@ -253,7 +253,14 @@ class Initialiser {
         return has_input(sources_.front().guess, input);
       });
     for (Source& source : sources_)
-      if (chosen != kForceInputs.end() && has_input(source.guess, *chosen)) source.input = *chosen;
+      if (chosen != kForceInputs.end() && has_input(source.guess, *chosen)) {
+        source.input = *chosen;
+        // A part of a rating is a force only once K_f says how large.
+        if (input_of(source).of_rating) {
+          source.input->key = "command";
+          source.input->unit = "V";
+        }
+      }
   }
 
   void drop_recordings_without_input() {

@@ -340,9 +340,16 @@ class Guesser {
   static void explain(UnscaledColumn& column) {
     const StoredUnit* unit = stored_unit(column.column.kind, column.named);
     if (unit == nullptr || unit->written == unit->text || column.size != unit->size) return;
-    if (unit->text == "counts")
+    if (unit->text == "counts") {
       column.guess("encoder counts: set the factor to metres per count");
-    else if (column.column.kind == Kind::force)
+    } else if (is_part_of_rating(unit->text) && column.column.kind != Kind::command) {
+      column.column.of_rating = true;
+      column.guess(
+          fmt::format("in per cent of the rated {}, taken as {} here: multiply the factor "
+                      "by a hundredth of the rating",
+                      column.column.kind == Kind::force ? "torque or force" : "current",
+                      si_unit(column.column.kind)));
+    } else if (column.column.kind == Kind::force)
       column.guess(fmt::format("in {}: converted with a lever of 1 m; divide the factor by r_g",
                                unit->text));
     else if (column.column.kind == Kind::command)

@@ -16,6 +16,7 @@ struct GuessedColumn {
   bool is_setpoint = false;  ///< see ColumnGuess
   std::string unit;          ///< as written in the job
   double factor = 1.0;
+  bool of_rating = false;            ///< in per cent of a rating, whatever `unit` says
   bool negative = false;             ///< its sign is to be turned
   std::vector<std::string> reasons;  ///< what was measured, sentences without a full stop
   bool guessed = false;              ///< something of it neither name nor measurement says

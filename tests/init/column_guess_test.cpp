@@ -36,6 +36,29 @@ TEST(ColumnGuessTest, UnderstandsTheNamesOfTheTrade) {
            {"actualPosition_um", position, "um"},
            {"motor angle [deg]", position, "deg"},
            {"axis.x.pos", position},
+           {"Geber [inc]", position, "counts"},
+           {"Geber [Ink]", position, "counts"},
+           {"Lageistwert", position},
+           {"Lage-Ist [mm]", position, "mm"},
+           {"Lagesollwert", position, "", true},
+           {"PL.FB", position},
+           {"VL.FB", velocity},
+           {"VL.CMD", velocity, "", true},
+           {"IL.FB", current},
+           {"ActPos", position},
+           {"ActVelo", velocity},
+           {"TorqueActual [%]", force, "%"},
+           {"Drehmoment [Promille]", force, "0.1%"},
+           {"0x6064", position},
+           {"0x606C", velocity},
+           {"0x6077", force},
+           {"0x60FF", velocity, "", true},
+           {"tau", force},
+           {"q", position},
+           {"dq", velocity},
+           {"Motor speed [r/min]", velocity, "rpm"},
+           {"angle [rev]", position, "rev"},
+           {"planned acceleration [m/s^2]", acceleration, "m/s^2", true},
            {"Sollposition", position, "", true},
            {"reference_position_m", position, "m", true},
            {"qg", position, "", true},
@@ -78,8 +101,9 @@ TEST(ColumnGuessTest, UnderstandsTheNamesOfTheTrade) {
 }
 
 TEST(ColumnGuessTest, SaysNothingOfOtherNames) {
-  for (const std::string name : {"Temperatur", "status", "position error [mm]", "Schleppabweichung",
-                                 "sample", "data(:,2)", "pulses_N", "", "\n", "[mm]", "____"})
+  for (const std::string name :
+       {"Temperatur", "status", "position error [mm]", "Schleppabweichung", "torque_enable",
+        "Freigabe Strom", "max speed", "sample", "data(:,2)", "pulses_N", "", "\n", "[mm]", "____"})
     EXPECT_FALSE(guess_column(name)) << name;
 }
 

@@ -1,9 +1,11 @@
 // Jobs that are made for recordings: the reader takes them, and they end in a fit.
 #include "init/init_job.h"
 
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <matio.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -260,6 +262,22 @@ TEST_F(InitJobTest, ACopyIsRefused) {
           << error.what();
     }
   }
+}
+
+// Without the rating, a torque in per cent is no force: K_f is a guess.
+TEST_F(InitJobTest, APartOfARatingNeedsTheGain) {
+  folder_.write("a.csv", renamed(driven(), {{"t_s", 1.0},
+                                            {"TorqueActual [%]", 1.0},
+                                            {"Lage-Ist [mm]", 1e3},
+                                            {"v_mps", 1.0},
+                                            {"a_mps2", 1.0}}));
+  const InitialJob made = make({"a.csv"});
+  EXPECT_TRUE(std::ranges::any_of(made.guesses, [](const std::string& text) {
+    return text.starts_with("TorqueActual [%]: in per cent of the rated torque or force");
+  })) << fmt::format("{}", fmt::join(made.guesses, "; "));
+  const JobFile file = read();
+  EXPECT_EQ(file.job.guessed, std::vector{find_quantity("K_f")->index});
+  expect_the_driven_mass(fitted(file), 1.0 / 60.0);
 }
 
 TEST_F(InitJobTest, OneInputServesAllRecordings) {
