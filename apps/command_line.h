@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
@@ -16,10 +17,13 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/plain_text.h"
 #include "base/suggest.h"
+#include "base/terminal.h"
 #include "base/text_table.h"
 #include "base/version.h"
 
@@ -32,6 +36,12 @@ class NarrowHelp : public CLI::Formatter {
  public:
   std::string make_description(const CLI::App* app) const override {
     return paragraph(app->get_description());
+  }
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    // One blank line between groups, of which the library makes two.
+    return CLI::detail::find_and_replace(CLI::Formatter::make_help(app, std::move(name), mode),
+                                         "\n\n\n", "\n\n");
   }
   std::string make_option_name(const CLI::Option* option, bool positional) const override {
     const std::string name = CLI::Formatter::make_option_name(option, positional);
@@ -50,10 +60,10 @@ class NarrowHelp : public CLI::Formatter {
     return option->get_description() + (default_text.empty() ? "" : "; default: " + default_text);
   }
   std::string make_option(const CLI::Option* option, bool positional) const override {
-    constexpr std::size_t kColumn = 28;
+    const std::size_t column = TextWidth::now() < kTextWidth ? 8 : 28;
     const std::string name = "  " + make_option_name(option, positional) + make_option_opts(option);
-    const std::string text = paragraph(make_option_desc(option), kColumn);
-    return name.size() + 2 > kColumn ? name + "\n" + text : name + text.substr(name.size());
+    const std::string text = paragraph(make_option_desc(option), column);
+    return name.size() + 2 > column ? name + "\n" + text : name + text.substr(name.size());
   }
 };
 
@@ -118,14 +128,24 @@ inline void occupy_standard_streams() {
 
 /// Parses the command line and returns what `work` does: the exit code. Mistakes of the user, in
 /// the command line or told by an exception, end with their message on standard error and
-/// kBadInput.
+/// kBadInput; so does a call without arguments, with `short_help`. `PROGRAM help` is --help.
 template <class Work>
-int run_program(CLI::App& app, int argc, char** argv, Work&& work) {
+int run_program(CLI::App& app, const char* short_help, int argc, char** argv, Work&& work) {
   occupy_standard_streams();
   app.formatter(std::make_shared<NarrowHelp>());
-  app.set_version_flag("--version", std::string("axisfit ") + version());
+  app.option_defaults()->group("Other");
+  app.set_help_flag("-h,--help", "print this help");
+  app.set_version_flag("-V,--version", std::string("axisfit ") + version(), "print the version");
+  if (argc == 1) {
+    print_error(short_help);
+    return kBadInput;
+  }
   try {
-    app.parse(argc, argv);
+    const TextWidth narrow(text_width(STDOUT_FILENO));
+    if (argc == 2 && std::string_view(argv[1]) == "help")
+      app.parse(std::vector<std::string>{"--help"});
+    else
+      app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     std::ostringstream message;
     if (app.exit(error, std::cout, message) == 0) return 0;

@@ -94,9 +94,20 @@ struct Arguments {
   bool resume = false;
   bool json = false;
   bool quiet = false;
+  bool no_colour = false;
   std::optional<int> threads, starts;
   std::optional<std::uint64_t> seed;
 };
+
+constexpr const char* kShortHelp = R"(Usage: fit-params [OPTIONS] JOB.yaml
+
+Examples:
+  fit-params --init step.csv levels.csv    create a job from recordings
+  fit-params job.yaml --check              see what the recordings tell
+  fit-params job.yaml --output results     fit
+
+All options: fit-params --help
+)";
 
 constexpr const char* kExamples = R"(Examples:
   fit-params --init step.csv levels.csv
@@ -124,10 +135,13 @@ void start_from(const std::string& axis_file, Job& job) {
       p.initial = std::clamp(*values[p.quantity], p.lower, p.upper);
 }
 
-bool in_colour() { return takes_colour(STDOUT_FILENO); }
-
-void print_report(const std::string& report) {
-  print(in_colour() ? with_bold_headings(report) : report);
+/// Prints the text that `report` makes, which is told whether it may have colours.
+template <class Report>
+void print_report(const Arguments& arguments, Report&& report) {
+  const bool colour = !arguments.no_colour && takes_colour(STDOUT_FILENO);
+  const TextWidth narrow(text_width(STDOUT_FILENO));
+  const std::string text = report(colour);
+  print(colour ? with_bold_headings(text) : text);
 }
 
 /// What the recordings show and can tell, before the fit.
@@ -140,8 +154,10 @@ int check(const Arguments& arguments, const Job& job, std::optional<ProgressLine
   if (arguments.json)
     print(check_json(job, recordings, found, run_time).dump(2) + "\n");
   else if (!arguments.quiet)
-    print_report(recordings_text(job, recordings) + "\n" + forecast_text(job, found, in_colour()) +
-                 "\n" + run_time_text(job, run_time));
+    print_report(arguments, [&](bool colour) {
+      return recordings_text(job, recordings) + "\n" + forecast_text(job, found, colour) + "\n" +
+             run_time_text(job, run_time);
+    });
   return kUsable;
 }
 
@@ -329,7 +345,7 @@ int run_command(const Arguments& arguments) {
     if (arguments.json)
       print(json);
     else if (!arguments.quiet)
-      print_report(report_text(run_result, in_colour()));
+      print_report(arguments, [&](bool colour) { return report_text(run_result, colour); });
   } catch (const OutputError&) {
     unseen = std::current_exception();
   }
@@ -352,22 +368,10 @@ int main(int argc, char** argv) {
   app.add_option("JOB.yaml", arguments.files,
                  "job file (docs/job-file.md); with --init, recordings (CSV or MATLAB)")
       ->required();
-  auto* close = app.add_flag("--close-loop", arguments.options.select_effects,
-                             "after the fit, add effects that the model lacks, each validated on "
-                             "data that were not fitted");
-  std::string profiles;
-  auto* profile =
-      app.add_flag("--profile{all}", profiles,
-                   "likelihood profiles of all parameters, or of some: --profile=NAME,NAME");
-  auto* experiment =
-      app.add_flag("--suggest-experiment", arguments.options.suggest_experiment,
-                   "suggest the motion to record next; written to next-motion.yaml in --output");
+  app.option_defaults()->group("Fit");
   auto* check = app.add_flag("--check", arguments.check,
                              "do not fit; report what the recordings contain, which free "
-                             "parameters they determine, and how long the fit will take")
-                    ->excludes(close)
-                    ->excludes(profile)
-                    ->excludes(experiment);
+                             "parameters they determine, and how long the fit will take");
   auto* data = app.add_option("--data", arguments.data,
                               "folder of the recordings, if not that of the job file")
                    ->check(kNotEmpty)
@@ -376,46 +380,68 @@ int main(int argc, char** argv) {
                               "start from the values of this axis file, such as fitted.yaml")
                    ->check(kNotEmpty)
                    ->type_name("AXIS.yaml");
-  auto* output = app.add_option("--output", arguments.output,
+  app.add_option("--starts", arguments.starts,
+                 "number of starts, the first from the initial values; default: as in the job")
+      ->transform(whole_number(1, 1'000'000));
+  app.add_option("--seed", arguments.seed, "seed of the random starts; default: as in the job")
+      ->transform(whole_number<std::uint64_t>(0));
+  std::string profiles;
+  auto* profile =
+      app.add_flag("--profile{all}", profiles,
+                   "likelihood profiles of all parameters, or of some: --profile=NAME,NAME")
+          ->excludes(check);
+  app.add_option("--threads", arguments.threads, "number of threads; default: all cores")
+      ->transform(whole_number(1, 1024));
+  auto* time_limit =
+      app.add_option("--time-limit", arguments.time_limit,
+                     "stop after this many seconds and keep what is finished, as Ctrl-C does")
+          ->check(number(0.001, 1e8))
+          ->excludes(check)
+          ->type_name("SECONDS");
+
+  app.option_defaults()->group("Effect selection");
+  auto* close = app.add_flag("--close-loop", arguments.options.select_effects,
+                             "after the fit, add effects that the model lacks, each validated on "
+                             "data that were not fitted")
+                    ->excludes(check);
+  auto* experiment =
+      app.add_flag("--suggest-experiment", arguments.options.suggest_experiment,
+                   "suggest the motion to record next; written to next-motion.yaml in --output")
+          ->excludes(check);
+
+  app.option_defaults()->group("First job");
+  auto* init = app.add_flag("--init", arguments.init,
+                            "create job.yaml and axis.yaml from recordings; columns, units and "
+                            "signals are inferred from names and values")
+                   ->excludes(check)
+                   ->excludes(data)
+                   ->excludes(from)
+                   ->excludes(profile)
+                   ->excludes(time_limit)
+                   ->excludes(close)
+                   ->excludes(experiment);
+  app.add_option("--axis", arguments.axis, "with --init: use this axis file")
+      ->needs(init)
+      ->check(kNotEmpty)
+      ->type_name("AXIS.yaml");
+
+  app.option_defaults()->group("Results");
+  auto* output = app.add_option("-o,--output", arguments.output,
                                 "folder for report.html, result.json, fitted.yaml and "
                                 "residuals.csv; with --init, for the job")
                      ->check(kNotEmpty)
                      ->type_name("FOLDER");
-  auto* json = app.add_flag("--json", arguments.json, "print result.json instead of the tables");
-  app.add_flag("--quiet", arguments.quiet, "print errors only")->excludes(json);
-  auto* init = app.add_flag("--init", arguments.init,
-                            "create job.yaml and axis.yaml from recordings; columns, units and "
-                            "signals are inferred from names and values")
-                   ->excludes(close)
-                   ->excludes(profile)
-                   ->excludes(experiment)
-                   ->excludes(check)
-                   ->excludes(data)
-                   ->excludes(from)
-                   ->excludes(json);
   app.add_flag("--resume", arguments.resume,
                "resume a run that was stopped or killed, from its journal in --output")
       ->needs(output)
       ->excludes(init)
       ->excludes(check);
-  app.add_option("--axis", arguments.axis, "with --init: use this axis file")
-      ->needs(init)
-      ->check(kNotEmpty)
-      ->type_name("AXIS.yaml");
-  app.add_option("--threads", arguments.threads, "number of threads; default: all cores")
-      ->transform(whole_number(1, 1024));
-  app.add_option("--seed", arguments.seed, "seed of the random starts; default: as in the job")
-      ->transform(whole_number<std::uint64_t>(0));
-  app.add_option("--starts", arguments.starts,
-                 "number of starts, the first from the initial values; default: as in the job")
-      ->transform(whole_number(1, 1'000'000));
-  app.add_option("--time-limit", arguments.time_limit,
-                 "stop after this many seconds and keep what is finished, as Ctrl-C does")
-      ->check(number(0.001, 1e8))
-      ->excludes(init)
-      ->excludes(check)
-      ->type_name("SECONDS");
-  return run_program(app, argc, argv, [&] {
+  auto* json = app.add_flag("--json", arguments.json, "print result.json instead of the tables")
+                   ->excludes(init);
+  app.add_flag("-q,--quiet", arguments.quiet, "print errors only")->excludes(json);
+  app.add_flag("--no-color", arguments.no_colour, "print without colours and bold headings");
+
+  return run_program(app, kShortHelp, argc, argv, [&] {
     arguments.command = command_line_of(argc, argv);
     for (std::istringstream names(profiles); std::getline(names, profiles, ',');)
       arguments.options.profiles.push_back(profiles);

@@ -29,6 +29,16 @@ struct Arguments {
   bool exact = false;
 };
 
+constexpr const char* kShortHelp = R"(Usage: simulate-axis [OPTIONS] AXIS.yaml MOTION.yaml
+
+Examples:
+  simulate-axis axis.yaml step.yaml > step.csv
+  simulate-axis axis.yaml move.yaml --set "M=161 kg" --output move.csv
+  simulate-axis axis.yaml chirp.yaml --signals velocity motor_current
+
+All options: simulate-axis --help
+)";
+
 constexpr const char* kExamples = R"(Examples:
   simulate-axis configs/axes/x.yaml configs/motions/step.yaml --output step.csv
   simulate-axis configs/axes/x.yaml configs/motions/move.yaml --seed 7 \
@@ -134,7 +144,7 @@ int main(int argc, char** argv) {
   app.add_flag("--exact", arguments.exact, "no noise, no encoder quantisation, all digits");
   for (const int signal : {SIGINT, SIGTERM})
     if (std::signal(signal, end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
-  return run_program(app, argc, argv, [&] {
+  return run_program(app, kShortHelp, argc, argv, [&] {
     arguments.signals_given = chosen->count() > 0;
     run_command(std::move(arguments));
     return 0;

@@ -4,6 +4,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <sstream>
 #include <string_view>
@@ -33,6 +34,10 @@ std::size_t terminal_width(int file) {
   const unsigned long columns =
       std::strtoul(std::string(environment("COLUMNS")).c_str(), nullptr, 10);
   return columns > 0 ? columns : kTextWidth;
+}
+
+std::size_t text_width(int file) {
+  return isatty(file) != 0 ? std::min(terminal_width(file), kTextWidth) : kTextWidth;
 }
 
 std::string toned(std::string_view words, Tone tone, bool colour) {

@@ -16,6 +16,10 @@ bool takes_colour(int file);
 /// Columns of the terminal; without one those of COLUMNS, or 80.
 std::size_t terminal_width(int file);
 
+/// Characters in a line of text written there: those of a terminal narrower than kTextWidth, else
+/// that.
+std::size_t text_width(int file);
+
 /// What a coloured word stands for: green, yellow or red.
 enum class Tone { neutral, good, caution, bad };
 

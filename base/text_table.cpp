@@ -9,6 +9,8 @@
 namespace axisfit {
 namespace {
 
+thread_local std::size_t line_width = kTextWidth;
+
 /// Lines of at most `width` characters, unless a word is longer.
 std::vector<std::string> broken(const std::string& text, std::size_t width) {
   std::vector<std::string> lines{""};
@@ -31,9 +33,14 @@ std::vector<std::string> broken(const std::string& text, std::size_t width) {
 constexpr std::size_t kIndent = 2, kGap = 2;
 constexpr std::size_t kMinWrappedWidth = 20;  ///< width of a column to wrap in
 
-/// The widths of the columns, where the first is left no more than there is room for.
-std::vector<std::size_t> widths_of(const std::vector<std::vector<std::string>>& rows,
-                                   const std::vector<Alignment>& alignment) {
+struct Layout {
+  std::vector<std::size_t> width;   ///< of each column
+  std::vector<bool> begins_a_line;  ///< of a row, which all its columns do not fit in
+};
+
+/// The first column is left no more than there is room for.
+Layout layout_of(const std::vector<std::vector<std::string>>& rows,
+                 const std::vector<Alignment>& alignment) {
   std::vector<std::size_t> width(alignment.size(), 0);
   for (const auto& row : rows)
     for (std::size_t c = 0; c < row.size(); ++c)
@@ -41,16 +48,33 @@ std::vector<std::size_t> widths_of(const std::vector<std::vector<std::string>>& 
                                                     : std::max(width[c], width_of(row[c]));
   const std::size_t others =
       std::accumulate(width.begin() + 1, width.end(), kIndent) + kGap * (width.size() - 1);
-  const std::size_t room = kTextWidth - std::min(others, kTextWidth);
-  if (width[0] <= room) return width;
-  width[0] = 0;
-  for (const auto& row : rows)
-    if (const std::size_t first = width_of(row[0]); first <= room)
-      width[0] = std::max(width[0], first);
-  return width;
+  const std::size_t room = line_width - std::min(others, line_width);
+  std::vector<bool> begins_a_line(width.size(), false);
+  if (others > line_width) {
+    std::size_t end = kIndent + width[0];
+    for (std::size_t c = 1; c < width.size(); ++c) {
+      begins_a_line[c] = end + kGap + width[c] > line_width;
+      end = (begins_a_line[c] ? kIndent : end) + kGap + width[c];
+    }
+  } else if (width[0] > room) {
+    width[0] = 0;
+    for (const auto& row : rows)
+      if (const std::size_t first = width_of(row[0]); first <= room)
+        width[0] = std::max(width[0], first);
+  }
+  return {width, begins_a_line};
 }
 
 }  // namespace
+
+TextWidth::TextWidth(std::size_t width) : before_(line_width) {
+  constexpr std::size_t kNarrowest = 40;
+  line_width = std::max(width, kNarrowest);
+}
+
+TextWidth::~TextWidth() { line_width = before_; }
+
+std::size_t TextWidth::now() { return line_width; }
 
 std::size_t width_of(std::string_view text) {
   constexpr std::string_view kCode = "\033[";
@@ -66,16 +90,22 @@ std::size_t width_of(std::string_view text) {
 
 std::string format_table(const std::vector<std::vector<std::string>>& rows,
                          const std::vector<Alignment>& alignment) {
-  const std::vector<std::size_t> width = widths_of(rows, alignment);
+  const auto [width, begins_a_line] = layout_of(rows, alignment);
   std::string text;
+  const auto end_line = [&text](std::string& line) {
+    line.erase(line.find_last_not_of(' ') + 1);
+    if (!line.empty()) text += line + "\n";
+    line.assign(kIndent, ' ');
+  };
   for (const auto& row : rows) {
     std::string line(kIndent, ' ');
     for (std::size_t c = 0; c < row.size(); ++c) {
+      if (begins_a_line[c]) end_line(line);
       if (c > 0) line += std::string(kGap, ' ');
       if (alignment[c] == Alignment::wrapped) {
         const std::size_t indent = width_of(line);
         const auto lines =
-            broken(row[c], kTextWidth - std::min(indent, kTextWidth - kMinWrappedWidth));
+            broken(row[c], line_width - std::min(indent, line_width - kMinWrappedWidth));
         for (std::size_t i = 0; i < lines.size(); ++i)
           line += (i > 0 ? "\n" + std::string(indent, ' ') : "") + lines[i];
         continue;
@@ -83,22 +113,21 @@ std::string format_table(const std::vector<std::vector<std::string>>& rows,
       if (width_of(row[c]) > width[c]) {  // the first
         line += row[c];
         if (row.size() == 1) continue;
-        text += line + "\n";
-        line.assign(kIndent + width[c], ' ');
+        end_line(line);
+        line += std::string(width[c], ' ');
         continue;
       }
       const std::string pad(width[c] - width_of(row[c]), ' ');
       line += alignment[c] == Alignment::left ? row[c] + pad : pad + row[c];
     }
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
+    end_line(line);
   }
   return text;
 }
 
 std::string paragraph(const std::string& text, std::size_t indent) {
   std::string result;
-  for (const std::string& line : broken(text, kTextWidth - indent))
+  for (const std::string& line : broken(text, line_width - indent))
     result += std::string(indent, ' ') + line + "\n";
   return result;
 }

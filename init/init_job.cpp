@@ -33,6 +33,12 @@ constexpr const char* kJobName = "job.yaml";
 constexpr const char* kAxisName = "axis.yaml";
 constexpr const char* kOnlyRatios = "a motion shows only ratios to it";
 
+/// The line by which editors find the schema that the Debian package installs.
+std::string modeline(std::string_view kind) {
+  return fmt::format("# yaml-language-server: $schema=/usr/share/axisfit/schema/{}.schema.json\n",
+                     kind);
+}
+
 std::string scalar(const std::string& text) {
   YAML::Emitter out;
   out << text;
@@ -462,8 +468,8 @@ class Initialiser {
 
   Files files() const {
     Files files;
-    if (starter_) files.emplace_back(kAxisName, starter_->text);
-    files.emplace_back(kJobName, job_text());
+    if (starter_) files.emplace_back(kAxisName, modeline("axis") + starter_->text);
+    files.emplace_back(kJobName, modeline("job") + job_text());
     return files;
   }
 

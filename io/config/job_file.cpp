@@ -77,6 +77,10 @@ class JobReader {
     result_.files.push_back(path_);
     if (const auto root = load(path_)) {
       result_.text = root->contents();
+      if (const std::string other = other_kind(*root); !other.empty()) {
+        root->error(other);
+        diagnostics_.throw_if_any();
+      }
       ConfigMap map(*root, job_keys());
       const auto axis = map.required("axis");
       bool model = false;
@@ -111,6 +115,20 @@ class JobReader {
     const std::string* contents = draft(path);
     return contents ? ConfigNode::parse(*contents, path, diagnostics_)
                     : ConfigNode::load(path, diagnostics_);
+  }
+
+  /// What to do with a file that is no job but one of the other kinds; empty for a job.
+  static std::string other_kind(const ConfigNode& root) {
+    if (!root.is_map()) return "";
+    ConfigMap map(root);
+    const auto has = [&](const char* key) { return map.optional(key).has_value(); };
+    if (has("recordings") || has("free")) return "";
+    if (has("drive") && has("parameters"))
+      return "this is an axis file, not a job: name it under `axis` in a job, or create a job for "
+             "it: fit-params --init RECORDING --axis FILE";
+    if (has("type") && has("duration"))
+      return "this is a motion file, not a job: it is for simulate-axis";
+    return "";
   }
 
   bool read_axis_of(const ConfigNode& node) {

@@ -4,7 +4,7 @@ set -l signals 'position velocity acceleration tachometer motor_current V_c V_m 
 set -l yaml '(__fish_complete_suffix .yaml | string match -r "^.*(?:/|\.ya?ml)\$")'
 complete -c simulate-axis -f -k -a $yaml
 complete -c simulate-axis -s h -l help -d 'print the options and examples'
-complete -c simulate-axis -l version -d 'print the version'
+complete -c simulate-axis -s V -l version -d 'print the version'
 complete -c simulate-axis -s o -l output -r -F -d 'CSV file'
 complete -c simulate-axis -l set -x -d 'change a quantity: NAME=VALUE'
 complete -c simulate-axis -l signals -x -a $signals -d 'signals to record'

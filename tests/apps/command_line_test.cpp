@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 #include <matio.h>
 #include <spawn.h>
+#include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -52,11 +54,13 @@ struct Outcome {
 /// A terminal that shows nothing to anybody, but keeps what is written to it.
 class Terminal {
  public:
-  Terminal() : master_(posix_openpt(O_RDWR | O_NOCTTY)) {
+  explicit Terminal(unsigned short columns = 0) : master_(posix_openpt(O_RDWR | O_NOCTTY)) {
     if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0)
       throw std::runtime_error("no terminal to be had");
     path_ = ptsname(master_);
     slave_ = open(path_.c_str(), O_RDWR | O_NOCTTY);  // else reading would end at once
+    const winsize size{.ws_row = 0, .ws_col = columns, .ws_xpixel = 0, .ws_ypixel = 0};
+    ioctl(slave_, TIOCSWINSZ, &size);
     reader_ = std::thread([this] {
       char buffer[4096];
       for (ssize_t n; (n = read(master_, buffer, sizeof buffer)) > 0;) {
@@ -198,6 +202,49 @@ TEST_F(CommandLineTest, HelpHasExamples) {
     EXPECT_EQ(version.exit_code, 0);
     EXPECT_TRUE(version.out.starts_with("axisfit "));
   }
+}
+
+TEST_F(CommandLineTest, HelpIsTheSameByAnyName) {
+  for (const char* program : {"fit-params", "simulate-axis"}) {
+    const std::string help = run(program, {"--help"}).out;
+    for (const char* asked : {"-h", "help"}) {
+      const Outcome outcome = run(program, {asked});
+      EXPECT_EQ(outcome.exit_code, 0);
+      EXPECT_EQ(outcome.out, help);
+    }
+    EXPECT_EQ(run(program, {"-V"}).out, run(program, {"--version"}).out);
+  }
+}
+
+TEST_F(CommandLineTest, HelpHasGroupsOfOptions) {
+  const std::string help = fit({"--help"}).out;
+  std::size_t at = 0;
+  for (const char* part :
+       {"\n\nFit:\n  --check", "\n\nEffect selection:\n  --close-loop", "\n\nFirst job:\n  --init",
+        "\n\nResults:\n  -o,--output FOLDER", "\n\nOther:\n  -h,--help", "\n\nExamples:\n"}) {
+    const std::size_t found = help.find(part, at);
+    ASSERT_NE(found, std::string::npos) << part << help;
+    at = found;
+  }
+  EXPECT_EQ(help.find("\n\n\n"), std::string::npos);
+}
+
+TEST_F(CommandLineTest, WithoutArgumentsHelpIsShort) {
+  for (const std::string program : {"fit-params", "simulate-axis"}) {
+    const Outcome outcome = run(program, {});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_TRUE(outcome.err.starts_with("Usage: " + program + " [OPTIONS] ")) << outcome.err;
+    EXPECT_TRUE(outcome.err.ends_with("All options: " + program + " --help\n"));
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 8);  // three examples among them
+  }
+}
+
+TEST_F(CommandLineTest, OptionsHaveShortNames) {
+  const Outcome outcome = fit({job(), "-q", "-o", folder_.path("short")});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_TRUE(folder_.names("short").contains("report.html"));
 }
 
 /// The contents of a file below packaging/, without the backslashes of a manual page's hyphens.
@@ -549,12 +596,15 @@ TEST_F(CommandLineTest, WhatIsQuickShowsNoProgress) {
 
 TEST_F(CommandLineTest, ColoursAreForTerminalsThatTakeThem) {
   const std::string path = job();
-  const auto printed = [&] {
+  const auto printed = [&](const std::vector<std::string>& more = {}) {
     Terminal terminal;
-    EXPECT_EQ(spawn("fit-params", {path}, terminal.path(), outputs_.path("err")), 0);
+    std::vector<std::string> arguments{path};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(spawn("fit-params", arguments, terminal.path(), outputs_.path("err")), 0);
     return terminal.finish();
   };
   EXPECT_NE(printed().find("\033[1mParameters\033[0m"), std::string::npos);
+  EXPECT_EQ(printed({"--no-color"}).find('\033'), std::string::npos);
   setenv("NO_COLOR", "1", 1);
   const std::string plain = printed();
   EXPECT_NE(plain.find("Parameters"), std::string::npos);
@@ -563,6 +613,34 @@ TEST_F(CommandLineTest, ColoursAreForTerminalsThatTakeThem) {
   EXPECT_NE(printed().find('\033'), std::string::npos);
   setenv("TERM", "dumb", 1);
   EXPECT_EQ(printed().find('\033'), std::string::npos);
+}
+
+TEST_F(CommandLineTest, TablesFitANarrowTerminal) {
+  const auto longest_row = [&](unsigned short columns, const std::vector<std::string>& arguments) {
+    Terminal terminal(columns);
+    EXPECT_EQ(spawn("fit-params", arguments, terminal.path(), outputs_.path("err")), 0);
+    std::istringstream lines(terminal.finish());
+    std::string longest;
+    for (std::string line; std::getline(lines, line, '\r');)
+      if (line.starts_with("\n ") && line.size() > longest.size()) longest = line.substr(1);
+    return longest;
+  };
+  const std::string path = job();
+  for (const std::vector<std::string>& arguments :
+       {std::vector{path, std::string("--no-color")}, {path, "--no-color", "--check"}}) {
+    const std::string line = longest_row(50, arguments);
+    EXPECT_LE(line.size(), 50u) << line;
+    EXPECT_GT(longest_row(200, arguments).size(), 60u);
+  }
+  // What is written to a file does not depend on the window.
+  const std::string wide = fit({path, "--check"}).out;
+  setenv("COLUMNS", "50", 1);
+  const std::string narrow = fit({path, "--check"}).out;
+  unsetenv("COLUMNS");
+  const auto recordings = [](const std::string& text) {
+    return text.substr(0, text.find("Estim"));
+  };
+  EXPECT_EQ(recordings(narrow), recordings(wide));
 }
 
 TEST_F(CommandLineTest, AMisspeltColumnIsNamedWithTheColumnsThereAre) {
@@ -661,6 +739,10 @@ TEST_F(CommandLineTest, AJobIsMadeForRecordings) {
   EXPECT_TRUE(folder_.without_path(made.err).ends_with("      fit-params new/job.yaml\n"));
   EXPECT_EQ(fit({results + "/job.yaml", "--check"}).exit_code, 0);
   EXPECT_EQ(fit({results + "/job.yaml"}).exit_code, 0);
+  for (const std::string kind : {"axis", "job"})  // for editors
+    EXPECT_TRUE(folder_.read("new/" + kind + ".yaml")
+                    .starts_with("# yaml-language-server: $schema=/usr/share/axisfit/schema/" +
+                                 kind + ".schema.json\n# "));
 
   // What is there stays.
   const std::string before = folder_.read("new/job.yaml");

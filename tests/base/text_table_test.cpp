@@ -47,6 +47,25 @@ TEST(TextTable, TheLastColumnIsWrappedBesideNames) {
   EXPECT_GT(count, 4u);
 }
 
+TEST(TextTable, RowsGoOnInAnotherLineWhereTheyDoNotFit) {
+  const Rows rows{{"", "value", "error", "interval", "initial value"},
+                  {"mass", "146.0", "0.1", "145.8 to 146.2", "150"}};
+  const std::vector<Alignment> alignment(5, Alignment::right);
+  const std::string whole = format_table(rows, alignment);
+  EXPECT_EQ(std::ranges::count(whole, '\n'), 2);
+  {
+    const TextWidth narrow(0);  // the narrowest there is
+    EXPECT_EQ(TextWidth::now(), 40u);
+    EXPECT_EQ(format_table(rows, alignment),
+              "        value  error        interval\n"
+              "    initial value\n"
+              "  mass  146.0    0.1  145.8 to 146.2\n"
+              "              150\n");
+    EXPECT_EQ(paragraph(std::string(38, 'x') + " yy"), std::string(38, 'x') + "\nyy\n");
+  }
+  EXPECT_EQ(format_table(rows, alignment), whole);
+}
+
 TEST(TextTable, ANumberKeepsItsPerCentSign) {
   EXPECT_EQ(paragraph(std::string(75, 'x') + " 35 % more"), std::string(75, 'x') + " 35 %\nmore\n");
   EXPECT_EQ(paragraph(std::string(76, 'x') + " 35 % more"), std::string(76, 'x') + "\n35 % more\n");
