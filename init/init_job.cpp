@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -342,29 +343,51 @@ class Initialiser {
     return size;
   }
 
-  /// An input that acts against the motion is recorded with the other sign.
+  /// How the input of a recording goes with the motion: near one where it drives it, near minus one
+  /// where it is recorded with the other sign.
+  std::optional<double> agreement(const Source& source) const {
+    if (force_source()) {
+      const auto balance = balance_of(source);
+      return balance ? std::optional(balance->correlation) : std::nullopt;
+    }
+    const GuessedColumn* position = source.guess.find(Kind::position);
+    if (position == nullptr || source.input->key != std::string_view("command")) return {};
+    const auto found = rate_ratio(source.guess.time.values, position->values, driving(source));
+    return found ? std::optional(found->correlation) : std::nullopt;
+  }
+
+  /// A column has one sign in all recordings. It is turned if some clearly say so and none clearly
+  /// the contrary; what is not clear is asked. A force that nobody recorded, such as that of
+  /// gravity on a joint, can look like a wrong sign.
   void correct_signs() {
-    for (Source& source : sources_) {
-      GuessedColumn& input = *source.guess.find(source.input->kind, source.input->is_setpoint);
-      std::string against;
-      if (force_source()) {
-        const auto balance = balance_of(source);
-        if (balance && balance->correlation < -0.5)
-          against =
-              fmt::format("the axis accelerates in the opposite direction (correlation {:.2f})",
-                          balance->correlation);
-      } else if (const GuessedColumn* position = source.guess.find(Kind::position);
-                 position && source.input->key == std::string_view("command")) {
-        const auto found = rate_ratio(source.guess.time.values, position->values, driving(source));
-        if (found && found->correlation < -0.5)
-          against = fmt::format("the axis moves in the opposite direction (correlation {:.2f})",
-                                found->correlation);
+    constexpr double kClear = 0.8, kSome = 0.5;
+    std::map<std::string, std::vector<std::pair<Source*, double>>> of_column;
+    for (Source& source : sources_)
+      of_column[input_of(source).column].emplace_back(&source, agreement(source).value_or(0.0));
+    for (auto& [column, found] : of_column) {
+      const auto any = [&](auto&& holds) {
+        return std::ranges::any_of(found, [&](const auto& f) { return holds(f.second); });
+      };
+      if (!any([&](double c) { return c < -kSome; })) continue;
+      const bool turned =
+          any([&](double c) { return c < -kClear; }) && !any([&](double c) { return c > kClear; });
+      std::vector<std::string> each;
+      for (const auto& [source, correlation] : found)
+        each.push_back(sources_.size() > 1 ? fmt::format("{:.2f} in {}", correlation, source->name)
+                                           : fmt::format("{:.2f}", correlation));
+      const std::string reason =
+          fmt::format("the axis {} in the opposite direction (correlation {}): {}",
+                      force_source() ? "accelerates" : "moves", fmt::join(each, ", "),
+                      turned ? "its sign was inverted" : "is its sign right? It was left as it is");
+      for (auto& [source, correlation] : found) {
+        GuessedColumn& input = *source->guess.find(source->input->kind, source->input->is_setpoint);
+        if (turned) {
+          input.negative = !input.negative;
+          for (double& x : input.values) x = -x;
+        }
+        input.reasons.push_back(reason);
+        input.guessed = true;
       }
-      if (against.empty()) continue;
-      input.negative = !input.negative;
-      for (double& x : input.values) x = -x;
-      input.reasons.push_back(against + ": its sign was inverted");
-      input.guessed = true;
     }
   }
 

@@ -36,9 +36,11 @@ constexpr std::size_t kOrder = 6;
 /// many places apart.
 constexpr std::array<double, kOrder + 1> kGain{924.0, -792.0, 495.0, -220.0, 66.0, -12.0, 1.0};
 
-/// Their standard deviation, by the median.
-double spread_of_differences(std::span<const double> values, std::size_t stride) {
+/// Their standard deviation, by the median; of those that are not zero if `only_changes`.
+double spread_of_differences(std::span<const double> values, std::size_t stride,
+                             bool only_changes = false) {
   std::vector<double> d = sixth_differences(values, stride);
+  if (only_changes) std::erase(d, 0.0);
   if (d.size() < 3) return 0.0;
   for (double& x : d) x = std::abs(x);
   const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
@@ -59,8 +61,10 @@ std::vector<double> sixth_differences(std::span<const double> values, std::size_
 }
 
 double noise_from_differences(std::span<const double> values) {
-  return std::max(spread_of_differences(values, 1) / std::sqrt(kGain[0]),
-                  resolution_of(values) / std::sqrt(12.0));
+  double spread = spread_of_differences(values, 1);
+  // Of a signal that is frozen at rest, the motion must tell.
+  if (spread == 0.0) spread = spread_of_differences(values, 1, true);
+  return std::max(spread / std::sqrt(kGain[0]), resolution_of(values) / std::sqrt(12.0));
 }
 
 double noise_of_input(std::span<const double> values) {

@@ -280,6 +280,46 @@ TEST_F(InitJobTest, APartOfARatingNeedsTheGain) {
   expect_the_driven_mass(fitted(file), 1.0 / 60.0);
 }
 
+// One column has one sign. A spring that nobody recorded drives the second recording backwards.
+TEST_F(InitJobTest, TheSignOfAColumnIsThatOfAllRecordings) {
+  Table forward = driven(1), back = driven(2);
+  for (double& x : forward.columns[1].values) x = -x;
+  for (double& x : back.columns[1].values) x = -x;
+  folder_.write("a.csv", forward);
+  folder_.write("b.csv", back);
+  const auto sign_guess = [&] {
+    for (const std::string& text : make({"a.csv", "b.csv"}).guesses)
+      if (text.find("opposite direction") != std::string::npos) return text;
+    return std::string();
+  };
+  std::string text = sign_guess();
+  EXPECT_NE(text.find(" in a, -"), std::string::npos) << text;
+  EXPECT_NE(text.find(": its sign was inverted"), std::string::npos) << text;
+  expect_the_driven_mass(fitted(read()), 1.0 / 60.0);
+  // One of them says the contrary.
+  for (double& x : back.columns[1].values) x = -x;
+  folder_.write("b.csv", back);
+  text = sign_guess();
+  EXPECT_NE(text.find(": is its sign right? It was left as it is"), std::string::npos) << text;
+  EXPECT_EQ(folder_.read("job.yaml").find("sign: -1"), std::string::npos);
+}
+
+// The noise of a signal that stays where it is shows while it moves.
+TEST_F(InitJobTest, AnAxisAtRestForMostOfTheTimeIsFitted) {
+  Table table = driven();
+  const std::size_t n = table.columns[0].values.size();
+  for (Column& column : table.columns) {
+    const bool time = column.name == "time_s";
+    const double last = column.name == "position_m" || time ? column.values.back() : 0.0;
+    for (std::size_t i = 1; i <= 2 * n; ++i)
+      column.values.push_back(time ? last + static_cast<double>(i) / 500.0 : last);
+  }
+  folder_.write("a.csv", table);
+  make({"a.csv"});
+  const JobFile file = read();
+  EXPECT_EQ(file.job.recordings[0].measurements.size(), 3u);
+}
+
 TEST_F(InitJobTest, OneInputServesAllRecordings) {
   // What a current moves says nothing of what a force does: the force is not in both.
   Table both = renamed(

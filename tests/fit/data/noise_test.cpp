@@ -62,6 +62,16 @@ TEST(Noise, HasNoGridInRealNumbers) {
   EXPECT_EQ(resolution_of(values), 0.0);
 }
 
+// A simulation, or a drive that is off: the same value again and again for most of the time.
+TEST(Noise, OfASignalThatIsFrozenAtRestIsThatOfItsMotion) {
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal(0.0, 2e-3);
+  std::vector<double> values = smooth_signal(4000);
+  for (double& x : values) x += normal(generator);
+  values.insert(values.end(), 3 * values.size(), values.back());
+  EXPECT_NEAR(noise_from_differences(values), 2e-3, 0.05 * 2e-3);
+}
+
 TEST(Noise, OfAConstantIsZero) {
   EXPECT_EQ(noise_from_differences(std::vector<double>(100, 3.0)), 0.0);
   EXPECT_EQ(noise_from_differences(std::vector<double>{1.0, 2.0, 1.0}), 0.0);
