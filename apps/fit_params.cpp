@@ -87,6 +87,7 @@ struct Arguments {
   std::string output;
   std::string from;
   std::string axis;
+  std::optional<double> gain;  ///< N/V
   bool init = false;
   bool check = false;
   RunOptions options;
@@ -165,7 +166,8 @@ int check(const Arguments& arguments, const Job& job, std::optional<ProgressLine
 int init(const Arguments& arguments, std::optional<ProgressLine>& line) {
   namespace fs = std::filesystem;
   const fs::path folder = arguments.output.empty() ? "." : arguments.output;
-  const InitialJob created = initial_job(arguments.files, arguments.axis, folder.string());
+  const InitialJob created =
+      initial_job(arguments.files, arguments.axis, folder.string(), arguments.gain);
   const auto path = [&](const std::string& name) {
     return (folder / name).lexically_normal().string();
   };
@@ -420,10 +422,17 @@ int main(int argc, char** argv) {
                    ->excludes(time_limit)
                    ->excludes(close)
                    ->excludes(experiment);
-  app.add_option("--axis", arguments.axis, "with --init: use this axis file")
+  auto* axis = app.add_option("--axis", arguments.axis, "with --init: use this axis file")
+                   ->needs(init)
+                   ->check(kNotEmpty)
+                   ->type_name("AXIS.yaml");
+  const Quantity& gain = find_quantity("K_f")->quantity;
+  app.add_option("--gain", arguments.gain,
+                 "with --init: force in N per unit of the recorded current or command")
       ->needs(init)
-      ->check(kNotEmpty)
-      ->type_name("AXIS.yaml");
+      ->excludes(axis)
+      ->check(number(gain.lower, gain.upper))
+      ->type_name("K_f");
 
   app.option_defaults()->group("Results");
   auto* output = app.add_option("-o,--output", arguments.output,

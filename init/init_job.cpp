@@ -135,7 +135,8 @@ struct Candidate {
 
 class Initialiser {
  public:
-  Initialiser(const std::string& axis, const std::string& folder) : axis_(axis), folder_(folder) {}
+  Initialiser(const std::string& axis, const std::string& folder, std::optional<double> gain)
+      : axis_(axis), folder_(folder), gain_(gain) {}
 
   InitialJob make(const std::vector<std::string>& paths) {
     for (auto path = paths.begin(); path != paths.end(); ++path) {
@@ -312,6 +313,12 @@ class Initialiser {
   /// The axis file that is missing.
   void start_axis() {
     const Source& first = sources_.front();
+    if (gain_ && (!force_source() || drives_in_newtons(first)))
+      throw std::runtime_error(fmt::format(
+          "--gain is the force per unit of a current or command, but {} is {}: leave it "
+          "out",
+          sanitized(input_of(first).column),
+          force_source() ? "a force" : "a velocity that is asked for"));
     if (!force_source()) {
       starter_ = velocity_loop_starter(first.file);
       guesses_.push_back("axis.yaml describes a velocity loop with the values of a published axis");
@@ -326,9 +333,10 @@ class Initialiser {
     seen.largest_input = largest(driving(first));
     if (velocity) seen.largest_speed = largest(velocity->values);
     seen.balance = balance_of(first);
+    seen.gain = gain_;
     starter_ = mass_starter(first.file, seen);
     structure_ = starter_->structure;
-    if (seen.input != DrivenMass::Input::force)
+    if (starter_->gain_guessed)
       guesses_.push_back(
           "the drive gain, K_f in axis.yaml: M, B_a and the friction forces scale with it");
   }
@@ -629,6 +637,7 @@ class Initialiser {
   }
 
   std::string axis_, folder_;
+  std::optional<double> gain_;  ///< N/V, of the user
   std::vector<Source> sources_;
   Structure structure_;
   std::optional<StarterAxis> starter_;  ///< none where an axis file is given
@@ -639,8 +648,8 @@ class Initialiser {
 }  // namespace
 
 InitialJob initial_job(const std::vector<std::string>& recordings, const std::string& axis,
-                       const std::string& folder) {
-  return Initialiser(axis, folder).make(recordings);
+                       const std::string& folder, std::optional<double> gain) {
+  return Initialiser(axis, folder, gain).make(recordings);
 }
 
 }  // namespace axisfit

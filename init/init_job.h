@@ -1,6 +1,7 @@
 // A first job file for recordings that nobody has described yet.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,11 @@ struct InitialJob {
 /// recording_guess.h, an axis of its own making unless `axis` names a file, and as free what the
 /// recordings can determine of it. What had to be guessed is marked GUESSED in the files. The first
 /// recording is fitted, the last of several validates. Paths in the job start at `folder`, where
-/// the files are meant to go; nothing is written there.
+/// the files are meant to go; nothing is written there. `gain` is K_f of the axis to be made, the
+/// force in N per unit of a recorded current or command, if it is known.
 ///
 /// Throws std::runtime_error where the recordings make no job.
 InitialJob initial_job(const std::vector<std::string>& recordings, const std::string& axis,
-                       const std::string& folder);
+                       const std::string& folder, std::optional<double> gain = {});
 
 }  // namespace axisfit

@@ -28,6 +28,7 @@ std::string gain_comment(const DrivenMass& seen) {
   if (seen.input == DrivenMass::Input::force)
     return comment("Not used where the recordings contain the force itself.", 2);
   const bool current = seen.input == DrivenMass::Input::current;
+  if (seen.gain) return comment(fmt::format("As given, per unit of {}.", seen.column), 2);
   return comment(
       fmt::format("{}newtons per {} of {}. A motion shows only the ratios of mass and friction to "
                   "it, so it is not fitted: put {} here, and M, B_a, F_c and F_0 will be correct. "
@@ -59,8 +60,8 @@ StarterAxis velocity_loop_starter(const std::string& recording) {
 StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
   const bool sound = seen.balance && seen.balance->mass > 0.0 && seen.balance->correlation > 0.3;
   const ForceBalance balance = sound ? *seen.balance : ForceBalance{.mass = 1.0};
-  const bool gain_guessed = seen.input != DrivenMass::Input::force;
-  double gain = 1.0;
+  const bool gain_guessed = seen.input != DrivenMass::Input::force && !seen.gain;
+  double gain = seen.gain.value_or(1.0);
   if (gain_guessed)
     while (balance.mass * gain < 0.1 && gain < 1e6) gain *= 10.0;
   const double input = seen.largest_input > 0.0 ? seen.largest_input : 1.0;

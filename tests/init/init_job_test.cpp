@@ -26,10 +26,11 @@ namespace fs = std::filesystem;
 class InitJobTest : public ::testing::Test {
  protected:
   /// Makes a job in the folder.
-  InitialJob make(std::vector<std::string> recordings, const std::string& axis = {}) {
+  InitialJob make(std::vector<std::string> recordings, const std::string& axis = {},
+                  std::optional<double> gain = {}) {
     for (std::string& r : recordings)
       if (!fs::path(r).is_absolute()) r = folder_.path(r);
-    InitialJob made = initial_job(recordings, axis, folder_.path());
+    InitialJob made = initial_job(recordings, axis, folder_.path(), gain);
     for (const auto& [name, contents] : made.files) folder_.write(name, contents);
     return made;
   }
@@ -262,6 +263,22 @@ TEST_F(InitJobTest, ACopyIsRefused) {
           << error.what();
     }
   }
+}
+
+TEST_F(InitJobTest, AKnownGainIsAllThatACurrentNeeds) {
+  Table table = driven();
+  table.columns[1].name = "i_A";
+  folder_.write("a.csv", table);
+  const InitialJob made = make({"a.csv"}, {}, 60.0);
+  EXPECT_TRUE(made.guesses.empty()) << made.guesses.front();
+  const JobFile file = read();
+  EXPECT_EQ(file.job.model.axis.K_f, 60.0);
+  EXPECT_TRUE(file.job.guessed.empty());
+  EXPECT_NEAR(file.job.model.axis.M, 12.0, 2.0);
+  expect_the_driven_mass(fitted(file), 1.0);
+  table.columns[1].name = "force_N";
+  folder_.write("a.csv", table);
+  EXPECT_THROW(make({"a.csv"}, {}, 60.0), std::runtime_error);
 }
 
 // Without the rating, a torque in per cent is no force: K_f is a guess.
