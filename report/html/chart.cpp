@@ -40,15 +40,16 @@ class Scale {
   double low() const { return low_; }
   double high() const { return high_; }
 
-  /// Round values within, some five of them.
-  std::vector<double> ticks() const {
+  /// Round values within, some five of them, and what they are multiples of; zero where they are
+  /// powers of ten.
+  std::pair<std::vector<double>, double> ticks() const {
     std::vector<double> result;
     if (log_) {
       const int first = static_cast<int>(std::ceil(std::log10(low_) - 1e-9));
       const int last = static_cast<int>(std::floor(std::log10(high_) + 1e-9));
       const int every = std::max(1, (last - first) / 5);
       for (int e = first; e <= last; e += every) result.push_back(std::pow(10.0, e));
-      if (result.size() > 1) return result;
+      if (result.size() > 1) return {result, 0.0};
       result.clear();
     }
     const double rough = (high_ - low_) / 5.0;
@@ -59,7 +60,7 @@ class Scale {
                                                      : 10.0);
     for (double i = std::ceil(low_ / step); i * step <= high_ * (1.0 + 1e-12) + 1e-12 * step; ++i)
       result.push_back(i * step);
-    return result;
+    return {result, step};
   }
 
  private:
@@ -68,6 +69,69 @@ class Scale {
   bool log_;
   double from_, to_;
 };
+
+std::string power_of_ten(int n) {
+  constexpr const char* kRaised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text = "10";
+  for (const char c : std::to_string(n)) text += c == '-' ? "⁻" : kRaised[c - '0'];
+  return text;
+}
+
+/// "mm/s" of "m/s" and -3; with the power itself where the unit takes no prefix.
+std::string scaled_unit(const std::string& unit, int power) {
+  if (power == 0) return unit;
+  constexpr const char* kPrefixes[] = {"p", "n", "µ", "m", "", "k", "M", "G"};
+  const std::string symbol = unit.substr(0, unit.find_first_of(" /"));
+  for (const char* takes_prefix : {"m", "s", "N", "A", "V", "rad", "Hz"})
+    if (symbol == takes_prefix && power >= -12 && power <= 9)
+      return kPrefixes[power / 3 + 4] + unit;
+  return power_of_ten(power) + (unit.empty() ? "" : " " + unit);
+}
+
+/// What stands beside an axis. The labels are short; what they leave out, a power of a thousand or
+/// where they count from, is told by the name.
+struct AxisText {
+  std::vector<double> ticks;
+  std::vector<std::string> labels;
+  std::string name;
+};
+
+AxisText text_of(const ChartAxis& axis, const Scale& scale) {
+  const auto with_minus = [](std::string text) {
+    return text.starts_with('-') ? "−" + text.substr(1) : text;
+  };
+  const auto [ticks, step] = scale.ticks();
+  AxisText text{ticks, {}, axis.label};
+  std::string unit = axis.unit;
+  if (step == 0.0) {
+    for (const double v : ticks) {
+      const int n = static_cast<int>(std::lround(std::log10(v)));
+      text.labels.push_back(n >= -2 && n <= 3 ? fmt::format("{:g}", v) : power_of_ten(n));
+    }
+  } else {
+    const double span = scale.high() - scale.low();
+    double from = 0.0;
+    if (span < 0.01 * std::max(std::abs(scale.low()), std::abs(scale.high()))) {
+      const double round = std::pow(10.0, std::ceil(std::log10(span)));
+      from = round * std::floor(scale.low() / round);
+      text.name +=
+          " from " + with_minus(fmt::format("{:.12g}", from)) + (unit.empty() ? "" : " " + unit);
+    }
+    const double largest = std::max(std::abs(scale.low() - from), std::abs(scale.high() - from));
+    const int power = largest < 0.01 || largest >= 1e5
+                          ? 3 * static_cast<int>(std::floor(std::log10(largest) / 3.0))
+                          : 0;
+    const double one = std::pow(10.0, power);
+    const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step / one) + 1e-9)));
+    for (const double v : ticks)
+      text.labels.push_back(std::abs(v - from) < 0.5 * step
+                                ? "0"
+                                : with_minus(fmt::format("{:.{}f}", (v - from) / one, decimals)));
+    unit = scaled_unit(unit, power);
+  }
+  if (!unit.empty()) text.name += " (" + unit + ")";
+  return text;
+}
 
 /// Writes the path of an SVG in tenths of a unit, relative to the last point: that is short.
 class Pen {
@@ -186,27 +250,23 @@ class Drawing {
 
   Html axes() const {
     Html all;
-    for (const double v : x_.ticks())
+    const AxisText x = text_of(chart_.x, x_), y = text_of(chart_.y, y_);
+    for (std::size_t i = 0; i < x.ticks.size(); ++i)
       all += html(R"(<path class="grid" d="M{0:.1f},{1}V{2}"/>)"
-                  R"(<text class="tick" x="{0:.1f}" y="{3}" text-anchor="middle">{4:.6g}</text>)",
-                  x_(v), kTop, kHeight - kBottom, kHeight - kBottom + 14.0, rounded(v));
-    for (const double v : y_.ticks())
+                  R"(<text class="tick" x="{0:.1f}" y="{3}" text-anchor="middle">{4}</text>)",
+                  x_(x.ticks[i]), kTop, kHeight - kBottom, kHeight - kBottom + 14.0, x.labels[i]);
+    for (std::size_t i = 0; i < y.ticks.size(); ++i)
       all += html(R"(<path class="grid" d="M{1},{0:.1f}H{2}"/>)"
-                  R"(<text class="tick" x="{3}" y="{4:.1f}" text-anchor="end">{5:.6g}</text>)",
-                  y_(v), kLeft, width_ - kRight, kLeft - 6.0, y_(v) + 3.5, rounded(v));
+                  R"(<text class="tick" x="{3}" y="{4:.1f}" text-anchor="end">{5}</text>)",
+                  y_(y.ticks[i]), kLeft, width_ - kRight, kLeft - 6.0, y_(y.ticks[i]) + 3.5,
+                  y.labels[i]);
     all += html(R"(<path class="axis" d="M{},{}V{}H{}"/>)", kLeft, kTop, kHeight - kBottom,
                 width_ - kRight);
     all += html(R"(<text class="label" x="{}" y="{}" text-anchor="middle">{}</text>)",
-                0.5 * (kLeft + width_ - kRight), kHeight - 8.0, name_of(chart_.x));
+                0.5 * (kLeft + width_ - kRight), kHeight - 8.0, x.name);
     return all + html(R"(<text class="label" x="{0}" y="{1}" text-anchor="middle" )"
                       R"svg(transform="rotate(-90 {0} {1})">{2}</text>)svg",
-                      13.0, 0.5 * (kTop + kHeight - kBottom), name_of(chart_.y));
-  }
-
-  static double rounded(double tick) { return std::abs(tick) < 1e-300 ? 0.0 : tick; }
-
-  static std::string name_of(const ChartAxis& axis) {
-    return axis.unit.empty() ? axis.label : axis.label + " (" + axis.unit + ")";
+                      13.0, 0.5 * (kTop + kHeight - kBottom), y.name);
   }
 
   /// A line through the smallest and the largest value of every column of pixels, in their order.

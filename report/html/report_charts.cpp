@@ -135,16 +135,21 @@ struct Variable {
   double (*value)(const Sample&);
 };
 
-/// What a residual is shown against, besides time.
-const std::vector<Variable>& variables() {
-  static const std::vector<Variable> list{
+/// What a residual is shown against, besides time: what the axis has.
+std::vector<Variable> variables(const Structure& structure) {
+  const Capabilities& has = capabilities(structure);
+  std::vector<Variable> list{
       {"velocity", {"velocity", "m/s"}, [](const Sample& s) { return s.velocity; }},
-      {"position", {"position", "m"}, [](const Sample& s) { return s.position; }},
-      {"angle",
-       {"motor angle", "rad"},
-       [](const Sample& s) { return wrapped_angle(s.motor_angle); }},
-      {"force", {"gear force", "N"}, [](const Sample& s) { return s.gear_force; }},
-      {"current", {"current", "A"}, [](const Sample& s) { return s.current; }}};
+      {"position", {"position", "m"}, [](const Sample& s) { return s.position; }}};
+  if (has.has_motor)
+    list.push_back({"angle", {"motor angle", "rad"}, [](const Sample& s) {
+                      return wrapped_angle(s.motor_angle);
+                    }});
+  list.push_back({"force",
+                  {has.has_backlash ? "gear force" : "drive force", "N"},
+                  [](const Sample& s) { return s.gear_force; }});
+  if (has.is_electric)
+    list.push_back({"current", {"current", "A"}, [](const Sample& s) { return s.current; }});
   return list;
 }
 
@@ -307,7 +312,7 @@ Html ReportCharts::views(const SeriesTest& test) {
     chart.series.push_back(mean_line("mean", "mean", x, residual));
     all += add(std::move(chart));
   };
-  for (const Variable& variable : variables()) {
+  for (const Variable& variable : variables(run_result_.job().model.structure)) {
     Values x;
     for (const std::size_t i : series.samples) x.push_back(variable.value(simulation.samples[i]));
     scatter(variable.id, variable.axis, x);
@@ -374,7 +379,7 @@ Html ReportCharts::missing_force(std::size_t recording) {
   all += add(std::move(chart));
 
   const auto dots = columns_.add_coarse(thinned(before.force));
-  for (const Variable& variable : variables()) {
+  for (const Variable& variable : variables(run_result_.job().model.structure)) {
     Values x;
     for (const Sample& s : before.samples) x.push_back(variable.value(s));
     if (!varies(x)) continue;

@@ -325,7 +325,7 @@ class Page {
     const auto worst =
         std::ranges::max_element(diagnosis.tests, {}, &SeriesTest::reduced_chi_square);
     for (auto test = diagnosis.tests.begin(); test != diagnosis.tests.end(); ++test)
-      all += html(R"(<details class="series"{}><summary>{}</summary>{}</details>)",
+      all += html(R"(<details{}><summary>{}</summary>{}</details>)",
                   Html::raw(test == worst ? " open" : ""), name_of(*test),
                   figures(charts_.views(*test)));
     return all;

@@ -28,31 +28,50 @@ const minus = (text) => text.replace("-", "\u2212");
 const power = (n) => `10${[...String(n)].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("")}`;
 const withUnit = ({label, unit}) => (unit ? `${label} (${unit})` : label);
 
-/** Round values in the range, about as many as wanted, and their labels. */
-function ticksOf({min, max, log}, wanted) {
+/** "mm/s" of "m/s" and -3; with the power itself where the unit takes no prefix. */
+function scaledUnit(unit, n) {
+  if (n === 0) return unit;
+  const takesPrefix = /^(m|s|N|A|V|rad|Hz)(?=[ /]|$)/.test(unit) && n >= -12 && n <= 9;
+  return takesPrefix ? "pnµm kMG"[n / 3 + 4] + unit : power(n) + (unit && ` ${unit}`);
+}
+
+/**
+ * Round values in the range, about as many as wanted, their labels, and the name of the axis. The
+ * labels are short; what they leave out, a power of a thousand or where they count from, is told by
+ * the name.
+ */
+function ticksOf({min, max, log}, wanted, {label, unit}) {
   const ticks = [];
   if (log) {
     const [first, last] = [Math.ceil(Math.log10(min) - 1e-9), Math.floor(Math.log10(max) + 1e-9)];
     const every = Math.max(1, Math.ceil((last - first) / wanted));
     for (let n = first; n <= last; n += every)
       ticks.push({at: 10 ** n, label: n >= -2 && n <= 3 ? String(10 ** n) : power(n)});
-    if (ticks.length > 1) return ticks;
+    if (ticks.length > 1) return {ticks, name: withUnit({label, unit})};
     ticks.length = 0;
   }
-  const rough = (max - min) / wanted;
-  const unit = 10 ** Math.floor(Math.log10(rough));
-  const step = unit * [1, 2, 5, 10].find((m) => rough < m * unit * 1.5);
-  const largest = Math.max(Math.abs(min), Math.abs(max));
-  const shift = largest >= 1e5 || largest < 1e-3 ? Math.floor(Math.log10(largest)) : 0;
+  const span = max - min;
+  const rough = span / wanted;
+  const ten = 10 ** Math.floor(Math.log10(rough));
+  const step = ten * [1, 2, 5, 10].find((m) => rough < m * ten * 1.5);
+  let from = 0;
+  if (span < 0.01 * Math.max(Math.abs(min), Math.abs(max))) {
+    const round = 10 ** Math.ceil(Math.log10(span));
+    from = round * Math.floor(min / round);
+    label += ` from ${minus(String(Number(from.toPrecision(12))))}${unit && ` ${unit}`}`;
+  }
+  const largest = Math.max(Math.abs(min - from), Math.abs(max - from));
+  const shift = largest >= 1e5 || largest < 0.01 ? 3 * Math.floor(Math.log10(largest) / 3) : 0;
   const decimals = Math.max(0, shift - Math.floor(Math.log10(step) + 1e-9));
   const first = Math.ceil(min / step - 1e-9);
   const count = Math.floor(max / step + 1e-9) - first + 1;
   for (let k = 0; k < count; k++) {
     const i = first + k;
-    const digits = minus(((i * step) / 10 ** shift).toFixed(decimals));
-    ticks.push({at: i * step, label: i === 0 ? "0" : shift ? `${digits}·${power(shift)}` : digits});
+    const value = i * step - from;
+    const digits = minus((value / 10 ** shift).toFixed(decimals));
+    ticks.push({at: i * step, label: Math.abs(value) < 0.5 * step ? "0" : digits});
   }
-  return ticks;
+  return {ticks, name: withUnit({label, unit: scaledUnit(unit, shift)})};
 }
 
 /** First and last index of a series to draw for x from min to max: one more on either side. */
@@ -173,12 +192,14 @@ function drawn(chart, size) {
       shape("text", {class: kind, x: px, y: py, "text-anchor": anchor, ...more}, words);
   const grid = [];
   const labels = [];
-  for (const {at, label} of ticksOf(x, width / 80)) {
+  const [textX, textY] = [ticksOf(x, width / 80, chart.spec.x),
+                          ticksOf(y, height / 36, chart.spec.y)];
+  for (const {at, label} of textX.ticks) {
     const px = tenths(frame.toX(at));
     grid.push(shape("path", {class: "grid", d: `M${px} 0V${height}`}));
     labels.push(text("tick", px, height + 16, "middle", label));
   }
-  for (const {at, label} of ticksOf(y, height / 36)) {
+  for (const {at, label} of textY.ticks) {
     const py = tenths(frame.toY(at));
     grid.push(shape("path", {class: "grid", d: `M0 ${py}H${width}`}));
     labels.push(text("tick", -6, py + 4, "end", label));
@@ -192,8 +213,8 @@ function drawn(chart, size) {
   return {frame, parts: [
     content, ...labels,
     shape("path", {class: "axis", d: `M0 0V${height}H${width}`}),
-    text("label", width / 2, height + 34, "middle", withUnit(chart.spec.x)),
-    text("label", -57, height / 2, "middle", withUnit(chart.spec.y),
+    text("label", width / 2, height + 34, "middle", textX.name),
+    text("label", -57, height / 2, "middle", textY.name,
          {transform: `rotate(-90 -57 ${height / 2})`}),
   ]};
 }

@@ -264,6 +264,46 @@ TEST(Chart, OfValuesThatDifferByRoundingIsDrawnAsOfOneValue) {
   }
 }
 
+/// The labels along x and its name, of a chart whose x is from one value to another.
+std::vector<std::string> texts_along_x(const ChartAxis& axis, double from, double to) {
+  ChartColumns columns;
+  const auto x = columns.add({from, to}, 1e-3 * (to - from));
+  const std::string svg =
+      figure({.id = "chart",
+              .title = "chart",
+              .x = axis,
+              .y = {"y"},
+              .series = {{"line", "measured", x, columns.add({0.0, 1.0}, 1e-3)}}},
+             columns)
+          .text();
+  const std::regex text("(?:class=\"tick\"|class=\"label\")[^>]*\"middle\">([^<]*)<");
+  std::vector<std::string> texts;
+  for (std::sregex_iterator at(svg.begin(), svg.end(), text), last; at != last; ++at)
+    texts.push_back((*at)[1]);
+  return texts;
+}
+
+TEST(Chart, LabelsAreShortAndTheNameTellsWhatTheyLeaveOut) {
+  using Texts = std::vector<std::string>;
+  EXPECT_EQ(texts_along_x({"velocity", "m/s"}, -1.0, 1.0),
+            (Texts{"−1.0", "−0.5", "0", "0.5", "1.0", "velocity (m/s)"}));
+  EXPECT_EQ(texts_along_x({"residual", "m"}, -2e-4, 2e-4),
+            (Texts{"−200", "−100", "0", "100", "200", "residual (µm)"}));
+  EXPECT_EQ(texts_along_x({"moment", "N m"}, 0.0, 8e-3),
+            (Texts{"0", "2", "4", "6", "8", "moment (mN m)"}));
+  // Where the unit takes no prefix: a square millimetre is not a thousandth of a square metre.
+  EXPECT_EQ(texts_along_x({"area", "m^2"}, 0.0, 8e-3),
+            (Texts{"0", "2", "4", "6", "8", "area (10⁻³ m^2)"}));
+  EXPECT_EQ(texts_along_x({"power"}, 0.0, 4e5),
+            (Texts{"0", "100", "200", "300", "400", "power (10³)"}));
+  EXPECT_EQ(texts_along_x({"time", "s"}, 1700.25, 1702.25),
+            (Texts{"0.5", "1.0", "1.5", "2.0", "time from 1700 s (s)"}));
+  EXPECT_EQ(texts_along_x({"time", "s"}, -1700.0, -1699.9955),
+            (Texts{"0", "1", "2", "3", "4", "time from −1700 s (ms)"}));
+  EXPECT_EQ(texts_along_x({"frequency", "Hz", true}, 1e-5, 1e-1),
+            (Texts{"10⁻⁵", "10⁻⁴", "10⁻³", "0.01", "0.1", "frequency (Hz)"}));
+}
+
 TEST(Chart, OfNothingIsEmptyAndStillDrawn) {
   ChartColumns columns;
   const auto none = columns.add({}, 1.0);

@@ -60,6 +60,16 @@ TEST(ReportPage, TellsTheStoryOfTheLoop) {
   EXPECT_NE(page.find("explained by the added effects"), std::string::npos);
 }
 
+TEST(ReportPage, ShowsNoMotorWhereTheAxisHasNone) {
+  const std::string with = page_of(fit_job()), without = page_of(rubbing_job());
+  for (const char* title : {"Against motor angle", "Against current"}) {
+    EXPECT_NE(with.find(title), std::string::npos) << title;
+    EXPECT_EQ(without.find(title), std::string::npos) << title;
+  }
+  EXPECT_EQ(without.find("gear force"), std::string::npos);
+  EXPECT_NE(without.find("Against drive force"), std::string::npos);
+}
+
 TEST(ReportPage, DrawsProfilesWhereTheyWereComputed) {
   const std::string page = page_of(fit_job(), {.profiles = {"B_a"}});
   EXPECT_NE(page.find("id=\"profile-1\""), std::string::npos);
