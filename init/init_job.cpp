@@ -372,7 +372,8 @@ class Initialiser {
     std::map<std::string, std::vector<std::pair<Source*, double>>> of_column;
     for (Source& source : sources_)
       of_column[input_of(source).column].emplace_back(&source, agreement(source).value_or(0.0));
-    for (auto& [column, found] : of_column) {
+    for (auto& column : of_column) {
+      auto& found = column.second;
       const auto any = [&](auto&& holds) {
         return std::ranges::any_of(found, [&](const auto& f) { return holds(f.second); });
       };
