@@ -632,7 +632,10 @@ class Initialiser {
                "drifts away however good the fit. An observer therefore makes the simulation track "
                "the recording, and the fit minimises the prediction error. At this gain, an "
                "unmodelled hundredth of the acceleration would show as ten times the noise; a "
-               "higher gain hides more.",
+               "higher gain hides more. What is missing bends the estimates, by more at one gain "
+               "than "
+               "at another: if half the gain changes them by more than their standard errors, "
+               "those are too small.",
                2) +
            fmt::format("  observer: {{fixed: {} 1/s}}\n", round_to_digits(rate, 2));
   }
