@@ -55,6 +55,21 @@ std::string_view trim(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t") + 1 - begin);
 }
 
+// Whether it is a comment, as rigs and NumPy write them above the names of columns.
+bool is_comment(std::string_view line) {
+  return line.starts_with('#') || line.starts_with("% ") || line.starts_with("%%") ||
+         line.starts_with("//");
+}
+
+std::string_view without_mark(std::string_view comment) {
+  return trim(comment.substr(std::min(comment.find_first_not_of("#%/"), comment.size())));
+}
+
+bool begins_with_number(std::string_view text) {
+  const std::size_t at = text.find_first_not_of(" \t\"+-.,");
+  return at != std::string_view::npos && text[at] >= '0' && text[at] <= '9';
+}
+
 // Takes the lines off the front of a text, without their LF or CRLF, and counts them.
 class LineReader {
  public:
@@ -204,34 +219,36 @@ struct Format {
   char decimal = 0;  // the mark that the first number with one had
 };
 
-std::vector<Column> read_header(const std::string& file, std::string_view line, Format& format) {
+std::vector<Column> read_header(const std::string& file, std::size_t line_number,
+                                std::string_view line, Format& format) {
   if (is_blank(line)) {
-    throw RecordingError(file, 1, "the line is blank" + std::string(kHeaderAdvice));
+    throw RecordingError(file, line_number, "the line is blank" + std::string(kHeaderAdvice));
   }
   std::vector<Column> columns;
   for (FieldReader fields(line, format.delimiter); !fields.done();) {
     const std::size_t number = columns.size() + 1;
     const std::optional<std::string_view> field = fields.next();
-    if (!field) throw_bad_quotes(file, 1, number);
+    if (!field) throw_bad_quotes(file, line_number, number);
     std::string name = unescape(*field);
     format.delimiter_at_end = name.empty() && fields.done() && !columns.empty();
     if (format.delimiter_at_end) break;
     if (name.empty()) {
       throw RecordingError(
-          file, 1, "column " + std::to_string(number) + " has no name; name it or remove it");
+          file, line_number,
+          "column " + std::to_string(number) + " has no name; name it or remove it");
     }
     columns.push_back({std::move(name), {}});
   }
   // Told before repeated names, which a row of numbers is likely to have.
   if (std::all_of(columns.begin(), columns.end(),
                   [](const Column& column) { return is_number(column.name); })) {
-    throw RecordingError(file, 1, "there are only numbers" + std::string(kHeaderAdvice));
+    throw RecordingError(file, line_number, "there are only numbers" + std::string(kHeaderAdvice));
   }
   std::unordered_map<std::string, std::size_t> numbers;  // position from 1 of each name
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const auto [first, is_new] = numbers.try_emplace(columns[i].name, i + 1);
     if (is_new) continue;
-    throw RecordingError(file, 1,
+    throw RecordingError(file, line_number,
                          "columns " + std::to_string(first->second) + " and " +
                              std::to_string(i + 1) + " are both named " + quote(columns[i].name) +
                              "; give every column its own name");
@@ -444,14 +461,22 @@ Table read_csv(const std::string& path) {
   Table table;
   table.file = path;
   LineReader lines(text);
-  const std::string_view header = lines.next();
+  std::string_view header = lines.next(), comment;
+  while (is_comment(header) && !lines.done()) {
+    // The names may stand in the last comment: then numbers follow.
+    comment = without_mark(header);
+    if (begins_with_number(lines.remaining())) break;
+    header = lines.next();
+  }
+  if (is_comment(header) && !comment.empty()) header = comment;
+  const std::size_t header_line = lines.number();
   if (header.find('\r') != std::string_view::npos) {
     throw RecordingError(path, 1,
                          "lines end in a carriage return alone; save the file with line feeds");
   }
   Format format;
   format.delimiter = find_delimiter(header);
-  table.columns = read_header(path, header, format);
+  table.columns = read_header(path, header_line, header, format);
 
   const auto line_ends = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
   for (Column& column : table.columns) column.values.reserve(line_ends);
@@ -459,7 +484,7 @@ Table read_csv(const std::string& path) {
 
   std::size_t blank_line = 0;  // the first one that was not yet seen to be at the end of the file
   while (!lines.done()) {
-    const bool below_units = lines.number() >= 2;
+    const bool below_units = lines.number() > header_line;
     if (below_units && blank_line == 0 && append_plain_row(table, lines, format)) continue;
     const std::string_view line = lines.next();
     if (is_blank(line)) {
@@ -470,11 +495,12 @@ Table read_csv(const std::string& path) {
       throw RecordingError(path, blank_line,
                            "the line is blank, but rows follow; remove it, or complete the row");
     }
-    if (lines.number() == 2 && read_units(line, format, table.columns)) continue;
+    if (lines.number() == header_line + 1 && read_units(line, format, table.columns)) continue;
     append_row(table, lines.number(), line, format);
   }
   if (table.rows() == 0) {
-    throw RecordingError(path, 1, "there are no rows below the header; check how it was recorded");
+    throw RecordingError(path, header_line,
+                         "there are no rows below the header; check how it was recorded");
   }
   return table;
 }

@@ -43,8 +43,10 @@ struct Table {
 };
 
 // Reads a file of numbers separated by commas; by semicolons or tabs if the header has no comma.
-// The first line names the columns, the second may have their units (it does, if none of its
-// fields is a number), every further one holds one finite number per column. The locale does not
+// The first line that is no comment names the columns, or the last comment, if numbers follow it;
+// the next one may have their units (it does, if none of its
+// fields is a number), every further one holds one finite number per column. Comments stand above
+// the names and begin with '#', '%' or "//". The locale does not
 // matter: numbers have a decimal point, or, where commas do not separate them, all of them that
 // are not whole a decimal comma; no thousands separators. Fields may be quoted and surrounded by
 // blanks; a UTF-8 byte-order mark, CRLF line ends, a separator at the end of every line, and blank

@@ -117,6 +117,20 @@ TEST_F(TableTest, AcceptsWhatSpreadsheetsAndLoggersWrite) {
   }
 }
 
+TEST_F(TableTest, SkipsCommentsAboveTheNames) {
+  for (const char* text : {"# rig 7\n#\nt,x\n1,2\n3,4\n", "% rig, 7\n% t,x\n1,2\n3,4\n",
+                           "// rig 7\n// 2 kHz\nt,x\ns,m\n1,2\n3,4\n", "# t,x\n1,2\n3,4\n",
+                           "#t,x\r\n-1,2\r\n3,4\r\n"}) {
+    SCOPED_TRACE(text);
+    const Table table = read(text);
+    ASSERT_EQ(table.columns.size(), 2u);
+    EXPECT_EQ(table.columns[0].name, "t");
+    EXPECT_EQ(table.columns[1].name, "x");
+    EXPECT_EQ(table.columns[1].values, (std::vector{2.0, 4.0}));
+  }
+  EXPECT_EQ(read("# rig\nt,x\n1,2\n3,4\n").lines, (std::vector<std::size_t>{3, 4}));
+}
+
 TEST_F(TableTest, ReadsARowOfUnits) {
   for (const char* text :
        {"t;v;k\ns;mm/s;\n0,5;1;2\n1;2,5;3\n", "t,v,k\ns,mm/s,\n0.5,1,2\n1,2.5,3\n"}) {
