@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -22,10 +21,6 @@ namespace {
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::string_view kHeaderAdvice = "; the first line must name the columns";
 
-std::string place(const std::string& file, std::size_t line) {
-  return line == 0 ? file : file + ":" + std::to_string(line);
-}
-
 // Text of the file in quotes for a message, cut to a readable length.
 std::string quote(std::string_view text) { return in_quotes(shortened(text, 40)); }
 
@@ -35,7 +30,8 @@ std::string counted(std::size_t count, std::string_view noun) {
 
 std::string read_whole_file(const std::string& path) {
   const FileWatch watch(path);
-  std::ifstream in = open_recording(path);
+  check_readable(path);
+  std::ifstream in(path, std::ios::binary);
   std::error_code gone;
   const std::uintmax_t size = std::filesystem::file_size(path, gone);
   std::string text(gone ? 0 : size, '\0');
@@ -404,40 +400,6 @@ void append_number(std::string& text, double value, int significant_digits) {
 }
 
 }  // namespace
-
-RecordingError::RecordingError(const std::string& file, std::size_t line,
-                               const std::string& message)
-    : std::runtime_error(sanitized(place(file, line) + ": " + message)) {}
-
-std::ifstream open_recording(const std::string& path) {
-  std::error_code ignored;  // what stands in the way of looking stands in the way of opening, too
-  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
-    const bool folder = std::filesystem::is_directory(path, ignored);
-    throw RecordingError(path, 0,
-                         std::string(folder ? "is a directory" : "is not a file") +
-                             "; give the path of a recording");
-  }
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    throw RecordingError(path, 0,
-                         "cannot be opened (" + std::generic_category().message(errno) +
-                             "); check the path and the permissions");
-  }
-  return in;
-}
-
-std::size_t Table::rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
-
-const Column* Table::find(std::string_view name) const {
-  const auto found = std::find_if(columns.begin(), columns.end(),
-                                  [name](const Column& column) { return column.name == name; });
-  return found == columns.end() ? nullptr : &*found;
-}
-
-std::string Table::where(std::size_t row) const {
-  return row < lines.size() ? place(file, lines[row]) : file + ": row " + std::to_string(row + 1);
-}
 
 Table read_csv(const std::string& path) {
   const std::string content = read_whole_file(path);

@@ -1,46 +1,12 @@
 #pragma once
 
-#include <cstddef>
 #include <iosfwd>
-#include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "base/column.h"
+#include "io/recording/table.h"
 
 namespace axisfit {
-
-// A recording cannot be used as it is. what() is meant for the person who made the recording: it
-// names the place and says what to do, as "file:line: message", or "file: message" without a line;
-// one line that every terminal shows (plain_text.h).
-class RecordingError : public std::runtime_error {
- public:
-  // `line` counts from 1; 0 means that no line is known.
-  RecordingError(const std::string& file, std::size_t line, const std::string& message);
-};
-
-// Opens a recording to be read. Throws RecordingError where there is none, and where what is there
-// is no file: a pipe may never be written to, and a device have no end.
-std::ifstream open_recording(const std::string& path);
-
-// Named columns of equal length and where they came from. Units are those of the source; the names
-// carry no meaning here.
-struct Table {
-  std::string file;  // the source as it is named in messages
-  std::vector<Column> columns;
-  std::vector<std::size_t> lines;  // line of each row in `file`, from 1; empty: no lines
-
-  // Length of the columns, 0 without any.
-  std::size_t rows() const;
-
-  // The column of exactly this name (case matters), or nullptr. Valid until `columns` changes.
-  const Column* find(std::string_view name) const;
-
-  // The place of row `row` (from 0) for messages: "file:line", or "file: row N" with N from 1 when
-  // the source has no lines.
-  std::string where(std::size_t row) const;
-};
 
 // Reads a file of numbers separated by commas; by semicolons or tabs if the header has no comma.
 // The first line that is no comment names the columns, or the last comment, if numbers follow it;
