@@ -87,7 +87,8 @@ struct Arguments {
   std::string output;
   std::string from;
   std::string axis;
-  std::optional<double> gain;  ///< N/V
+  std::optional<double> gain;        ///< N/V
+  std::vector<std::string> answers;  ///< what columns are
   bool init = false;
   bool check = false;
   RunOptions options;
@@ -166,8 +167,10 @@ int check(const Arguments& arguments, const Job& job, std::optional<ProgressLine
 int init(const Arguments& arguments, std::optional<ProgressLine>& line) {
   namespace fs = std::filesystem;
   const fs::path folder = arguments.output.empty() ? "." : arguments.output;
+  std::vector<ColumnAnswer> answers;
+  for (const std::string& text : arguments.answers) answers.push_back(read_answer(text));
   const InitialJob created =
-      initial_job(arguments.files, arguments.axis, folder.string(), arguments.gain);
+      initial_job(arguments.files, arguments.axis, folder.string(), arguments.gain, answers);
   const auto path = [&](const std::string& name) {
     return (folder / name).lexically_normal().string();
   };
@@ -433,6 +436,13 @@ int main(int argc, char** argv) {
       ->excludes(axis)
       ->check(number(gain.lower, gain.upper))
       ->type_name("K_f");
+  app.add_option("--column", arguments.answers,
+                 "with --init: what a column is, such as position=\"Geber [Ink]:um/8\"; may be "
+                 "given several times")
+      ->needs(init)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->type_name("SIGNAL=COLUMN:UNIT");
 
   app.option_defaults()->group("Results");
   auto* output = app.add_option("-o,--output", arguments.output,

@@ -14,7 +14,7 @@
 
 #include "base/plain_text.h"
 #include "io/config/config.h"
-#include "io/recording/csv.h"
+#include "io/recording/table.h"
 
 namespace axisfit::fuzz {
 

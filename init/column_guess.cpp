@@ -81,6 +81,11 @@ std::string_view usual_writing(Kind kind, std::string_view text) {
                                        {velocity, "degps", "deg/s"},
                                        {velocity, "radps", "rad/s"},
                                        {velocity, "rads", "rad/s"},
+                                       {velocity, "inc/s", "counts/s"},
+                                       {velocity, "ink/s", "counts/s"},
+                                       {velocity, "inkr/s", "counts/s"},
+                                       {velocity, "cnt/s", "counts/s"},
+                                       {velocity, "pulses/s", "counts/s"},
                                        {velocity, "1/min", "rpm"},
                                        {velocity, "u/min", "rpm"},
                                        {velocity, "r/min", "rpm"},
@@ -397,6 +402,7 @@ const std::vector<StoredUnit>& stored_units(Kind kind) {
       {"rad/s", 1.0, "m/s", 1.0},
       {"deg/s", kDegree, "m/s", kDegree},
       {"rpm", kPi / 30.0, "m/s", kPi / 30.0},
+      {"counts/s", 1e-6, "m/s", 1e-6},
   };
   static const std::vector<StoredUnit> kAcceleration{
       {"m/s^2", 1.0},

@@ -48,13 +48,21 @@ std::string scalar(const std::string& text) {
 
 /// "{column: time_s, unit: s}"
 std::string column_map(const GuessedColumn& column, const std::string& unit,
-                       const std::string& more = {}) {
+                       const std::string& more = {}, const std::string& file = {},
+                       double offset = 0.0) {
   YAML::Emitter out;
   out << YAML::Flow << YAML::BeginMap << YAML::Key << "column" << YAML::Value << column.column
       << YAML::Key << "unit" << YAML::Value << unit;
   if (column.factor != 1.0)
     out << YAML::Key << "factor" << YAML::Value << fmt::format("{:.10g}", column.factor);
   if (column.negative) out << YAML::Key << "sign" << YAML::Value << "-1";
+  if (!file.empty()) out << YAML::Key << "file" << YAML::Value << file;
+  if (!column.clock.empty())
+    out << YAML::Key << "time" << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key
+        << "column" << YAML::Value << column.clock << YAML::Key << "unit" << YAML::Value
+        << column.clock_unit << YAML::EndMap;
+  if (offset != 0.0)
+    out << YAML::Key << "offset" << YAML::Value << with_unit(round_to_digits(offset, 6), "s");
   if (!more.empty()) out << YAML::Key << more << YAML::Value << "false";
   out << YAML::EndMap;
   return out.c_str();
@@ -125,6 +133,8 @@ struct Source {
   std::string name, file;  ///< as the job has them
   RecordingGuess guess;
   std::optional<Input> input;
+  std::string input_file = {};  ///< of what drives the axis, where it is not `file`
+  double input_offset = 0.0;    ///< s, added to the times of that
 };
 
 /// A quantity that the job may free.
@@ -135,8 +145,9 @@ struct Candidate {
 
 class Initialiser {
  public:
-  Initialiser(const std::string& axis, const std::string& folder, std::optional<double> gain)
-      : axis_(axis), folder_(folder), gain_(gain) {}
+  Initialiser(const std::string& axis, const std::string& folder, std::optional<double> gain,
+              const std::vector<ColumnAnswer>& answers)
+      : axis_(axis), folder_(folder), gain_(gain), answers_(answers) {}
 
   InitialJob make(const std::vector<std::string>& paths) {
     for (auto path = paths.begin(); path != paths.end(); ++path) {
@@ -148,6 +159,8 @@ class Initialiser {
             fmt::format("{} is given twice: a recording counts once", sanitized(*path)));
       add(*path);
     }
+    check_answers();
+    join_files();
     if (axis_.empty()) {
       choose_drive();
     } else {
@@ -207,21 +220,129 @@ class Initialiser {
   void add(const std::string& path) {
     Source source{fs::path(path).stem().string(),
                   relative(path),
-                  guess_recording(RecordingFile(path), path),
+                  guess_recording(RecordingFile(path), path, answers_),
                   {}};
     for (int n = 2; std::ranges::count(sources_, source.name, &Source::name) > 0; ++n)
       source.name = fmt::format("{}-{}", fs::path(path).stem().string(), n);
     sources_.push_back(std::move(source));
   }
 
-  /// By what the first recording has of a kind that only one drive makes.
+  /// Every answer is about a column that is there.
+  void check_answers() const {
+    for (const ColumnAnswer& answer : answers_) {
+      const auto found = [&](const GuessedColumn& c) { return c.answer == answer.column; };
+      if (std::ranges::none_of(sources_, [&](const Source& s) {
+            return found(s.guess.time) || std::ranges::any_of(s.guess.columns, found);
+          }))
+        throw std::runtime_error(
+            fmt::format("--column: no recording has a column '{}'; those of {} are {}",
+                        sanitized(answer.column), sanitized(sources_.front().guess.path),
+                        fmt::join(names_of(sources_.front()), ", ")));
+    }
+  }
+
+  static std::vector<std::string> names_of(const Source& source) {
+    std::vector<std::string> names{source.guess.time.column};
+    for (const GuessedColumn& c : source.guess.columns) names.push_back(c.column);
+    for (const std::string& name : source.guess.unused)
+      names.push_back(name + (std::ranges::count(source.guess.constant, name) > 0
+                                  ? " (never changes)"
+                                  : " (not recognised)"));
+    for (std::string& name : names) name = sanitized(name);
+    return names;
+  }
+
+  static bool moves(const RecordingGuess& recording) {
+    return recording.find(Kind::position) || recording.find(Kind::velocity) ||
+           recording.find(Kind::acceleration);
+  }
+
+  /// Two files of which one has what drives the axis, and the other how it moved, are one
+  /// recording. Their clocks need not have begun together: the force goes best with the
+  /// acceleration where they agree.
+  void join_files() {
+    if (sources_.size() != 2) return;
+    const auto driver = std::ranges::find_if(sources_, [](const Source& s) {
+      return !moves(s.guess) && std::ranges::any_of(kForceInputs, [&](const Input& input) {
+        return has_input(s.guess, input);
+      });
+    });
+    const auto motion = std::ranges::find_if(sources_, [](const Source& s) {
+      return moves(s.guess) && std::ranges::none_of(kForceInputs, [&](const Input& input) {
+               return has_input(s.guess, input);
+             });
+    });
+    if (driver == sources_.end() || motion == sources_.end()) return;
+    const auto input = std::ranges::find_if(
+        kForceInputs, [&](const Input& i) { return has_input(driver->guess, i); });
+    GuessedColumn column = *driver->guess.find(input->kind, input->is_setpoint);
+    const GuessedColumn& clock = driver->guess.time;
+    const double offset = best_offset(*motion, clock.values, column.values);
+    motion->input_file = driver->file;
+    motion->input_offset = offset;
+    column.clock = clock.column;
+    column.clock_unit = clock.unit;
+    column.values = at_times(motion->guess.time.values, clock.values, column.values, offset);
+    column.reasons.push_back(
+        fmt::format("from {}, whose clock was set {:.6g} s {}, where the force goes best with the "
+                    "acceleration; the delay T_d, which is free, does the rest",
+                    driver->name, std::abs(offset), offset < 0.0 ? "back" : "forward"));
+    column.guessed = true;
+    motion->guess.columns.push_back(std::move(column));
+    joined_ = true;
+    sources_.erase(driver);
+  }
+
+  /// Values of another clock at these times; each holds until the next.
+  static std::vector<double> at_times(const std::vector<double>& times,
+                                      const std::vector<double>& clock,
+                                      const std::vector<double>& values, double offset) {
+    std::vector<double> result;
+    for (const double t : times) {
+      const auto next = std::ranges::upper_bound(clock, t - offset) - clock.begin();
+      result.push_back(values[static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - 1, 0))]);
+    }
+    return result;
+  }
+
+  static double best_offset(const Source& motion, const std::vector<double>& clock,
+                            const std::vector<double>& values) {
+    const RecordingGuess& guess = motion.guess;
+    const GuessedColumn *position = guess.find(Kind::position),
+                        *velocity = guess.find(Kind::velocity);
+    const std::vector<double> none;
+    const std::vector<double>& times = guess.time.values;
+    const auto agreement = [&](double offset) {
+      const auto balance =
+          force_balance(times, position ? position->values : none,
+                        velocity ? velocity->values : none, at_times(times, clock, values, offset));
+      return balance ? std::abs(balance->correlation) : 0.0;
+    };
+    // As if both began together, and from there half of the shorter one to either side, in steps
+    // that become finer.
+    double best = times.front() - clock.front();
+    double step = 0.5 * std::min(times.back() - times.front(), clock.back() - clock.front()) / 50.0;
+    double found = agreement(best);
+    for (int range = 50; step > 1e-4; range = 10, step /= 5.0) {
+      const double middle = best;
+      for (int k = -range; k <= range; ++k)
+        if (const double here = agreement(middle + k * step); here > found) {
+          found = here;
+          best = middle + k * step;
+        }
+    }
+    return best;
+  }
+
+  /// By what the first recording has of a kind that only one drive makes. A velocity that is asked
+  /// for is that of any drive, where a force or a current was recorded, too: then that drives a
+  /// mass, whatever controls it.
   void choose_drive() {
     const RecordingGuess& first = sources_.front().guess;
     const bool loop = velocity_input(first, false) &&
-                      (first.find(Kind::set_velocity) || first.find(Kind::tachometer) ||
-                       first.find(Kind::preamplifier_voltage) ||
+                      (first.find(Kind::tachometer) || first.find(Kind::preamplifier_voltage) ||
                        std::ranges::none_of(kForceInputs, [&](const Input& input) {
-                         return has_input(first, input);
+                         return input.kind != Kind::set_velocity && has_input(first, input);
                        }));
     structure_.drive = loop ? Drive::velocity_loop : Drive::force_source;
     structure_.transmission = loop ? Transmission::backlash : Transmission::rigid;
@@ -276,20 +397,14 @@ class Initialiser {
     std::erase_if(sources_, [&](const Source& source) {
       const bool driven = source.input.has_value();
       if (driven && has_measured(source)) return false;
-      std::vector<std::string> found;
-      for (const GuessedColumn& c : source.guess.columns) found.push_back(c.column);
-      for (const std::string& name : source.guess.unused)
-        found.push_back(name + (std::ranges::count(source.guess.constant, name) > 0
-                                    ? " (never changes)"
-                                    : " (not recognised)"));
       unusable.push_back(sanitized(fmt::format(
-          "{}: no column {}; the columns are {}. If one of them does, rename it, for example to "
-          "{}; otherwise record that signal.",
+          "{}: no column {}; the columns are {}. If one of them does, say so by --column {}; "
+          "otherwise record that signal.",
           source.guess.path, driven ? "shows how the axis moved" : "shows what drove the axis",
-          found.empty() ? "only the time" : fmt::format("{}", fmt::join(found, ", ")),
-          driven           ? "position_mm or velocity_mps"
-          : force_source() ? "current_A, force_N or command_V"
-                           : "command_V")));
+          fmt::join(names_of(source), ", "),
+          driven           ? "position=COLUMN:mm or velocity=COLUMN:m/s"
+          : force_source() ? "current=COLUMN:A, force=COLUMN:N or command=COLUMN:V"
+                           : "command=COLUMN:V")));
       return true;
     });
     if (sources_.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(unusable, "\n")));
@@ -416,6 +531,7 @@ class Initialiser {
     const auto bounds = [](double lower, double upper, std::string_view unit) {
       return fmt::format("{{bounds: [{}, {}]}}", with_unit(lower, unit), with_unit(upper, unit));
     };
+    if (joined_) add("T_d");
     for (const std::string& name : kCandidates) {
       const Quantity& q = find_quantity(name)->quantity;
       add(name, any_gain ? bounds(std::max(q.lower, 1e-3), q.upper, q.unit) : "{}");
@@ -588,7 +704,8 @@ class Initialiser {
             "N/V");
     }
     return reasons_text(written, 6) +
-           fmt::format("      {}: {}\n", source.input->key, column_map(written, unit));
+           fmt::format("      {}: {}\n", source.input->key,
+                       column_map(written, unit, {}, source.input_file, source.input_offset));
   }
 
   /// A recording that begins at rest needs no more than where; another one its first samples.
@@ -642,6 +759,8 @@ class Initialiser {
 
   std::string axis_, folder_;
   std::optional<double> gain_;  ///< N/V, of the user
+  std::vector<ColumnAnswer> answers_;
+  bool joined_ = false;  ///< of two files: their clocks may differ
   std::vector<Source> sources_;
   Structure structure_;
   std::optional<StarterAxis> starter_;  ///< none where an axis file is given
@@ -652,8 +771,9 @@ class Initialiser {
 }  // namespace
 
 InitialJob initial_job(const std::vector<std::string>& recordings, const std::string& axis,
-                       const std::string& folder, std::optional<double> gain) {
-  return Initialiser(axis, folder, gain).make(recordings);
+                       const std::string& folder, std::optional<double> gain,
+                       const std::vector<ColumnAnswer>& answers) {
+  return Initialiser(axis, folder, gain, answers).make(recordings);
 }
 
 }  // namespace axisfit

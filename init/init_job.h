@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "init/recording_guess.h"
 #include "io/results/output_folder.h"
 
 namespace axisfit {
@@ -19,10 +20,13 @@ struct InitialJob {
 /// recordings can determine of it. What had to be guessed is marked GUESSED in the files. The first
 /// recording is fitted, the last of several validates. Paths in the job start at `folder`, where
 /// the files are meant to go; nothing is written there. `gain` is K_f of the axis to be made, the
-/// force in N per unit of a recorded current or command, if it is known.
+/// force in N per unit of a recorded current or command, if it is known. `answers` say what columns
+/// are (recording_guess.h). Two files of which one has what drives the axis and the other how it
+/// moved are one recording, with a delay between their clocks that is free.
 ///
 /// Throws std::runtime_error where the recordings make no job.
 InitialJob initial_job(const std::vector<std::string>& recordings, const std::string& axis,
-                       const std::string& folder, std::optional<double> gain = {});
+                       const std::string& folder, std::optional<double> gain = {},
+                       const std::vector<ColumnAnswer>& answers = {});
 
 }  // namespace axisfit

@@ -4,15 +4,20 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <ranges>
+#include <stdexcept>
+#include <tuple>
 
 #include "base/plain_text.h"
 #include "base/rounding.h"
+#include "base/units.h"
 #include "fit/data/noise.h"
 #include "fit/data/recording_check.h"
-#include "io/recording/csv.h"
+#include "init/force_balance.h"
 
 namespace axisfit {
 namespace {
@@ -51,13 +56,44 @@ Values derivative(const Values& times, const Values& values) {
   return rate;
 }
 
+/// Linear between the values that there are, constant beyond; those at NaN times are left out.
+Values interpolated(const Values& times, const Values& values, const Values& at) {
+  Values known_times, known;
+  for (std::size_t i = 0; i < std::min(times.size(), values.size()); ++i) {
+    if (std::isnan(times[i]) || std::isnan(values[i])) continue;
+    known_times.push_back(times[i]);
+    known.push_back(values[i]);
+  }
+  Values result;
+  if (known.empty()) return result;
+  std::size_t k = 0;
+  for (const double t : at) {
+    while (k < known_times.size() && known_times[k] < t) ++k;
+    if (k == 0 || k == known_times.size()) {
+      result.push_back(k == 0 ? known.front() : known.back());
+      continue;
+    }
+    const double share = (t - known_times[k - 1]) / (known_times[k] - known_times[k - 1]);
+    result.push_back(share == 1.0 ? known[k] : known[k - 1] + share * (known[k] - known[k - 1]));
+  }
+  return result;
+}
+
+Values without_gaps(const Values& values) {
+  Values there;
+  std::ranges::copy_if(values, std::back_inserter(there), [](double x) { return !std::isnan(x); });
+  return there;
+}
+
 /// A column while its unit is looked for.
 struct UnscaledColumn {
   GuessedColumn column;
   std::string named;  ///< unit in its name; empty: none
   double size = 0.0;  ///< of the unit in SI; zero: not known yet
-  const Values* raw = nullptr;
+  Values raw;         ///< at the times of the recording
+  std::string shown;  ///< what messages call it
   int rank = 0;
+  bool answered = false;  ///< by the user
 
   void set_unit(const StoredUnit& unit) {
     column.unit = unit.written;
@@ -78,11 +114,17 @@ struct UnscaledColumn {
 
 class Guesser {
  public:
-  explicit Guesser(const RecordingFile& file, const std::string& path) : file_(file), path_(path) {}
+  Guesser(const RecordingFile& file, const std::string& path,
+          const std::vector<ColumnAnswer>& answers)
+      : file_(file), path_(path) {
+    read_headings(answers);
+  }
 
   RecordingGuess guess() {
     find_time();
     find_columns();
+    if (std::ranges::all_of(file_.columns(), [](const Column& c) { return c.name.empty(); }))
+      infer_unnamed();
     size_time();
     size_motion();
     size_acceleration();
@@ -100,86 +142,259 @@ class Guesser {
  private:
   using Key = std::pair<Kind, bool>;
 
-  static bool usable(const Values& values) {
-    return values.size() >= kMinSamples &&
-           std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
+  /// What is known of a column before its values are looked at.
+  struct Heading {
+    std::string reference;  ///< what a job calls it
+    std::optional<ColumnGuess> guess;
+    const ColumnAnswer* answer = nullptr;
+    bool usable = false;
+  };
+
+  static bool usable(const Column& column) {
+    if (!column.obstacle.empty()) return false;
+    std::size_t there = 0;
+    for (const double x : column.values) {
+      if (std::isinf(x)) return false;
+      there += !std::isnan(x);
+    }
+    return there >= kMinSamples;
   }
 
-  /// What the header says of a column, with a row of units below the names as if they held them.
-  std::optional<ColumnGuess> heading(const std::string& name) const {
-    const std::string unit = file_.unit(name);
-    return guess_column(unit.empty() ? name : fmt::format("{} [{}]", name, unit));
+  /// What the header says of a column, with its unit as if the name held it; what the user says
+  /// comes before.
+  void read_headings(const std::vector<ColumnAnswer>& answers) {
+    const std::vector<Column>& columns = file_.columns();
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const Column& column = columns[c];
+      Heading heading{file_.reference(c), {}, nullptr, usable(column)};
+      heading.guess = guess_column(
+          column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit));
+      for (const ColumnAnswer& answer : answers) {
+        if (answer.column != heading.reference && answer.column != std::to_string(c + 1)) continue;
+        heading.answer = &answer;
+        heading.guess = ColumnGuess{answer.kind, false, answer.unit, kAnswered};
+        if (!heading.usable)
+          throw RecordingError(
+              path_, 0,
+              fmt::format(
+                  "column '{}', which --column names, {}", heading.reference,
+                  column.obstacle.empty() ? "has fewer than 10 finite values" : column.obstacle));
+      }
+      headings_.push_back(std::move(heading));
+    }
   }
 
   void find_time() {
-    for (const auto& [name, values] : file_.columns()) {
-      const auto guess = heading(name);
-      if (!guess || guess->kind != Kind::time || !usable(values) || !is_sanitized(name)) continue;
-      if (time_.raw == nullptr || guess->rank > time_.rank) set_time(name, values, *guess);
+    const std::vector<Column>& columns = file_.columns();
+    // Of several clocks the one that most columns go by; of those the densest.
+    std::vector<std::size_t> followers(columns.size(), 0);
+    for (const Column& column : columns)
+      if (column.clock) ++followers[*column.clock];
+    std::optional<std::size_t> best;
+    const auto is_better = [&](std::size_t c) {
+      const auto merit = [&](std::size_t i) {
+        return std::tuple(
+            headings_[i].guess->rank, followers[i],
+            std::ranges::count_if(columns[i].values, [](double x) { return !std::isnan(x); }));
+      };
+      return !best || merit(c) > merit(*best);
+    };
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const Heading& heading = headings_[c];
+      if (heading.guess && heading.guess->kind == Kind::time && heading.usable && is_better(c))
+        best = c;
     }
-    if (time_.raw != nullptr) return;
-    // One that increases at an even pace, as nothing else does.
-    for (const auto& [name, values] : file_.columns()) {
-      if (!usable(values) || !is_sanitized(name) || !increases(values) ||
-          sampling(values).jitter > 1e-3)
-        continue;
-      set_time(name, values, {});
+    if (best) {
+      set_time(*best);
+      return;
+    }
+    // One that increases at an even pace, as nothing else does. A count of samples does, too.
+    for (const bool count : {false, true})
+      for (std::size_t c = 0; c < columns.size() && !best; ++c) {
+        if (!headings_[c].usable) continue;
+        const Values values = without_gaps(columns[c].values);
+        const Sampling pace = sampling(values);
+        if (increases(values) && pace.jitter <= 1e-3 && (pace.interval == 1.0) == count) best = c;
+      }
+    if (best) {
+      set_time(*best);
       time_.guess("no column is named as the time; this one increases evenly");
       return;
     }
-    std::vector<std::string> names;
-    for (const auto& [name, values] : file_.columns()) names.push_back(name);
-    throw RecordingError(path_, 0,
-                         fmt::format("no column can be the sample time; the columns are {}: rename "
-                                     "one of them to time_s, or add one",
-                                     fmt::join(names, ", ")));
+    throw RecordingError(
+        path_, 0,
+        fmt::format("no column can be the sample time; the columns are {}. Say which it is by "
+                    "--column time=COLUMN:s, or add one",
+                    described_columns()));
   }
 
-  void set_time(const std::string& name, const Values& values, const ColumnGuess& guess) {
+  /// What messages call a column: its name, with its number where a job needs that.
+  std::string shown(std::size_t c) const {
+    const std::string &name = file_.columns()[c].name, &reference = headings_[c].reference;
+    if (name.empty()) return fmt::format("column {}", c + 1);
+    return name == reference ? name : fmt::format("{} (column {})", sanitized(name), c + 1);
+  }
+
+  std::string described_columns() const {
+    std::vector<std::string> names;
+    for (std::size_t c = 0; c < headings_.size(); ++c)
+      names.push_back(file_.columns()[c].obstacle.empty()
+                          ? shortened(shown(c))
+                          : fmt::format("{} ({})", shortened(shown(c)),
+                                        shortened(file_.columns()[c].obstacle)));
+    return fmt::format("{}", fmt::join(names, ", "));
+  }
+
+  void set_time(std::size_t column) {
     time_ = {};
-    time_.column.column = name;
+    time_column_ = column;
+    time_.column.column = headings_[column].reference;
     time_.column.kind = Kind::time;
-    time_.named = guess.unit;
-    time_.raw = &values;
-    time_.rank = guess.rank;
+    time_.raw = without_gaps(file_.columns()[column].values);
+    if (headings_[column].guess && headings_[column].guess->kind == Kind::time)
+      apply_heading(column, time_);
+  }
+
+  /// The values of a column at the times of the recording; none where they cannot be.
+  Values at_times(std::size_t c) const {
+    const Column& column = file_.columns()[c];
+    const std::size_t clock = column.clock.value_or(time_column_);
+    const Values& times = file_.columns()[clock].values;
+    if (times.size() != column.values.size() || !increases(without_gaps(times))) return {};
+    return interpolated(times, column.values, time_.raw);
+  }
+
+  /// What name or answer say of unit and factor.
+  void apply_heading(std::size_t c, UnscaledColumn& column) const {
+    const Heading& heading = headings_[c];
+    column.rank = heading.guess->rank;
+    column.named = heading.guess->unit;
+    if (heading.answer == nullptr) {
+      if (!column.named.empty()) column.set_unit(*stored_unit(column.column.kind, column.named));
+      return;
+    }
+    column.answered = true;
+    column.column.answer = heading.answer->column;
+    column.column.unit = heading.answer->unit;
+    column.column.factor = heading.answer->factor;
+    column.column.of_rating = heading.answer->of_rating;
+    column.size = heading.answer->factor *
+                  std::get<double>(unit_factor(heading.answer->unit, si_unit(column.column.kind)));
   }
 
   void find_columns() {
-    for (const auto& [name, values] : file_.columns()) {
-      if (&values == time_.raw) continue;
-      const auto guess = heading(name);
-      if (!guess || guess->kind == Kind::time || !usable(values) || !is_sanitized(name) ||
-          values.size() != time_.raw->size()) {
-        unused_.push_back(name);
+    for (std::size_t c = 0; c < headings_.size(); ++c) {
+      if (c == time_column_) continue;
+      const Heading& heading = headings_[c];
+      Values values;
+      if (heading.guess && heading.guess->kind != Kind::time && heading.usable)
+        values = at_times(c);
+      if (values.empty()) {
+        if (!is_clock(c)) unused_.push_back(shown(c));
         continue;
       }
       // A command is wanted by its nature.
-      const bool command = guess->kind == Kind::command || guess->kind == Kind::set_velocity;
-      const Key key{guess->kind, guess->is_setpoint && !command};
+      const bool command =
+          heading.guess->kind == Kind::command || heading.guess->kind == Kind::set_velocity;
+      const Key key{heading.guess->kind, heading.guess->is_setpoint && !command};
       const auto there = columns_.find(key);
       const bool constant = never_changes(values);
-      if (constant && (!may_be_constant(key.first) || there != columns_.end())) {
-        unused_.push_back(name);
-        constant_.push_back(name);
+      if (constant && heading.answer == nullptr &&
+          (!may_be_constant(key.first) || there != columns_.end())) {
+        unused_.push_back(shown(c));
+        constant_.push_back(shown(c));
         continue;
       }
-      if (there != columns_.end() && there->second.rank >= guess->rank &&
-          !never_changes(*there->second.raw)) {
-        unused_.push_back(name);
+      if (there != columns_.end() && there->second.rank >= heading.guess->rank &&
+          !never_changes(there->second.raw)) {
+        unused_.push_back(shown(c));
         continue;
       }
-      if (there != columns_.end()) unused_.push_back(there->second.column.column);
-      UnscaledColumn& column = columns_[key] = {};
-      column.column.column = name;
-      column.column.kind = key.first;
-      column.column.is_setpoint = key.second;
-      column.named = guess->unit;
-      column.raw = &values;
-      column.rank = guess->rank;
+      if (there != columns_.end()) unused_.push_back(there->second.shown);
+      apply_heading(c, add_column(c, key, std::move(values)));
     }
-    if (!time_.named.empty()) time_.set_unit(*stored_unit(Kind::time, time_.named));
-    for (auto& [key, column] : columns_)
-      if (!column.named.empty()) column.set_unit(*stored_unit(key.first, column.named));
+  }
+
+  bool is_clock(std::size_t c) const {
+    return std::ranges::any_of(file_.columns(),
+                               [c](const Column& column) { return column.clock == c; });
+  }
+
+  UnscaledColumn& add_column(std::size_t c, const Key& key, Values values) {
+    UnscaledColumn& column = columns_[key] = {};
+    column.column.column = headings_[c].reference;
+    column.shown = shown(c);
+    column.column.kind = key.first;
+    column.column.is_setpoint = key.second;
+    column.raw = std::move(values);
+    const auto& clock = file_.columns()[c].clock;
+    // Columns that go by equal times share them.
+    if (clock && *clock != time_column_ &&
+        file_.columns()[*clock].values != file_.columns()[time_column_].values) {
+      column.column.clock = headings_[*clock].reference;
+      column.column.clock_unit = file_.columns()[*clock].unit;
+    }
+    return column;
+  }
+
+  /// Without a single name: a position is what another column is the rate of, and is no rate
+  /// itself; what drives them is what goes best with their acceleration.
+  void infer_unnamed() {
+    std::map<std::size_t, Values> free;
+    for (std::size_t c = 0; c < headings_.size(); ++c) {
+      if (c == time_column_ || !headings_[c].usable || headings_[c].answer) continue;
+      if (Values values = at_times(c); !values.empty() && !never_changes(values))
+        free.emplace(c, std::move(values));
+    }
+    std::map<std::pair<std::size_t, std::size_t>, double>
+        rates;  // how much the second is the first's
+    for (const auto& [of, values] : free)
+      for (const auto& [is, rate] : free)
+        if (const auto found = rate_ratio(time_.raw, values, rate); found && of != is)
+          rates[{of, is}] = std::abs(found->correlation);
+    constexpr double kRelated = 0.95;
+    const auto take = [&](std::size_t c, Kind kind, std::string reason) {
+      UnscaledColumn& column = add_column(c, {kind, false}, free.at(c));
+      column.guess(std::move(reason));
+      std::erase(unused_, column.shown);
+    };
+    double best = kRelated;
+    std::optional<std::pair<std::size_t, std::size_t>> motion;
+    const bool moving = find(Kind::position) || find(Kind::velocity);
+    for (const auto& [pair, correlation] : rates) {
+      const bool is_rate = std::ranges::any_of(rates, [&, p = pair.first](const auto& r) {
+        return r.first.second == p && r.second > kRelated;
+      });
+      if (moving || is_rate || correlation <= best) continue;
+      best = correlation;
+      motion = pair;
+    }
+    if (motion) {
+      const auto [p, v] = *motion;
+      take(p, Kind::position, "no column has a name; another one is its derivative");
+      take(v, Kind::velocity, "no column has a name; it is the derivative of another one");
+      free.erase(p);
+      free.erase(v);
+    }
+    if (!find(Kind::position) && !find(Kind::velocity)) return;
+    if (find(Kind::force) || find(Kind::current) || find(Kind::command)) return;
+    const Values none;
+    const UnscaledColumn *position = find(Kind::position), *velocity = find(Kind::velocity);
+    std::optional<std::size_t> driver;
+    best = 0.0;
+    for (const auto& [c, values] : free) {
+      const auto balance = force_balance(time_.raw, position ? position->raw : none,
+                                         velocity ? velocity->raw : none, values);
+      if (balance && balance->correlation > best) {
+        best = balance->correlation;
+        driver = c;
+      }
+    }
+    if (driver)
+      take(*driver, Kind::command,
+           fmt::format("no column has a name; this one goes with the acceleration (correlation "
+                       "{:.2f}), as what drives the axis does",
+                       best));
   }
 
   UnscaledColumn* find(Kind kind, bool is_setpoint = false) {
@@ -192,7 +407,7 @@ class Guesser {
     if (time_.size > 0.0) return;
     const UnscaledColumn *position = find(Kind::position), *velocity = find(Kind::velocity);
     if (position && velocity && position->size > 0.0 && velocity->size > 0.0) {
-      const auto found = rate_ratio(*time_.raw, *position->raw, *velocity->raw);
+      const auto found = rate_ratio(time_.raw, position->raw, velocity->raw);
       if (found && found->related()) {
         const StoredUnit* unit =
             unit_of_size(Kind::time, position->size / (std::abs(found->ratio) * velocity->size));
@@ -204,7 +419,7 @@ class Guesser {
         }
       }
     }
-    const double interval = sampling(*time_.raw).interval;
+    const double interval = sampling(time_.raw).interval;
     const char* text = interval < 0.05   ? "s"
                        : interval < 50.0 ? "ms"
                        : interval <= 1e4 ? "us"
@@ -220,7 +435,7 @@ class Guesser {
     UnscaledColumn *position = find(Kind::position), *velocity = find(Kind::velocity);
     std::optional<RateRatio> found;
     if (position && velocity) {
-      found = rate_ratio(*time_.raw, *position->raw, *velocity->raw);
+      found = rate_ratio(time_.raw, position->raw, velocity->raw);
       if (found && !found->related()) {
         velocity->guess(
             fmt::format("it does not follow the derivative of the position (correlation {:.2f}): "
@@ -252,12 +467,12 @@ class Guesser {
     std::optional<RateRatio> found;
     Values derived;
     if (velocity) {
-      found = rate_ratio(*time_.raw, *velocity->raw, *acceleration->raw);
+      found = rate_ratio(time_.raw, velocity->raw, acceleration->raw);
       // A velocity whose sign is turned turns what is compared with it.
       if (found && velocity->column.negative) found->ratio = -found->ratio;
     } else if (position) {
-      derived = derivative(*time_.raw, *position->raw);
-      found = rate_ratio(*time_.raw, derived, *acceleration->raw);
+      derived = derivative(time_.raw, position->raw);
+      found = rate_ratio(time_.raw, derived, acceleration->raw);
     }
     if (found && found->related()) {
       UnscaledColumn like = *of;
@@ -306,8 +521,8 @@ class Guesser {
   /// What nothing but the size of the values tells.
   static void size_by_range(UnscaledColumn& column) {
     const bool position = column.column.kind == Kind::position;
-    const double range = largest(*column.raw);
-    if (position && resolution_of(*column.raw) == 1.0 && range > 1e4) {
+    const double range = largest(column.raw);
+    if (position && resolution_of(column.raw) == 1.0 && range > 1e4) {
       column.set_unit(*stored_unit(Kind::position, "counts"));
       column.guess("whole numbers, taken as encoder counts: set the factor to metres per count");
       return;
@@ -360,14 +575,22 @@ class Guesser {
   }
 
   static GuessedColumn finished(UnscaledColumn& column) {
+    if (column.answered) {
+      column.column.guessed = false;
+      column.column.reasons.clear();
+    }
     GuessedColumn result = std::move(column.column);
     const double size = column.size * (result.negative ? -1.0 : 1.0);
-    for (const double x : *column.raw) result.values.push_back(x * size);
+    for (const double x : column.raw) result.values.push_back(x * size);
     return result;
   }
 
+  static constexpr int kAnswered = 1000;  ///< rank of what the user says
+
   const RecordingFile& file_;
   const std::string& path_;
+  std::vector<Heading> headings_;  ///< of the columns of the file
+  std::size_t time_column_ = 0;
   UnscaledColumn time_;
   std::map<Key, UnscaledColumn> columns_;
   std::vector<std::string> unused_, constant_;
@@ -387,8 +610,66 @@ GuessedColumn* RecordingGuess::find(Kind kind, bool is_setpoint) {
   return const_cast<GuessedColumn*>(std::as_const(*this).find(kind, is_setpoint));
 }
 
-RecordingGuess guess_recording(const RecordingFile& file, const std::string& path) {
-  return Guesser(file, path).guess();
+ColumnAnswer read_answer(const std::string& text) {
+  using enum Kind;
+  static constexpr std::pair<std::string_view, Kind> kAnswerable[]{
+      {"time", time},
+      {"position", position},
+      {"velocity", velocity},
+      {"acceleration", acceleration},
+      {"force", force},
+      {"current", current},
+      {"command", command},
+      {"set_velocity", set_velocity},
+      {"tachometer", tachometer},
+      {"preamplifier_voltage", preamplifier_voltage},
+      {"motor_voltage", motor_voltage}};
+  const auto refuse = [&](const std::string& problem) {
+    return std::runtime_error(
+        fmt::format("--column {}: {}; write SIGNAL=COLUMN:UNIT, such as position=3:mm, "
+                    "position=\"Geber [Ink]:um/8\" or force=Torque:N*0.2",
+                    sanitized(text), problem));
+  };
+  const std::size_t equals = text.find('='), colon = text.rfind(':');
+  if (equals == std::string::npos || colon == std::string::npos || colon < equals)
+    throw refuse("the signal, the column or the unit is missing");
+  const std::string signal = text.substr(0, equals);
+  const auto* const known =
+      std::ranges::find(kAnswerable, signal, [](const auto& s) { return s.first; });
+  if (known == std::end(kAnswerable)) {
+    std::vector<std::string_view> names;
+    for (const auto& s : kAnswerable) names.push_back(s.first);
+    throw refuse(
+        fmt::format("there is no signal '{}', but {}", sanitized(signal), fmt::join(names, ", ")));
+  }
+  ColumnAnswer answer{known->second, text.substr(equals + 1, colon - equals - 1),
+                      text.substr(colon + 1)};
+  // A factor, or a divisor, is a number behind the last sign.
+  const std::size_t sign = answer.unit.find_last_of("*/");
+  if (sign != std::string::npos) {
+    const std::string number = answer.unit.substr(sign + 1);
+    double factor = 0.0;
+    const char* const end = number.data() + number.size();
+    if (std::from_chars(number.data(), end, factor).ptr == end && !number.empty()) {
+      if (!(std::abs(factor) > 0.0) || !std::isfinite(factor))
+        throw refuse("the factor must be a number other than zero");
+      answer.factor = answer.unit[sign] == '/' ? 1.0 / factor : factor;
+      answer.unit.resize(sign);
+    }
+  }
+  if (const StoredUnit* unit = stored_unit(answer.kind, answer.unit)) {
+    answer.of_rating = is_part_of_rating(unit->text);
+    answer.unit = unit->written;
+    answer.factor *= unit->factor;
+  }
+  const auto conversion = unit_factor(answer.unit, si_unit(answer.kind));
+  if (const auto* problem = std::get_if<UnitError>(&conversion)) throw refuse(problem->message);
+  return answer;
+}
+
+RecordingGuess guess_recording(const RecordingFile& file, const std::string& path,
+                               const std::vector<ColumnAnswer>& answers) {
+  return Guesser(file, path, answers).guess();
 }
 
 }  // namespace axisfit

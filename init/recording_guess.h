@@ -1,7 +1,10 @@
 // What the columns of a recording are: by their names, and by what their values say of each other.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "init/column_guess.h"
@@ -11,7 +14,7 @@ namespace axisfit {
 
 /// A column with what a job would say of it.
 struct GuessedColumn {
-  std::string column;  ///< its name
+  std::string column;  ///< its name, or its number
   Kind kind = Kind::command;
   bool is_setpoint = false;  ///< see ColumnGuess
   std::string unit;          ///< as written in the job
@@ -20,10 +23,26 @@ struct GuessedColumn {
   bool negative = false;             ///< its sign is to be turned
   std::vector<std::string> reasons;  ///< what was measured, sentences without a full stop
   bool guessed = false;              ///< something of it neither name nor measurement says
-  std::vector<double> values;        ///< in the SI unit of its kind
+  std::vector<double> values;        ///< in the SI unit of its kind, at the times of the recording
+  std::string clock;                 ///< column of times of its own; empty: those of the recording
+  std::string clock_unit;
+  std::string answer;  ///< the column as the user called it; empty: nobody asked
 
   bool is_constant() const;
 };
+
+/// What the user says of a column.
+struct ColumnAnswer {
+  Kind kind = Kind::command;
+  std::string column;  ///< its name, or its number from 1
+  std::string unit;    ///< as a job takes it
+  double factor = 1.0;
+  bool of_rating = false;
+};
+
+/// Reads "position=Geber [Ink]:um/8" or "current=3:A*0.5": signal, column, unit and perhaps a
+/// factor or divisor. Throws std::runtime_error, which says what is wrong.
+ColumnAnswer read_answer(const std::string& text);
 
 struct RecordingGuess {
   std::string path;
@@ -39,7 +58,13 @@ struct RecordingGuess {
 /// Names first. Where they leave a unit open, the derivative of the position against the velocity,
 /// and that of the velocity against the acceleration, tell the ratio of their units and their
 /// signs; last the size of the values. What never changes measures nothing, but it may drive: the
-/// command of a step. Throws RecordingError where nothing can be the time.
-RecordingGuess guess_recording(const RecordingFile& file, const std::string& path);
+/// command of a step. Where no column has a name, the values alone tell what moves, and what drives
+/// it. An answer comes before all that. Columns with a clock of their own, or gaps, are compared at
+/// the times of the recording.
+///
+/// Throws RecordingError where nothing can be the time, and where a column of an answer cannot be
+/// used; one that is not there counts for other files.
+RecordingGuess guess_recording(const RecordingFile& file, const std::string& path,
+                               const std::vector<ColumnAnswer>& answers = {});
 
 }  // namespace axisfit

@@ -94,29 +94,38 @@ std::vector<bool> fresh_samples(std::span<const double> values, std::size_t hold
   return fresh;
 }
 
-std::vector<double> between_fresh(std::vector<double> values, const std::vector<bool>& fresh) {
+std::vector<double> between(std::span<const double> times, std::vector<double> values,
+                            const std::vector<bool>& there) {
   std::vector<std::size_t> at;
-  for (std::size_t i = 0; i < fresh.size(); ++i)
-    if (fresh[i]) at.push_back(i);
+  for (std::size_t i = 0; i < there.size(); ++i)
+    if (there[i]) at.push_back(i);
   if (at.empty()) return values;
   const auto slope = [&](std::size_t k) {
     const std::size_t from = at[k > 0 ? k - 1 : k], to = at[std::min(k + 1, at.size() - 1)];
-    return (values[to] - values[from]) / static_cast<double>(to - from);
+    return (values[to] - values[from]) / (times[to] - times[from]);
   };
   std::vector<double> curve = values;
   std::fill_n(curve.begin(), at.front(), values[at.front()]);
+  std::fill(curve.begin() + static_cast<std::ptrdiff_t>(at.back()) + 1, curve.end(),
+            values[at.back()]);
   for (std::size_t k = 0; k + 1 < at.size(); ++k) {
     const std::size_t from = at[k], to = at[k + 1];
-    const double length = static_cast<double>(to - from), rise = values[to] - values[from];
+    const double length = times[to] - times[from], rise = values[to] - values[from];
     const double begin = slope(k) * length, end = slope(k + 1) * length;
     for (std::size_t i = from + 1; i < to; ++i) {
-      const double t = static_cast<double>(i - from) / length;
+      const double t = (times[i] - times[from]) / length;
       curve[i] =
           values[from] +
           t * (begin + t * (3.0 * rise - 2.0 * begin - end + t * (begin + end - 2.0 * rise)));
     }
   }
   return curve;
+}
+
+std::vector<double> between_fresh(std::vector<double> values, const std::vector<bool>& fresh) {
+  std::vector<double> indices(values.size());
+  std::iota(indices.begin(), indices.end(), 0.0);
+  return between(indices, std::move(values), fresh);
 }
 
 }  // namespace axisfit

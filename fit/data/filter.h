@@ -120,8 +120,12 @@ double autocorrelation_time(const Filter& filter);
 /// differ from the one before, and those `hold` samples after the last new one.
 std::vector<bool> fresh_samples(std::span<const double> values, std::size_t hold);
 
-/// The values with those that are not fresh on smooth curves between the fresh ones (cubic, by
-/// central differences); at the ends constant.
+/// The values, with a smooth curve (cubic, by central differences) between those that are there in
+/// place of those that are not; at the ends constant. `times` increase, in any unit.
+std::vector<double> between(std::span<const double> times, std::vector<double> values,
+                            const std::vector<bool>& there);
+
+/// The same for evenly sampled values, of which the fresh ones are there.
 std::vector<double> between_fresh(std::vector<double> values, const std::vector<bool>& fresh);
 
 }  // namespace axisfit

@@ -46,9 +46,10 @@ struct Measurement {
   std::vector<bool> excluded;
   Filter filter;         ///< that the samples went through before they were recorded
   std::size_t hold = 1;  ///< how often each of them was then recorded
-  /// Samples that are neither fitted nor judged because of the two, see exclude_uninformative();
-  /// empty: none.
+  /// Samples that are neither fitted nor judged because of the two, see exclude_uninformative(), or
+  /// because there is no value; empty: none.
   std::vector<bool> uninformative;
+  std::size_t missing = 0;  ///< values that the recording lacks at times of its own
 
   bool counts(std::size_t sample) const {
     return (excluded.empty() || !excluded[sample]) &&

@@ -197,9 +197,27 @@ double suggested_observer_gain(std::span<const double> times, std::span<const do
                              : highest;
 }
 
+namespace {
+
+/// Of the signal with the most samples: the times of several clocks together are never even.
+Sampling densest_sampling(const Recording& recording) {
+  std::vector<double> densest;
+  for (const Measurement& m : recording.measurements) {
+    const bool complete = m.uninformative.empty() || m.filter != Filter() || m.hold > 1;
+    if (complete) return sampling(recording.times);
+    std::vector<double> times;
+    for (std::size_t i = 0; i < recording.times.size(); ++i)
+      if (!m.uninformative[i]) times.push_back(recording.times[i]);
+    if (times.size() > densest.size()) densest = std::move(times);
+  }
+  return sampling(densest.empty() ? std::vector<double>(recording.times) : densest);
+}
+
+}  // namespace
+
 RecordingCheck check_recording(const Recording& recording) {
   RecordingCheck check;
-  check.sampling = sampling(recording.times);
+  check.sampling = densest_sampling(recording);
   const std::vector<bool> standstill = at_standstill(recording);
   const bool command_is_held = repetition_of(sampled_command(recording)) > 1;
   for (const Measurement& m : recording.measurements)

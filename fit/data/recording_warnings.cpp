@@ -100,6 +100,8 @@ std::vector<RecordingWarning> warnings_of(const Job& job, const Recording& recor
     if (values.stuck > 0) warnings.push_back(warning::Stuck{signal, values.stuck, values.stuck_at});
     if (values.clipped > 0)
       warnings.push_back(warning::Clipped{signal, values.clipped, values.clipped_at});
+    if (measurement.missing > 0)
+      warnings.push_back(warning::Missing{signal, measurement.missing, recording.times.size()});
     if (values.repetition > 1) warnings.push_back(warning::Repeated{signal, values.repetition});
     if (values.filter && sampling.is_even())
       warnings.push_back(warning::Filtered{signal, values.filter->corner / sampling.interval,

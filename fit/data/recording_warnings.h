@@ -80,6 +80,12 @@ struct Clipped {
   double value = 0.0;  ///< in the signal's unit
 };
 
+/// Some values are not in the recording: blank, or not a number.
+struct Missing {
+  Signal signal = Signal::velocity;
+  std::size_t samples = 0, of = 0;  ///< missing, and all
+};
+
 /// Each value is recorded several times.
 struct Repeated {
   Signal signal = Signal::velocity;
@@ -105,7 +111,7 @@ using RecordingWarning =
     std::variant<warning::Gaps, warning::UnevenSampling, warning::TimeUnit,
                  warning::UnlikelyInterval, warning::WrongRate, warning::NoCommand,
                  warning::UnlikelySpeed, warning::Constant, warning::Stuck, warning::Clipped,
-                 warning::Repeated, warning::Filtered, warning::UnlikelySigma>;
+                 warning::Missing, warning::Repeated, warning::Filtered, warning::UnlikelySigma>;
 
 /// In the order of the alternatives, those of a signal after those of the whole recording.
 std::vector<RecordingWarning> warnings_of(const Job& job, const Recording& recording,

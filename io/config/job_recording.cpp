@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "base/units.h"
 #include "fit/data/noise.h"
@@ -57,10 +58,22 @@ Section filter_keys() {
                         "filter forwards and backwards (filtfilt)")};
 }
 
+/// A column whose values may have times, or a file, of their own.
+Section series_keys() {
+  Section keys = column_keys();
+  keys.push_back(Key::optional("file", Text{}, DefaultText{"that of the recording"},
+                               "file of the column, where signals are in several"));
+  keys.push_back(Key::optional("time", Map{column_keys(), 0, false, "column"},
+                               DefaultText{"that of the recording"},
+                               "column of the times of these values, where they have their own"));
+  keys.push_back(Key::optional("offset", NumberWithUnit{"s"}, 0.0, "added to these times"));
+  return keys;
+}
+
 /// The input and all that can be measured.
 Section signal_keys() {
   const Map column{column_keys(), 0, false, "column"};
-  Section input = column_keys();
+  Section input = series_keys();
   input.push_back(Key::optional("sigma", NumberWithUnit{"V", 0.0},
                                 DefaultText{"of a force source estimated from the samples; 0 V of "
                                             "other drives"},
@@ -73,7 +86,7 @@ Section signal_keys() {
                              "in m, in place of the command: the slave control unit of the axis "
                              "file computes the command from it and the position")};
   for (const SignalInfo& signal : kSignalTable) {
-    Section measured = column_keys();
+    Section measured = series_keys();
     measured.push_back(Key::optional(
         "sigma",
         AnyOf{
@@ -121,14 +134,7 @@ class RecordingReader {
     const auto time = map.required("time");
     const auto signals = map.required("signals");
     const auto trim = map.optional("trim");
-    std::optional<RecordingFile> data;
-    if (path) {
-      try {
-        data.emplace(resolved(*file, *path, data_directory_));
-      } catch (const RecordingError& error) {
-        file->error(error.what());
-      }
-    }
+    const RecordingFile* const data = path ? open(*file, *path) : nullptr;
     if (data && time && signals) read_samples(*data, *time, *signals, trim, recording);
     if (!recording.score_initial_samples && recording.times.size() >= kLeastSamples &&
         recording.initial_samples >= recording.times.size())
@@ -169,58 +175,148 @@ class RecordingReader {
     return trim;
   }
 
-  static Values trimmed(const Values& values, const Values& times, const Trim& trim) {
-    Values kept;
-    for (std::size_t i = 0; i < values.size(); ++i)
-      if (trim.keeps(times[i])) kept.push_back(values[i]);
-    return kept;
+  /// The values of a signal that there are, and their times, s.
+  struct Series {
+    Values times, values;
+    bool own_clock = false;   ///< not that of the recording
+    std::size_t missing = 0;  ///< values that the recording has none of at its times
+  };
+
+  /// A measured signal before all have the same times.
+  struct Measured {
+    Measurement measurement;  ///< without values
+    Series series;            ///< trimmed
+    ConfigNode node;
+    std::optional<ConfigNode> shaped;  ///< the filter or the hold
+  };
+
+  /// Null, with a diagnostic at `node`, where it cannot be read.
+  const RecordingFile* open(const ConfigNode& node, const std::string& path) {
+    const std::string found = resolved(node, path, data_directory_);
+    if (const auto open = files_.find(found); open != files_.end()) return &open->second;
+    try {
+      return &files_.emplace(found, RecordingFile(found)).first->second;
+    } catch (const RecordingError& error) {
+      node.error(error.what());
+      return nullptr;
+    }
   }
 
   void read_samples(const RecordingFile& data, const ConfigNode& time_node,
                     const ConfigNode& signals_node, const std::optional<ConfigNode>& trim_node,
                     Recording& recording) {
-    const auto times = read_times(data, time_node);
+    data_ = &data;
+    time_node_ = time_node;
+    times_ = read_times(data, time_node);
     const Trim trim = trim_node ? read_trim(*trim_node) : Trim();
     ConfigMap signals(signals_node, keys_below(recording_keys(), "signals"));
-    const auto input = read_input(data, signals_node, signals, times, recording);
-    const std::size_t named = read_measurements(data, signals, times, trim, recording);
+    auto input = read_input(signals_node, signals, recording);
+    std::vector<Measured> measured;
+    const std::size_t named = read_measurements(signals, trim, measured);
     const bool all_known = signals.finish();
-    if (!times || !input) return;
-    // Commands from before the first sample kept still act on it.
-    Values command_times, commands;
-    for (std::size_t i = 0; i < times->size() && (*times)[i] <= trim.to; ++i) {
-      command_times.push_back((*times)[i]);
-      commands.push_back((*input)[i]);
-    }
-    recording.times = trimmed(*times, *times, trim);
+    if (!times_ || !input || times_->empty()) return;
     // Effects of the time mean that of the recording, and at 1.7e9 s a double is too coarse to
     // step on.
-    if (constexpr double kDay = 86400.0; std::abs(times->front()) > kDay) {
-      for (double& t : command_times) t -= times->front();
-      for (double& t : recording.times.edit()) t -= times->front();
+    constexpr double kDay = 86400.0;
+    const double begin = std::abs(times_->front()) > kDay ? times_->front() : 0.0;
+    // Commands from before the first sample kept still act on it.
+    Values command_times, commands;
+    for (std::size_t i = 0; i < input->times.size() && input->times[i] <= trim.to; ++i) {
+      command_times.push_back(input->times[i] - begin);
+      commands.push_back(input->values[i]);
     }
+    const Values all = common_times(*input, measured, trim);
+    Values times = all;
+    for (double& t : times) t -= begin;
+    recording.times = std::move(times);
     recording.command = schedule_from_samples(command_times, commands);
     if (recording.times.size() < kLeastSamples) {
-      const std::size_t left = recording.times.size();
-      const std::string samples = fmt::format("{} sample{}", left, left == 1 ? "" : "s");
-      trim_node.value_or(time_node).error(
-          trim_node
-              ? fmt::format("only {} of {}, from {:g} s to {:g} s, remain: at least 10 are needed",
-                            samples, times->size(), times->front(), times->back())
-              : fmt::format("the recording has only {}: at least 10 are needed", samples));
+      say_too_few(trim_node, *input, measured, recording.times.size());
       recording.times = {0.0, 1.0};
       return;
     }
+    for (Measured& m : measured) recording.measurements.push_back(on_times(std::move(m), all));
     if (all_known) check_samples(signals_node, named, recording);
     take_noise_from_standstill(signals_node, recording);
     if (recording.initial_state == InitialState::data) initial_state_from_data(recording);
     if (!recording.acceleration_at_standstill) exclude_acceleration_at_standstill(recording);
   }
 
+  void say_too_few(const std::optional<ConfigNode>& trim_node, const Series& input,
+                   const std::vector<Measured>& measured, std::size_t left) const {
+    const std::string samples = fmt::format("{} sample{}", left, left == 1 ? "" : "s");
+    const bool own = std::ranges::any_of(
+        measured, [&](const Measured& m) { return m.series.own_clock || input.own_clock; });
+    trim_node.value_or(*time_node_)
+        .error(trim_node
+                   ? fmt::format(
+                         "only {} of {}, from {:g} s to {:g} s, remain: at least 10 are needed",
+                         samples, times_->size(), times_->front(), times_->back())
+               : own ? fmt::format("while the input was recorded, from {:g} s to {:g} s, there are "
+                                   "only {}, and at least 10 are needed: correct the offset of the "
+                                   "times",
+                                   input.times.front(), input.times.back(), samples)
+                     : fmt::format("the recording has only {}: at least 10 are needed", samples));
+  }
+
+  /// The times of all that was measured while the input is known; of the recording where nothing
+  /// was. Those of several clocks that are closer than a simulation steps are one.
+  Values common_times(const Series& input, const std::vector<Measured>& measured,
+                      const Trim& trim) const {
+    Values times;
+    for (const Measured& m : measured)
+      times.insert(times.end(), m.series.times.begin(), m.series.times.end());
+    if (measured.empty()) times = *times_;
+    std::ranges::sort(times);
+    // Not std::ranges::unique, which clang 14 cannot compile with this library.
+    times.erase(
+        std::unique(times.begin(), times.end(),
+                    [](double before, double time) { return time - before < kShortestStep; }),
+        times.end());
+    const double last_input =
+        input.own_clock && input.times.size() > 1
+            ? input.times.back() + (input.times.back() - input.times[input.times.size() - 2])
+            : kUnlimited;
+    std::erase_if(times, [&](double t) {
+      return !trim.keeps(t) || t < input.times.front() || t > last_input;
+    });
+    return times;
+  }
+
+  /// The values at the times of the recording. Where there is none, no residual counts, and a curve
+  /// through those that there are takes its place in all that goes by the values.
+  static Measurement on_times(Measured measured, const Values& times) {
+    Measurement measurement = std::move(measured.measurement);
+    const Series& series = measured.series;
+    Values values(times.size(), 0.0);
+    std::vector<bool> there(times.size(), false);
+    for (std::size_t i = 0, k = 0; i < times.size(); ++i) {
+      while (k < series.times.size() && series.times[k] < times[i]) ++k;
+      if (k == series.times.size() || series.times[k] - times[i] >= kShortestStep) continue;
+      values[i] = series.values[k];
+      there[i] = true;
+    }
+    const bool complete = std::ranges::find(there, false) == there.end();
+    measurement.values = complete ? std::move(values) : between(times, std::move(values), there);
+    if (!complete) {
+      there.flip();
+      measurement.uninformative = std::move(there);
+    }
+    measurement.missing = series.missing;
+    if (measured.shaped && !complete) {
+      measured.shaped->error(
+          fmt::format("a filter or hold needs a value of the {} at every sample time, and at some "
+                      "there is none: fit the unfiltered samples, or remove it",
+                      info(measurement.signal).name));
+    } else if (measured.shaped) {
+      prepare(*measured.shaped, measurement);
+    }
+    return measurement;
+  }
+
   /// What drives the axis: a command in volts, for a force source also a recorded force, or a
   /// position reference. Nothing, with diagnostics, unless it fits the times.
-  std::optional<Values> read_input(const RecordingFile& data, const ConfigNode& signals_node,
-                                   ConfigMap& signals, const std::optional<Values>& times,
+  std::optional<Series> read_input(const ConfigNode& signals_node, ConfigMap& signals,
                                    Recording& recording) {
     const bool force_source = capabilities(rig_.model.structure).is_force_driven;
     const auto command = signals.optional("command");
@@ -237,35 +333,68 @@ class RecordingReader {
                              : "the axis is driven by the command: name its column, or that of the "
                                "position_reference, from which the slave control unit computes it");
     if (command && force) return std::nullopt;
-    if (reference && !command) return read_reference(data, *reference, signals, times);
-    std::optional<Values> input;
+    if (reference && !command) return read_reference(*reference, signals);
+    std::optional<Series> input;
     if (force) {
-      input = read_noisy_input(data, *force, "N", recording);
+      input = read_noisy_input(*force, "N", recording);
       // The source turns U into K_f U newtons; a force in newtons needs no gain.
       const std::size_t gain = find_quantity("K_f")->index;
       if (std::ranges::any_of(recording.overrides, [&](const auto& o) { return o.first == gain; }))
         force->error("a drive_force is already in newtons: remove K_f from 'set'");
       recording.overrides.emplace_back(gain, 1.0);
     } else if (command) {
-      input = read_noisy_input(data, *command, "V", recording);
+      input = read_noisy_input(*command, "V", recording);
     }
-    if (input && times && !same_length(force ? *force : *command, *input, *times)) input.reset();
     return input;
   }
 
   /// Its noise is taken from its samples where it was measured, as is what drives a force source.
-  std::optional<Values> read_noisy_input(const RecordingFile& data, const ConfigNode& node,
-                                         std::string_view unit, Recording& recording) const {
+  std::optional<Series> read_noisy_input(const ConfigNode& node, std::string_view unit,
+                                         Recording& recording) {
     ConfigMap map(node, measurement_keys("command"));
-    auto input = read_column(data, map, unit);
+    auto input = read_series(node, map, unit);
     if (const auto sigma = map.optional("sigma")) {
       recording.command_sigma = sigma->as_number_with_unit({std::string(unit), 0.0}).value_or(0.0);
     } else if (input && capabilities(rig_.model.structure).is_force_driven) {
-      recording.command_sigma = noise_of_input(*input);
+      recording.command_sigma = noise_of_input(input->values);
       recording.command_noise = NoiseSource::differences;
     }
     map.finish();
     return input;
+  }
+
+  /// A column and its times, without what is missing. Nothing, with diagnostics, where something is
+  /// wrong.
+  std::optional<Series> read_series(const ConfigNode& node, ConfigMap& map, std::string_view unit) {
+    std::optional<std::string> path;
+    const auto file = map.read("file", path);
+    const auto time = map.optional("time");
+    Series series;
+    double offset = 0.0;
+    map.read("offset", offset);
+    const RecordingFile* const data = path ? open(*file, *path) : data_;
+    if (data == nullptr) return std::nullopt;
+    const auto values = read_column(*data, map, unit);
+    series.own_clock = path || time || offset != 0.0;
+    const auto times = path || time ? read_times(*data, time.value_or(*time_node_)) : times_;
+    if (!values || !times) return std::nullopt;
+    if (values->size() != times->size()) {
+      node.error(fmt::format("{} has {} values but the time has {}", node.name(), values->size(),
+                             times->size()));
+      return std::nullopt;
+    }
+    for (std::size_t i = 0; i < times->size(); ++i) {
+      if (std::isnan((*times)[i]) || std::isnan((*values)[i])) continue;
+      series.times.push_back((*times)[i] + offset);
+      series.values.push_back((*values)[i]);
+    }
+    const auto timed = std::ranges::count_if(*times, [](double t) { return !std::isnan(t); });
+    if (!series.own_clock) series.missing = static_cast<std::size_t>(timed) - series.times.size();
+    // Whether the recording is too short altogether is said once, for all signals.
+    if (series.times.size() >= kLeastSamples || times->size() < kLeastSamples) return series;
+    node.error(fmt::format("{} has only {} values with a time: at least 10 are needed", node.name(),
+                           series.times.size()));
+    return std::nullopt;
   }
 
   static const Section& measurement_keys(std::string_view signal) {
@@ -273,10 +402,8 @@ class RecordingReader {
   }
 
   /// The command that the axis file's slave control unit makes of a recorded position reference.
-  std::optional<Values> read_reference(const RecordingFile& data, const ConfigNode& node,
-                                       ConfigMap& signals,
-                                       const std::optional<Values>& times) const {
-    const auto reference = read_column(data, node, "m");
+  std::optional<Series> read_reference(const ConfigNode& node, ConfigMap& signals) const {
+    const auto reference = read_column(*data_, node, "m");
     const auto position_node = signals.optional("position");
     if (!position_node) {
       node.error(
@@ -285,17 +412,24 @@ class RecordingReader {
       return std::nullopt;
     }
     ConfigMap map(*position_node, measurement_keys("position"));
-    const auto position = read_column(data, map, "m");
-    if (!reference || !position || !times) return std::nullopt;
-    if (!same_length(node, *reference, *times) || !same_length(*position_node, *position, *times))
+    const auto position = read_column(*data_, map, "m");
+    if (!reference || !position || !times_) return std::nullopt;
+    if (!same_length(node, *reference, *times_) || !same_length(*position_node, *position, *times_))
       return std::nullopt;
-    return command_from_reference(rig_.controller, *times, *reference, *position);
+    const auto missing = [](double x) { return std::isnan(x); };
+    if (std::ranges::any_of(*reference, missing) || std::ranges::any_of(*position, missing) ||
+        std::ranges::any_of(*times_, missing)) {
+      node.error(
+          "the slave control unit needs the reference and the position at every sample, and some "
+          "are missing: trim the recording or fill the gaps");
+      return std::nullopt;
+    }
+    return Series{*times_, command_from_reference(rig_.controller, *times_, *reference, *position)};
   }
 
   /// All signals but the input. Returns how many were named, rightly or wrongly.
-  std::size_t read_measurements(const RecordingFile& data, ConfigMap& signals,
-                                const std::optional<Values>& times, const Trim& trim,
-                                Recording& recording) {
+  std::size_t read_measurements(ConfigMap& signals, const Trim& trim,
+                                std::vector<Measured>& measured) {
     const Structure& structure = rig_.model.structure;
     std::size_t named = 0;
     for (const SignalInfo& signal : kSignalTable) {
@@ -308,26 +442,24 @@ class RecordingReader {
         given->error(fmt::format("the drive of this axis has no {}: remove it", signal.name));
         continue;
       }
-      auto measurement = read_measurement(data, *given, signal, times, trim);
-      if (measurement) recording.measurements.push_back(std::move(*measurement));
+      if (auto found = read_measurement(*given, signal, trim))
+        measured.push_back(std::move(*found));
     }
     return named;
   }
 
-  static std::optional<Measurement> read_measurement(const RecordingFile& data,
-                                                     const ConfigNode& node,
-                                                     const SignalInfo& signal,
-                                                     const std::optional<Values>& times,
-                                                     const Trim& trim) {
+  std::optional<Measured> read_measurement(const ConfigNode& node, const SignalInfo& signal,
+                                           const Trim& trim) {
     ConfigMap map(node, measurement_keys(signal.name));
     Measurement measurement;
     measurement.signal = signal.signal;
-    const auto values = read_column(data, map, signal.unit);
+    auto series = read_series(node, map, signal.unit);
+    if (series) keep(trim, *series);
     map.read("fit", measurement.fitted);
     const auto hold = map.read("hold", measurement.hold);
-    const Values kept = times ? trimmed(*times, *times, trim) : Values();
     const auto filter = map.optional("filter");
-    if (filter) measurement.filter = read_filter(*filter, sampling(kept));
+    if (filter)
+      measurement.filter = read_filter(*filter, sampling(series ? series->times : Values()));
     if (const auto sigma = map.optional("sigma")) {
       if (sigma->text() == "fit") {
         measurement.noise = NoiseSource::fit;
@@ -339,19 +471,37 @@ class RecordingReader {
       }
     }
     map.finish();
-    if (!values || !times || !same_length(node, *values, *times)) return std::nullopt;
-    measurement.values = trimmed(*values, *times, trim);
-    if (kept.size() >= kLeastSamples && (measurement.filter != Filter() || measurement.hold > 1))
-      prepare(filter ? *filter : hold.value_or(node), measurement);
-    if (measurement.noise != NoiseSource::given) {
-      measurement.sigma = noise_from_differences(measurement);
-      if (!(measurement.sigma >= kMinSigma))
-        node.error(
-            fmt::format("the noise of {} cannot be estimated from these samples: give its "
-                        "sigma, for example 'sigma: {}'",
-                        signal.name, with_unit("0.01", signal.unit)));
+    if (!series) return std::nullopt;
+    const bool is_shaped = measurement.filter != Filter() || measurement.hold > 1;
+    std::optional<ConfigNode> shaped;
+    if (is_shaped && series->times.size() >= kLeastSamples)
+      shaped = filter ? *filter : hold.value_or(node);
+    if (measurement.noise != NoiseSource::given) take_noise(node, *series, shaped, measurement);
+    return Measured{std::move(measurement), std::move(*series), node, std::move(shaped)};
+  }
+
+  /// From the values as they follow each other in the recording.
+  static void take_noise(const ConfigNode& node, const Series& series,
+                         const std::optional<ConfigNode>& shaped, Measurement& measurement) {
+    Measurement own = measurement;
+    own.values = series.values;
+    if (shaped) exclude_uninformative(own);
+    measurement.sigma = noise_from_differences(own);
+    if (!(measurement.sigma >= kMinSigma))
+      node.error(fmt::format(
+          "the noise of {} cannot be estimated from these samples: give its "
+          "sigma, for example 'sigma: {}'",
+          info(measurement.signal).name, with_unit("0.01", info(measurement.signal).unit)));
+  }
+
+  static void keep(const Trim& trim, Series& series) {
+    Series kept{{}, {}, series.own_clock, series.missing};
+    for (std::size_t i = 0; i < series.times.size(); ++i) {
+      if (!trim.keeps(series.times[i])) continue;
+      kept.times.push_back(series.times[i]);
+      kept.values.push_back(series.values[i]);
     }
-    return measurement;
+    series = std::move(kept);
   }
 
   /// None where anything is wrong, with a diagnostic, or without enough samples.
@@ -488,6 +638,10 @@ class RecordingReader {
   const Rig& rig_;
   const ObserverMode observer_;
   const std::string& data_directory_;
+  std::map<std::string, RecordingFile> files_;  ///< read already, by path
+  const RecordingFile* data_ = nullptr;         ///< of the recording
+  std::optional<ConfigNode> time_node_;
+  std::optional<Values> times_;  ///< s, NaN where there is none
 };
 
 }  // namespace
@@ -495,7 +649,8 @@ class RecordingReader {
 const Section& recording_keys() {
   const Recording defaults;
   static const Section keys{
-      Key::required("file", Text{}, "CSV file, or MATLAB file if the name ends in `.mat`"),
+      Key::required("file", Text{},
+                    "recording: text (CSV, also `.gz`), `.mat`, `.mcap` or `.xlsx`"),
       Key::optional("name", Text{}, DefaultText{"file name without folder and extension"},
                     "name in reports; unique within the job"),
       Key::optional(

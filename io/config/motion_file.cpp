@@ -170,7 +170,10 @@ class MotionReader {
       const double limit = rig_.controller.limit;
       const auto beyond =
           std::ranges::find_if(*values, [&](double v) { return std::abs(v) > limit; });
-      if (times->size() != values->size() || times->empty())
+      const auto missing = [](double x) { return std::isnan(x); };
+      if (std::ranges::any_of(*times, missing) || std::ranges::any_of(*values, missing))
+        command->error("the time or the command has gaps: every row needs both");
+      else if (times->size() != values->size() || times->empty())
         command->error("the time and the command must have the same number of values");
       else if (beyond != values->end())
         command->error(fmt::format(

@@ -8,20 +8,19 @@
 
 namespace axisfit {
 
-// Reads a file of numbers separated by commas; by semicolons or tabs if the header has no comma.
-// The first line that is no comment names the columns, or the last comment, if numbers follow it;
-// the next one may have their units (it does, if none of its
-// fields is a number), every further one holds one finite number per column. Comments stand above
-// the names and begin with '#', '%' or "//". The locale does not
-// matter: numbers have a decimal point, or, where commas do not separate them, all of them that
-// are not whole a decimal comma; no thousands separators. Fields may be quoted and surrounded by
-// blanks; a UTF-8 byte-order mark, CRLF line ends, a separator at the end of every line, and blank
-// lines at the end of the file are accepted.
+// Reads a recording in text, in any of the layouts of text_layout.h: UTF-8, UTF-16 or Western
+// Windows, plain or gzipped, with LF or CR LF. Commas, semicolons or tabs separate the fields, or
+// else blanks, colons or bars. Fields may be quoted and surrounded by blanks. Numbers have a
+// decimal point, or, where commas do not separate them, all of them that are not whole a decimal
+// comma, whatever the locale; no thousands separators. What else a field may be says read_field in
+// text_fields.h; missing values are NaN. Comments begin with '#', '%' or "//". Blank lines and
+// separators at the end of lines do not count.
 //
-// Throws RecordingError naming line and column for anything else: no such file, no header (also:
-// only numbers in the first line), no rows, empty or repeated column names, a row with too few or
-// too many fields, fields that are empty, no number, not finite or beyond the range of a double,
-// decimal points and decimal commas in one file.
+// A column with text in it has an obstacle, which says where. A column without a name has an empty
+// one; names may repeat. Series with times of their own have a clock.
+//
+// Throws RecordingError naming the line for anything else: no such file, another format, no rows,
+// rows with too few or too many fields, text between rows, quotes that are not balanced.
 Table read_csv(const std::string& path);
 
 // Writes the header and the rows with commas and LF. Each number takes the fewest digits that read

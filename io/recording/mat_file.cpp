@@ -1,5 +1,6 @@
 #include "io/recording/mat_file.h"
 
+#include <fmt/format.h>
 #include <matio.h>
 
 #include <algorithm>
@@ -19,7 +20,6 @@
 #include "base/file_watch.h"
 #include "base/plain_text.h"
 #include "base/subprocess.h"
-#include "base/suggest.h"
 
 namespace axisfit {
 namespace {
@@ -62,32 +62,41 @@ MatHandle open_mat(const std::string& path) {
   return mat;
 }
 
-// Why the variable cannot be a column, or an empty string if it can. Structs of one element can.
-std::string obstacle(const matvar_t& variable) {
+// Why the variable `x` cannot be a column, and the line of MATLAB that makes columns of it; empty
+// if it can. Structs of one element can.
+std::string obstacle(const matvar_t& variable, const std::string& x) {
+  const auto is = [&](std::string_view what, const std::string& line) {
+    return fmt::format("is {}; in MATLAB '{}' converts it, before save", what, line);
+  };
   switch (variable.class_type) {
     case MAT_C_CELL:
-      return "a cell array";
+      return is("a cell array", x + " = cell2mat(" + x + ")");
     case MAT_C_CHAR:
-      return "text";
+      return "is text";
     case MAT_C_SPARSE:
-      return "a sparse matrix";
+      return is("a sparse matrix", x + " = full(" + x + ")");
     case MAT_C_FUNCTION:
-      return "a function handle";
+      return "is a function handle";
     case MAT_C_OBJECT:
     case MAT_C_OPAQUE:
     case MAT_C_EMPTY:  // a class unknown to libmatio, as tables are in version 7.3
-      return "a table, timetable or another object";
+      return fmt::format(
+          "is a table, timetable, timeseries or another object, which MATLAB alone can read; there "
+          "'x = table2struct(x, \"ToScalar\", true)' converts a table x, and 'y = x.Data; t = "
+          "x.Time' a timeseries, before save");
     default:
       break;
   }
-  if (variable.rank != 2) return "an array of more than two dimensions";
+  if (variable.rank != 2)
+    return is("an array of more than two dimensions", x + " = squeeze(" + x + ")");
   const std::size_t rows = variable.dims[0];
   const std::size_t cols = variable.dims[1];
-  if (rows == 0 || cols == 0) return "an empty array";
+  if (rows == 0 || cols == 0) return "is an empty array";
   const bool single = rows == 1 && cols == 1;
-  if (variable.class_type == MAT_C_STRUCT) return single ? "" : "a struct array";
-  if (variable.isComplex != 0) return "a complex array";
-  return single ? "a scalar" : "";
+  if (variable.class_type == MAT_C_STRUCT)
+    return single ? "" : is("a struct array", x + " = struct(\"y\", [" + x + ".y])");
+  if (variable.isComplex != 0) return is("a complex array", x + " = real(" + x + ")");
+  return single ? "is a scalar" : "";
 }
 
 template <typename T>
@@ -128,7 +137,7 @@ std::vector<double> elements(const matvar_t& variable) {
   }
 }
 
-void append_array(MatFile& mat, const std::string& name, const matvar_t& variable) {
+void append_array(Table& mat, const std::string& name, const matvar_t& variable) {
   const std::size_t rows = variable.dims[0];
   const std::size_t cols = variable.dims[1];
   std::vector<double> values = elements(variable);
@@ -154,9 +163,9 @@ void append_array(MatFile& mat, const std::string& name, const matvar_t& variabl
   }
 }
 
-void append(MatFile& mat, const std::string& name, matvar_t& variable) {
-  if (std::string kind = obstacle(variable); !kind.empty()) {
-    mat.ignored.push_back({name, std::move(kind)});
+void append(Table& mat, const std::string& name, matvar_t& variable) {
+  if (std::string reason = obstacle(variable, name); !reason.empty()) {
+    mat.columns.push_back({.name = name, .values = {}, .obstacle = std::move(reason)});
     return;
   }
   if (variable.class_type != MAT_C_STRUCT) {
@@ -171,58 +180,18 @@ void append(MatFile& mat, const std::string& name, matvar_t& variable) {
     if (field != nullptr) {
       append(mat, path, *field);
     } else {
-      mat.ignored.push_back({path, "an empty array"});
+      mat.columns.push_back({.name = path, .values = {}, .obstacle = "is an empty array"});
     }
   }
 }
 
-// The items separated by commas; those beyond a readable number of them are only counted.
-template <typename Items, typename Describe>
-std::string list(const Items& items, Describe describe) {
-  constexpr std::size_t kMost = 20;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(items.size(), kMost); ++i) {
-    text += (i == 0 ? "" : ", ") + describe(items[i]);
-  }
-  if (items.size() > kMost) text += " and " + std::to_string(items.size() - kMost) + " more";
-  return text;
-}
-
-[[noreturn]] void throw_missing(const MatFile& mat, const std::string& name) {
-  for (const IgnoredVariable& variable : mat.ignored) {
-    if (variable.name != name || name.empty()) continue;
-    throw RecordingError(mat.file, 0,
-                         in_variable(name) + "it is " + variable.kind +
-                             ", which cannot be read; export it as a numeric vector");
-  }
-  std::vector<std::string> names;
-  for (const Column& column : mat.columns) names.push_back(column.name);
-  std::string message = "there is no variable " + in_quotes(name);
-  if (const std::string guess = closest_match(name, names); !guess.empty()) {
-    message += " (did you mean " + in_quotes(guess) + "?)";
-  }
-  if (names.empty()) {
-    message += "; the file has no numeric vectors";
-  } else {
-    message += "; the file has " + list(names, in_quotes);
-  }
-  if (!mat.ignored.empty()) {
-    message += "; not readable unless exported as numeric vectors: " +
-               list(mat.ignored, [](const IgnoredVariable& variable) {
-                 return (variable.name.empty() ? "one of unknown name" : in_quotes(variable.name)) +
-                        " (" + variable.kind + ")";
-               });
-  }
-  throw RecordingError(mat.file, 0, message);
-}
-
-MatFile read_in_process(const std::string& path) {
+Table read_in_process(const std::string& path) {
   Mat_LogInitFunc("axisfit", keep_first_complaint);
   complaint.clear();
   const FileWatch watch(path);
   const MatHandle handle = open_mat(path);
 
-  MatFile mat{path, {}, {}};
+  Table mat{path, {}};
   std::string last;  // variable that was read
   bool empty = true;
   while (const Variable variable{Mat_VarReadNext(handle.get())}) {
@@ -246,38 +215,37 @@ MatFile read_in_process(const std::string& path) {
 using Json = nlohmann::json;
 
 /// For the way from one process to another.
-std::string packed(const MatFile& mat) {
-  Json json{{"columns", Json::array()}, {"ignored", Json::array()}};
+std::string packed(const Table& mat) {
+  Json json{{"columns", Json::array()}};
   for (const Column& column : mat.columns) {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(column.values.data());
     json["columns"].push_back(
         {{"name", column.name},
+         {"obstacle", column.obstacle},
          {"values", Json::binary({bytes, bytes + column.values.size() * sizeof(double)})}});
   }
-  for (const IgnoredVariable& variable : mat.ignored)
-    json["ignored"].push_back({{"name", variable.name}, {"kind", variable.kind}});
   std::string text;
   Json::to_msgpack(json, text);
   return text;
 }
 
-MatFile unpacked(const std::string& path, const Json& json) {
-  MatFile mat{path, {}, {}};
+Table unpacked(const std::string& path, const Json& json) {
+  Table mat{path, {}};
   for (const Json& column : json.at("columns")) {
     const auto& bytes = column.at("values").get_binary();
     std::vector<double> values(bytes.size() / sizeof(double));
     std::memcpy(values.data(), bytes.data(), bytes.size());
-    mat.columns.push_back({column.at("name"), std::move(values)});
+    mat.columns.push_back({.name = column.at("name"),
+                           .values = std::move(values),
+                           .obstacle = column.at("obstacle")});
   }
-  for (const Json& variable : json.at("ignored"))
-    mat.ignored.push_back({variable.at("name"), variable.at("kind")});
   return mat;
 }
 
 /// Reads in a process of its own, of limited memory: HDF5 1.10 follows what a damaged file says
 /// until it crashes, and libmatio makes room for whatever a file states before it looks how much
 /// there is.
-MatFile read_in_subprocess(const std::string& path) {
+Table read_in_subprocess(const std::string& path) {
   // Compressed columns of one value shrink to a thousandth, those of an instrument to a third.
   constexpr std::size_t kLeast = std::size_t{512} << 20, kPerByte = 64;
   const std::optional<std::string> reply = run_in_subprocess(
@@ -302,41 +270,13 @@ MatFile read_in_subprocess(const std::string& path) {
 
 }  // namespace
 
-MatFile read_mat(const std::string& path) {
+Table read_mat(const std::string& path) {
   // libmatio would take an empty file for one of version 4.
-  if (open_recording(path).peek() == std::ifstream::traits_type::eof()) {
+  check_readable(path);
+  if (std::ifstream(path, std::ios::binary).peek() == std::ifstream::traits_type::eof()) {
     throw RecordingError(path, 0, "the file is empty; save or copy it again");
   }
   return read_in_subprocess(path);
-}
-
-Table select(const MatFile& mat, std::span<const std::string> names) {
-  Table table;
-  table.file = mat.file;
-  for (const std::string& name : names) {
-    const auto found = std::find_if(mat.columns.begin(), mat.columns.end(),
-                                    [&name](const Column& column) { return column.name == name; });
-    if (found == mat.columns.end()) throw_missing(mat, name);
-    const std::vector<double>& values = found->values;
-    if (!table.columns.empty() && values.size() != table.rows()) {
-      throw RecordingError(mat.file, 0,
-                           in_variable(name) + "it has " + std::to_string(values.size()) +
-                               " values, but " + in_quotes(table.columns.front().name) + " has " +
-                               std::to_string(table.rows()) +
-                               "; the signals of a recording must have the same length");
-    }
-    const auto bad = std::find_if_not(values.begin(), values.end(),
-                                      [](double value) { return std::isfinite(value); });
-    if (bad != values.end()) {
-      throw RecordingError(mat.file, 0,
-                           in_variable(name) + "element " +
-                               std::to_string(bad - values.begin() + 1) + " is " +
-                               (std::isnan(*bad) ? "NaN" : "infinite") +
-                               "; remove the sample or cut the recording there");
-    }
-    table.columns.push_back(*found);
-  }
-  return table;
 }
 
 }  // namespace axisfit

@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "base/plain_text.h"
 #include "base/suggest.h"
@@ -14,70 +16,95 @@
 
 namespace axisfit {
 
-RecordingFile::RecordingFile(const std::string& path) : path_(path) {
-  if (path.ends_with(".mat")) {
-    MatFile mat = read_mat(path);
-    for (Column& c : mat.columns) columns_.emplace(std::move(c.name), std::move(c.values));
-    for (IgnoredVariable& v : mat.ignored) ignored_.emplace(std::move(v.name), std::move(v.kind));
-  } else {
-    Table table = read_csv(path);
-    for (Column& c : table.columns) {
-      units_.emplace(c.name, std::move(c.unit));
-      columns_.emplace(std::move(c.name), std::move(c.values));
-    }
-    lines_ = std::move(table.lines);
-  }
+namespace {
+
+/// Nothing is measured beyond this in any unit, and squares of squares of residuals are finite.
+constexpr double kLargest = 1e30;
+
+Table read_table(const std::string& path) {
+  return path.ends_with(".mat") ? read_mat(path) : read_csv(path);
 }
 
-const std::vector<double>* RecordingFile::column(const ConfigNode& node) const {
+/// The number from 1 that a text is; 0: it is none.
+std::size_t column_number(const std::string& text) {
+  std::size_t number = 0;
+  const char* const end = text.data() + text.size();
+  return std::from_chars(text.data(), end, number).ptr == end ? number : 0;
+}
+
+}  // namespace
+
+RecordingFile::RecordingFile(const std::string& path) : table_(read_table(path)) {}
+
+const Column* RecordingFile::column(const ConfigNode& node) const {
   const auto name = node.as_string();
   if (!name) return nullptr;
-  if (const auto found = columns_.find(*name); found != columns_.end()) {
-    const std::vector<double>& values = found->second;
-    // Nothing is measured beyond this in any unit, and squares of squares of residuals are finite.
-    constexpr double kLargest = 1e30;
-    const auto bad =
-        std::ranges::find_if_not(values, [](double x) { return std::abs(x) <= kLargest; });
-    if (bad == values.end()) return &values;
-    const std::string place = where(static_cast<std::size_t>(bad - values.begin()));
-    node.error(std::isfinite(*bad)
-                   ? fmt::format("{}: '{}' has the impossible value {:g}: remove the row", place,
-                                 *name, *bad)
-                   : fmt::format("{}: '{}' is not finite: trim the recording or fill the gap",
-                                 place, *name));
+  const std::vector<Column>& columns = table_.columns;
+  const auto called = [&](const Column& column) { return column.name == *name; };
+  auto found = std::ranges::find_if(columns, called);
+  if (found != columns.end()) {
+    const auto again = std::find_if(found + 1, columns.end(), called);
+    if (again != columns.end()) {
+      node.error(fmt::format(
+          "columns {} and {} of {} are both named '{}': give the number of the "
+          "column instead of its name",
+          found - columns.begin() + 1, again - columns.begin() + 1, table_.file, *name));
+      return nullptr;
+    }
+  } else if (const std::size_t number = column_number(*name);
+             number >= 1 && number <= columns.size()) {
+    found = columns.begin() + static_cast<std::ptrdiff_t>(number - 1);
+  } else {
+    say_missing(node, *name);
     return nullptr;
   }
-  if (const auto ignored = ignored_.find(*name); ignored != ignored_.end()) {
-    node.error(fmt::format("'{}' in {} is {}: export it as a numeric array", *name, path_,
-                           ignored->second));
+  if (!found->obstacle.empty()) {
+    node.error(fmt::format("'{}' in {} {}", *name, table_.file, found->obstacle));
     return nullptr;
   }
-  std::vector<std::string> names;
-  for (const auto& [existing, values] : columns_) names.push_back(shortened(existing));
-  const std::string suggestion = closest_match(*name, names);
-  constexpr std::size_t kNamed = 30;
-  const std::size_t more = names.size() - std::min(names.size(), kNamed);
-  names.resize(names.size() - more);
-  node.error(fmt::format("no column '{}' in {}; {}t has {}{}", *name, path_,
-                         suggestion.empty() ? "i" : fmt::format("did you mean '{}'? I", suggestion),
-                         fmt::join(names, ", "),
-                         more > 0 ? fmt::format(" and {} more", more) : ""));
+  const auto bad =
+      std::ranges::find_if(found->values, [](double x) { return std::abs(x) > kLargest; });
+  if (bad == found->values.end()) return &*found;
+  const std::string place = where(static_cast<std::size_t>(bad - found->values.begin()));
+  node.error(std::isfinite(*bad)
+                 ? fmt::format("{}: '{}' has the impossible value {:g}: remove the row", place,
+                               *name, *bad)
+                 : fmt::format("{}: '{}' is not finite: trim the recording or remove the row",
+                               place, *name));
   return nullptr;
 }
 
-std::string RecordingFile::unit(const std::string& column) const {
-  const auto found = units_.find(column);
-  return found == units_.end() ? std::string() : found->second;
+void RecordingFile::say_missing(const ConfigNode& node, const std::string& name) const {
+  std::vector<std::string> names;
+  for (const Column& column : table_.columns)
+    if (!column.name.empty()) names.push_back(shortened(column.name));
+  if (names.empty()) {
+    node.error(
+        fmt::format("no column '{}' in {}, whose columns have no names: give a number from "
+                    "1 to {}",
+                    name, table_.file, table_.columns.size()));
+    return;
+  }
+  const std::string suggestion = closest_match(name, names);
+  constexpr std::size_t kNamed = 30;
+  const std::size_t more = names.size() - std::min(names.size(), kNamed);
+  names.resize(names.size() - more);
+  node.error(fmt::format("no column '{}' in {}; {}t has {}{}", name, table_.file,
+                         suggestion.empty() ? "i" : fmt::format("did you mean '{}'? I", suggestion),
+                         fmt::join(names, ", "),
+                         more > 0 ? fmt::format(" and {} more", more) : ""));
 }
 
-std::string RecordingFile::where(std::size_t row) const {
-  return row < lines_.size() ? fmt::format("{}:{}", path_, lines_[row])
-                             : fmt::format("{}: row {}", path_, row + 1);
+std::string RecordingFile::reference(std::size_t column) const {
+  const std::string& name = table_.columns[column].name;
+  const bool own = !name.empty() && is_sanitized(name) && column_number(name) == 0 &&
+                   std::ranges::count(table_.columns, name, &Column::name) == 1;
+  return own ? name : std::to_string(column + 1);
 }
 
 const Section& column_keys() {
   static const Section keys{
-      Key::required("column", Text{}, "name of the column, or of the MATLAB variable"),
+      Key::required("column", Text{}, "its name, or its number from 1"),
       Key::required("unit", Text{}, "unit of the stored values"),
       Key::optional("factor", NumberWithUnit{"1", -1e12, 1e12}, 1.0,
                     "factor applied to the stored values"),
@@ -104,9 +131,9 @@ std::optional<std::vector<double>> read_column(const RecordingFile& file, Config
   map.read("sign", sign);
   factor *= sign == 1 ? -further_factor : further_factor;
   const auto name = map.required("column");
-  const std::vector<double>* column = name ? file.column(*name) : nullptr;
+  const Column* column = name ? file.column(*name) : nullptr;
   if (column == nullptr) return std::nullopt;
-  std::vector<double> values = *column;
+  std::vector<double> values = column->values;
   for (double& x : values) x *= factor;
   return values;
 }
@@ -121,22 +148,22 @@ std::optional<std::vector<double>> read_column(const RecordingFile& file, const 
 
 std::optional<std::vector<double>> read_times(const RecordingFile& file, const ConfigNode& node) {
   auto times = read_column(file, node, "s");
-  constexpr double kShortest = 1e-9;  // s; beside the times themselves, shorter ones are rounding
-  for (std::size_t i = 1; times && i < times->size(); ++i) {
-    const double before = (*times)[i - 1], time = (*times)[i];
-    if (time - before >= kShortest) continue;
-    if (time > before) {
-      node.error(fmt::format(
-          "{}: {:.3g} s after the sample before, less than the {:g} s that a simulation can step: "
-          "check the unit of time",
-          file.where(i), time - before, kShortest));
+  double before = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; times && i < times->size(); ++i) {
+    const double time = (*times)[i];
+    if (std::isnan(time)) continue;
+    if (time - before < kShortestStep) {
+      node.error(
+          time > before
+              ? fmt::format("{}: {:.3g} s after the sample before, less than the {:g} s that a "
+                            "simulation can step: check the unit of time",
+                            file.where(i), time - before, kShortestStep)
+              : fmt::format("{}: time {:.15g} s does not increase from {:.15g} s: samples must be "
+                            "in order of time, without repeats",
+                            file.where(i), time, before));
       return std::nullopt;
     }
-    node.error(
-        fmt::format("{}: time {:.15g} s does not increase from {:.15g} s: samples must be in order "
-                    "of time, without repeats",
-                    file.where(i), time, before));
-    return std::nullopt;
+    before = time;
   }
   return times;
 }

@@ -1,41 +1,39 @@
-// Recorded columns from a CSV file or a MATLAB file.
+// Recorded columns from a file of any format.
 #pragma once
 
-#include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "io/config/config.h"
+#include "io/recording/table.h"
 
 namespace axisfit {
 
-/// A recording as stored: named columns, whatever the format.
+/// A recording as stored: columns, whatever the format.
 class RecordingFile {
  public:
-  /// Reads `path`: MATLAB format if its name ends in ".mat", CSV otherwise. Throws RecordingError.
+  /// Reads `path`: what its name ends in says as what, .mat, or anything else as text. Throws
+  /// RecordingError.
   explicit RecordingFile(const std::string& path);
 
-  /// The values of a column (CSV) or variable (MATLAB); null with a diagnostic at `name` that lists
-  /// what there is.
-  const std::vector<double>* column(const ConfigNode& name) const;
+  /// The column of this name, or with this number from 1; null with a diagnostic at `name` that
+  /// says what is wrong with it or lists what there is.
+  const Column* column(const ConfigNode& name) const;
 
-  /// All columns by name; those of a MATLAB file may differ in length and hold what is not finite.
-  const std::map<std::string, std::vector<double>>& columns() const { return columns_; }
+  /// All columns; those of a MATLAB file may differ in length.
+  const std::vector<Column>& columns() const { return table_.columns; }
 
-  /// What a row of units below the header says of a column; empty where there is none.
-  std::string unit(const std::string& column) const;
+  /// What a job calls a column: its name, or its number where it has none of its own.
+  std::string reference(std::size_t column) const;
 
   /// "file:17" or "file: row 17", for messages about the row with this index.
-  std::string where(std::size_t row) const;
+  std::string where(std::size_t row) const { return table_.where(row); }
 
  private:
-  std::string path_;
-  std::map<std::string, std::vector<double>> columns_;
-  std::map<std::string, std::string> units_;
-  std::map<std::string, std::string> ignored_;  // variable, why it is no column
-  std::vector<std::size_t> lines_;              // of the rows
+  void say_missing(const ConfigNode& node, const std::string& name) const;
+
+  Table table_;
 };
 
 /// The keys of a column.
@@ -51,7 +49,11 @@ std::optional<std::vector<double>> read_column(const RecordingFile& file, Config
 std::optional<std::vector<double>> read_column(const RecordingFile& file, const ConfigNode& node,
                                                std::string_view si_unit);
 
-/// The times of the samples, s, which must increase; nothing, with a diagnostic, otherwise.
+/// s; beside the times themselves, shorter ones are rounding.
+inline constexpr double kShortestStep = 1e-9;
+
+/// The times of the samples, s, NaN where there is none; they must increase: nothing, with a
+/// diagnostic, otherwise.
 std::optional<std::vector<double>> read_times(const RecordingFile& file, const ConfigNode& node);
 
 }  // namespace axisfit

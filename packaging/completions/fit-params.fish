@@ -12,6 +12,7 @@ complete -c fit-params -l check -d 'say what the recordings show and can tell, d
 complete -c fit-params -l init -d 'write a job for recordings'
 complete -c fit-params -l axis -x -a $yaml -d 'with --init, the axis file'
 complete -c fit-params -l gain -x -d 'with --init, force in N per unit of the current or command'
+complete -c fit-params -l column -x -d 'with --init, what a column is: SIGNAL=COLUMN:UNIT'
 complete -c fit-params -l data -x -a $folders -d 'folder of the recordings'
 complete -c fit-params -l from -x -a $yaml -d 'begin at the values of an axis'
 complete -c fit-params -s o -l output -x -a $folders -d 'folder for the results'

@@ -134,6 +134,14 @@ std::string text_of(const warning::Clipped& w) {
       info(w.signal).name, short_number(w.value, w.signal), w.samples);
 }
 
+std::string text_of(const warning::Missing& w) {
+  return fmt::format(
+      "{} has no value in {} of {} samples, which are left out; if it was recorded more slowly "
+      "than "
+      "the rest, that is as it should be.",
+      info(w.signal).name, w.samples, w.of);
+}
+
 std::string text_of(const warning::Repeated& w) {
   return fmt::format("{}: each value is recorded {} times, by a sample and hold. Set 'hold: {}'.",
                      info(w.signal).name, w.times, w.times);

@@ -650,7 +650,7 @@ TEST_F(CommandLineTest, AMisspeltColumnIsNamedWithTheColumnsThereAre) {
   const std::string csv = folder_.path("short.csv");
   EXPECT_EQ(folder_.without_path(fit({bad}).err),
             "job.yaml:7:26: no column 'velocty_mps' in short.csv; did you mean 'velocity_mps'? It "
-            "has command_v, motor_current_a, time_s, velocity_mps\n");
+            "has time_s, command_v, velocity_mps, motor_current_a\n");
 }
 
 TEST_F(CommandLineTest, NoLoopIsClosedAroundAnUnusableFit) {

@@ -211,8 +211,8 @@ TEST_F(InitJobTest, NamesCannotBreakOutOfTheFile) {
   EXPECT_EQ(file.job.recordings[0].measurements.size(), 1u);
 }
 
-TEST_F(InitJobTest, WhatIsNoTextIsNotUsed) {
-  // A micro sign and a degree sign as Latin-1 has them, a line that Unicode breaks, and a bell.
+TEST_F(InitJobTest, NamesOfAllKindsAreTaken) {
+  // A micro sign as Windows has it; a line that Unicode breaks, and a bell, in a name.
   Table table = renamed(driven(), {{"t_s", 1.0},
                                    {"i_A", 1.0},
                                    {"x_m", 1.0},
@@ -220,8 +220,10 @@ TEST_F(InitJobTest, WhatIsNoTextIsNotUsed) {
                                    {"a\u2028free: \xB0\a", 1.0}});
   folder_.write("a.csv", table);
   make({"a.csv"});
-  EXPECT_EQ(read().job.recordings[0].measurements.size(), 1u);
-  EXPECT_NE(folder_.read("job.yaml").find("# Not used: a?free: ??, v [?m/s]\n"), std::string::npos)
+  EXPECT_EQ(read().job.recordings[0].measurements.size(), 2u);
+  EXPECT_NE(folder_.read("job.yaml").find("{column: \"v [µm/s]\", unit: um/s}"), std::string::npos);
+  EXPECT_NE(folder_.read("job.yaml").find("# Not used: aâ€¨free: °? (column 5)\n"),
+            std::string::npos)
       << folder_.read("job.yaml");
 }
 
@@ -375,7 +377,8 @@ TEST_F(InitJobTest, MatlabVariablesAreColumnsToo) {
   Mat_VarFree(gains);
   Mat_Close(mat);
   make({"run.mat"});
-  EXPECT_NE(folder_.read("job.yaml").find("# Not used: line?break, velocity"), std::string::npos)
+  EXPECT_NE(folder_.read("job.yaml").find("# Not used: line?break (column 4), velocity"),
+            std::string::npos)
       << folder_.read("job.yaml");
   expect_the_driven_mass(fitted(read()), 1.0 / 60.0);
 }
@@ -432,15 +435,18 @@ TEST_F(InitJobTest, SaysWhatIsMissing) {
   };
   EXPECT_EQ(
       message("time_s,pos_mm"),
-      "a.csv: no column shows what drove the axis; the columns are pos_mm. If one of them does, "
-      "rename it, for example to current_A, force_N or command_V; otherwise record that signal.");
+      "a.csv: no column shows what drove the axis; the columns are time_s, pos_mm. If one of them "
+      "does, say so by --column current=COLUMN:A, force=COLUMN:N or command=COLUMN:V; otherwise "
+      "record that signal.");
   EXPECT_EQ(message("time_s,iq"),
-            "a.csv: no column shows how the axis moved; the columns are iq. If one of them does, "
-            "rename it, for example to position_mm or velocity_mps; otherwise record that signal.");
-  EXPECT_EQ(message("foo,bar"),
-            "a.csv: no column shows what drove the axis; the columns are bar (not recognised). If "
-            "one of them does, rename it, for example to current_A, force_N or command_V; "
-            "otherwise record that signal.");
+            "a.csv: no column shows how the axis moved; the columns are time_s, iq. If one of them "
+            "does, say so by --column position=COLUMN:mm or velocity=COLUMN:m/s; otherwise record "
+            "that signal.");
+  EXPECT_EQ(
+      message("foo,bar"),
+      "a.csv: no column shows what drove the axis; the columns are foo, bar (not recognised). "
+      "If one of them does, say so by --column current=COLUMN:A, force=COLUMN:N or "
+      "command=COLUMN:V; otherwise record that signal.");
   EXPECT_TRUE(folder_.names().count("job.yaml") == 0);
 }
 

@@ -657,18 +657,18 @@ TEST_F(JobFileTest, MatFilesMayHoldColumnsThatDoNotFit) {
   write_mat(folder_.path("data.mat"), data.columns());
   EXPECT_EQ(errors(text), "job.yaml:6:16: command has 13 values but the time has 14");
   data = Data();
-  data.v[4] = std::numeric_limits<double>::quiet_NaN();
+  data.v[4] = std::numeric_limits<double>::infinity();
   data.t_ms[5] = data.t_ms[4];
   data.x = {3.0};
   write_mat(folder_.path("data.mat"), data.columns());
   EXPECT_EQ(errors(text),
             "job.yaml:4:11: data.mat: row 6: time 0.016 s does not increase from 0.016 s: samples "
             "must be in order of time, without repeats\njob.yaml:7:26: data.mat: row 5: 'v' is not "
-            "finite: trim the recording or fill the gap");
+            "finite: trim the recording or remove the row");
   data.t_ms = Data().t_ms;
   write_mat(folder_.path("data.mat"), data.columns());
   EXPECT_EQ(errors(replaced(text, "column: v", "column: x")),
-            "job.yaml:7:26: 'x' in data.mat is a scalar: export it as a numeric array");
+            "job.yaml:7:26: 'x' in data.mat is a scalar");
 }
 
 TEST_F(JobFileTest, RecordingsMayBeInAnotherFolder) {
@@ -726,15 +726,15 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
             "4:28: score_initial_samples must be true or false, not 'no'"},
            {"file: data.csv", "file: .", "3:11: : is a directory; give the path of a recording"},
            // Columns.
-           {"column: v,", "column: w,", "7:26: no column 'w' in data.csv; it has f, t_ms, u, v, x"},
+           {"column: v,", "column: w,", "7:26: no column 'w' in data.csv; it has t_ms, u, v, x, f"},
            {"column: t_ms", "column: tms",
-            "4:20: no column 'tms' in data.csv; did you mean 't_ms'? It has f, t_ms, u, v, x"},
+            "4:20: no column 'tms' in data.csv; did you mean 't_ms'? It has t_ms, u, v, x, f"},
            {"column: u, ", "", "6:16: key 'column' is missing in command"},
            {"unit: ms", "unit: m", "4:32: 'm' cannot be converted to 's'; use for example 's'"},
            {"unit: m/s", "unit: V",
             "7:35: 'V' cannot be converted to 'm/s'; use for example 'm/s'"},
            {", unit: V", "", "6:16: key 'unit' is missing in command"},
-           {"unit: V}", "unit: V, fit: false}", "6:37: unknown key 'fit'; did you mean 'unit'?"},
+           {"unit: V}", "unit: V, fit: false}", "6:37: unknown key 'fit'; did you mean 'file'?"},
            {"unit: V}", "unit: V, sigma: -1 V}", "6:44: sigma must be at least 0 V, not -1 V"},
            {"unit: V}", "unit: V, sign: 2}", "6:43: sign must be one of 1, -1, not '2'"},
            {"unit: V}", "unit: V, factor: 2 V}",
@@ -826,13 +826,14 @@ TEST_F(JobFileTest, RefusesALateSignalThatHoldsTheSimulation) {
 }
 
 TEST_F(JobFileTest, MistakesInARecordingNameItsLine) {
-  folder_.write("data.csv", "t_ms,u,v\n0,0,1\n1,0,2\n\n3,0,4\n");
+  folder_.write("data.csv", "t_ms,u,v\n0,0,1\n1,0,2\n2,0\n3,0,4\n");
   EXPECT_EQ(errors(kJob).substr(0, 27), "job.yaml:3:11: data.csv:4: ");
-  folder_.write("data.csv", "t_ms,u,v\n0,0,1\n1,0,x\n");
-  EXPECT_EQ(
-      errors(kJob),
-      "job.yaml:3:11: data.csv:3: column 'v': 'x' is not a number; every row below the header "
-      "must hold numbers");
+  std::string rows = "t_ms,u,v\n";
+  for (int i = 0; i < 12; ++i) rows += fmt::format("{},0,{}\n", i, i);
+  folder_.write("data.csv", rows + "12,0,x\n");
+  EXPECT_EQ(errors(kJob),
+            "job.yaml:7:26: 'v' in data.csv has 'x' in line 14, which is no number; correct it or "
+            "leave the field blank");
   Data data;
   data.t_ms[7] = data.t_ms[5];
   write_data("data.csv", data.columns());
@@ -866,7 +867,7 @@ fit: {loss: cubes}
 colour: red
 )"),
       "job.yaml:4:11: role must be one of fit, validate, not 'train'\njob.yaml:5:20: no column "
-      "'time' in data.csv; did you mean 't_ms'? It has f, t_ms, u, v, x\njob.yaml:8:55: unknown "
+      "'time' in data.csv; did you mean 't_ms'? It has t_ms, u, v, x, f\njob.yaml:8:55: unknown "
       "key 'sing'; did you mean 'sign'?\njob.yaml:9:5: key 'signals' is missing in entry 2 of "
       "recordings\njob.yaml:9:11: none.csv: cannot be opened (No such file or directory); check "
       "the path and the permissions\njob.yaml:10:11: unknown quantity 'M_a'; did you mean "

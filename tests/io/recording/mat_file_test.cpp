@@ -4,6 +4,7 @@
 #include <matio.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -19,7 +20,6 @@ namespace axisfit {
 namespace {
 
 using Values = std::vector<double>;
-using Names = std::vector<std::string>;
 
 // Which of libmatio's formats a test writes.
 struct Format {
@@ -174,18 +174,20 @@ class MatFileTest : public ::testing::Test {
   std::filesystem::path directory_;
 };
 
-const Values* values(const MatFile& mat, const std::string& name) {
+const Values* values(const Table& mat, const std::string& name) {
   for (const Column& column : mat.columns) {
     if (column.name == name) return &column.values;
   }
   return nullptr;
 }
 
-std::string kind(const MatFile& mat, const std::string& name) {
-  for (const IgnoredVariable& variable : mat.ignored) {
-    if (variable.name == name) return variable.kind;
-  }
-  return "not ignored";
+std::string obstacle(const Table& mat, const std::string& name) {
+  const Column* column = mat.find(name);
+  return column == nullptr ? "not there" : column->obstacle;
+}
+
+std::size_t readable(const Table& mat) {
+  return static_cast<std::size_t>(std::ranges::count(mat.columns, "", &Column::obstacle));
 }
 
 #define EXPECT_COLUMN(mat, name, ...)                    \
@@ -214,10 +216,10 @@ TEST_P(MatFormats, ConvertsVectorsOfEveryNumericClass) {
            array<std::uint8_t>("flag", 4, 1, {0, 1, 1, 0}, MAT_F_LOGICAL)})) {
     GTEST_SKIP() << "this libmatio cannot write the format";
   }
-  const MatFile mat = read_mat(path());
+  const Table mat = read_mat(path());
   EXPECT_EQ(mat.file, path());
   EXPECT_EQ(mat.columns.size(), 11u);
-  EXPECT_TRUE(mat.ignored.empty());
+  EXPECT_EQ(readable(mat), mat.columns.size());
   EXPECT_COLUMN(mat, "d", {0.1, -2, 1e300});
   EXPECT_COLUMN(mat, "f", {0.5, -1.25});
   EXPECT_COLUMN(mat, "i8", {-128, 127});
@@ -237,7 +239,7 @@ TEST_P(MatFormats, SplitsMatricesAlongTheirLongerSide) {
                           array<double>("square", 2, 2, {1, 2, 3, 4})})) {
     GTEST_SKIP() << "this libmatio cannot write the format";
   }
-  const MatFile mat = read_mat(path());
+  const Table mat = read_mat(path());
   EXPECT_EQ(mat.columns.size(), 6u);
   EXPECT_COLUMN(mat, "tall(:,1)", {1, 2, 3});
   EXPECT_COLUMN(mat, "tall(:,2)", {4, 5, 6});
@@ -254,12 +256,12 @@ TEST_P(MatFormats, ReadsFieldsOfStructsAtAnyDepth) {
                                 structure("motor", {array<double>("q", 2, 1, {2, 3})})})})) {
     GTEST_SKIP() << "this libmatio cannot write the format";
   }
-  const MatFile mat = read_mat(path());
-  EXPECT_EQ(mat.columns.size(), 2u);
+  const Table mat = read_mat(path());
+  EXPECT_EQ(readable(mat), 2u);
   EXPECT_COLUMN(mat, "rec.t", {0, 1});
   EXPECT_COLUMN(mat, "rec.motor.q", {2, 3});
-  EXPECT_EQ(kind(mat, "rec.fs"), "a scalar");
-  EXPECT_EQ(kind(mat, "rec.unit"), "text");
+  EXPECT_EQ(obstacle(mat, "rec.fs"), "is a scalar");
+  EXPECT_EQ(obstacle(mat, "rec.unit"), "is text");
 }
 
 TEST_P(MatFormats, RemembersWhatItCannotRead) {
@@ -280,18 +282,20 @@ TEST_P(MatFormats, RemembersWhatItCannotRead) {
            array<double>("q", 2, 1, {3, 4})})) {
     GTEST_SKIP() << "this libmatio cannot write the format";
   }
-  const MatFile mat = read_mat(path());
-  EXPECT_EQ(mat.columns.size(), 1u);
+  const Table mat = read_mat(path());
+  EXPECT_EQ(readable(mat), 1u);
   EXPECT_COLUMN(mat, "q", {3, 4});
-  EXPECT_EQ(kind(mat, "fs"), "a scalar");
-  EXPECT_EQ(kind(mat, "note"), "text");
-  EXPECT_EQ(kind(mat, "z"), "a complex array");
-  EXPECT_EQ(kind(mat, "none"), "an empty array");
-  EXPECT_EQ(kind(mat, "cube"), "an array of more than two dimensions");
-  EXPECT_EQ(kind(mat, "cells"), "a cell array");
-  EXPECT_EQ(error([&] { select(mat, Names{"note"}); }),
-            "rec.mat: variable 'note': it is text, which cannot be read; export it as a numeric "
-            "vector");
+  EXPECT_EQ(obstacle(mat, "fs"), "is a scalar");
+  EXPECT_EQ(obstacle(mat, "note"), "is text");
+  EXPECT_EQ(obstacle(mat, "z"),
+            "is a complex array; in MATLAB 'z = real(z)' converts it, before save");
+  EXPECT_EQ(obstacle(mat, "none"), "is an empty array");
+  EXPECT_EQ(
+      obstacle(mat, "cube"),
+      "is an array of more than two dimensions; in MATLAB 'cube = squeeze(cube)' converts it, "
+      "before save");
+  EXPECT_EQ(obstacle(mat, "cells"),
+            "is a cell array; in MATLAB 'cells = cell2mat(cells)' converts it, before save");
 }
 
 // Nothing may pass as data that the file does not hold: libmatio fills up with zeros.
@@ -386,62 +390,16 @@ TEST_F(MatFileTest, ReadsTheArraysBesideATable) {
   write_bytes(header + uint8_variable("q", "\x01\x02") + table + uint8_variable("u", "\x03\x04") +
               contents_of_objects);
 
-  const MatFile mat = read_mat(path());
-  EXPECT_EQ(mat.columns.size(), 2u);
+  const Table mat = read_mat(path());
+  EXPECT_EQ(readable(mat), 2u);
   EXPECT_COLUMN(mat, "q", {1, 2});
   EXPECT_COLUMN(mat, "u", {3, 4});
-  ASSERT_EQ(mat.ignored.size(), 1u);
-  EXPECT_EQ(mat.ignored[0].kind, "a table, timetable or another object");
-}
-
-TEST_F(MatFileTest, SelectTakesColumnsInTheOrderOfTheNames) {
-  const MatFile mat{"rec.mat", {{"q", {1, 2}}, {"t", {0, 1}}, {"long", {1, 2, 3}}}, {}};
-  const Table table = select(mat, Names{"t", "q"});
-  EXPECT_EQ(table.file, "rec.mat");
-  EXPECT_TRUE(table.lines.empty());
-  EXPECT_EQ(table.where(0), "rec.mat: row 1");
-  ASSERT_EQ(table.columns.size(), 2u);
-  EXPECT_EQ(table.columns[0].name, "t");
-  EXPECT_EQ(table.columns[1].values, (Values{1, 2}));
-  EXPECT_EQ(select(mat, {}).rows(), 0u);
-}
-
-TEST_F(MatFileTest, SelectTellsWhatThereIsInsteadOfAMissingName) {
-  const MatFile mat{"rec.mat",
-                    {{"velocity", {1}}, {"t", {0}}},
-                    {{"", "a table, timetable or another object"}, {"fs", "a scalar"}}};
-  EXPECT_EQ(error([&] {
-              select(mat, Names{"t", "velocty"});
-            }),
-            "rec.mat: there is no variable 'velocty' (did you mean 'velocity'?); the file has "
-            "'velocity', 't'; not readable unless exported as numeric vectors: one of unknown name "
-            "(a table, timetable or another object), 'fs' (a scalar)");
-  EXPECT_EQ(error([&] {
-              select(MatFile{"rec.mat", {}, {}}, Names{"t"});
-            }),
-            "rec.mat: there is no variable 't'; the file has no numeric vectors");
-
-  MatFile many{"rec.mat", {}, {}};
-  for (int i = 0; i < 25; ++i) many.columns.push_back({"signal" + std::to_string(i), {1}});
-  EXPECT_TRUE(error([&] { select(many, Names{"current"}); }).ends_with("'signal19' and 5 more"));
-}
-
-TEST_F(MatFileTest, SelectRefusesColumnsThatDoNotMakeARecording) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const double inf = std::numeric_limits<double>::infinity();
-  const MatFile mat{
-      "rec.mat", {{"t", {0, 1, 2}}, {"q", {0, 1}}, {"v", {0, nan, 2}}, {"u", {-inf, 0, 0}}}, {}};
-  EXPECT_EQ(error([&] {
-              select(mat, Names{"t", "q"});
-            }),
-            "rec.mat: variable 'q': it has 2 values, but 't' has 3; the signals of a recording "
-            "must have the same length");
-  EXPECT_EQ(error([&] { select(mat, Names{"v"}); }),
-            "rec.mat: variable 'v': element 2 is NaN; remove the sample or cut the recording "
-            "there");
-  EXPECT_EQ(error([&] { select(mat, Names{"u"}); }),
-            "rec.mat: variable 'u': element 1 is infinite; remove the sample or cut the recording "
-            "there");
+  ASSERT_EQ(mat.columns.size(), 3u);
+  EXPECT_EQ(
+      obstacle(mat, ""),
+      "is a table, timetable, timeseries or another object, which MATLAB alone can read; there "
+      "'x = table2struct(x, \"ToScalar\", true)' converts a table x, and 'y = x.Data; t = "
+      "x.Time' a timeseries, before save");
 }
 
 }  // namespace

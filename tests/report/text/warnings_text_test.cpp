@@ -65,6 +65,10 @@ TEST(WarningsTextTest, OfSignals) {
   EXPECT_EQ(warning_text(warning::Clipped{Signal::acceleration, 7, 20.0}),
             "acceleration is exactly 20 m/s^2 in 7 samples: it is clipped at the end of its range. "
             "Record with a wider range, or do not fit the signal ('fit: false').");
+  EXPECT_EQ(
+      warning_text(warning::Missing{Signal::position, 3, 400}),
+      "position has no value in 3 of 400 samples, which are left out; if it was recorded more "
+      "slowly than the rest, that is as it should be.");
   EXPECT_EQ(warning_text(warning::Repeated{Signal::position, 10}),
             "position: each value is recorded 10 times, by a sample and hold. Set 'hold: 10'.");
   EXPECT_EQ(warning_text(warning::Filtered{Signal::velocity, 21.0, 21}),
