@@ -25,6 +25,7 @@
 #include "io/config/config.h"
 #include "io/config/job_file.h"
 #include "io/config/motion_file.h"
+#include "io/config/next_job.h"
 #include "io/results/output_folder.h"
 #include "report/html/report_page.h"
 #include "report/result_json.h"
@@ -40,6 +41,7 @@ const ResultName kAxisFile{"fitted.yaml", "# Fitted by axisfit "};
 const ResultName kResidualsFile{"residuals.csv", "recording,time_s,"};
 const ResultName kReportFile{"report.html", "<meta name=\"generator\" content=\"axisfit "};
 const ResultName kMotionFile{"next-motion.yaml", "# Suggested by axisfit "};
+const ResultName kNextJobFile{"next-job.yaml", "# Goes on from axisfit "};
 
 enum ExitCode {  // besides kBadInput
   kUsable = 0,
@@ -131,6 +133,14 @@ void start_from(const std::string& axis_file, Job& job) {
   Diagnostics diagnostics;
   auto rig = read_axis_file(axis_file, diagnostics);
   diagnostics.throw_if_any();
+  // Without them the values of all others would be wrong.
+  const EffectSet extra = rig->model.structure.effects & ~job.model.structure.effects;
+  for (std::size_t effect = 0; effect < extra.size(); ++effect)
+    if (extra[effect])
+      throw std::runtime_error(fmt::format(
+          "--from {}: this axis has the effect {}, which the job has not: run the next-job.yaml "
+          "beside it, or name the effect in the job",
+          axis_file, kEffectTable[effect].name));
   const std::vector<double*> values = members(rig->model);
   for (FreeParameter& p : job.free)
     if (!p.recording && is_used(quantity_list()[p.quantity], rig->model.structure))
@@ -210,6 +220,12 @@ std::string command_line_of(int argc, char** argv) {
   return line;
 }
 
+/// Whether effects were accepted, or constants found to be others.
+bool declares_too_little(const Job& declared, const Job& reached) {
+  return reached.free.size() != declared.free.size() ||
+         reached.model.structure.effects != declared.model.structure.effects;
+}
+
 Files files_of(const Arguments& arguments, const JobFile& file, const RunResult& run_result,
                const std::string& json) {
   Rig fitted = file.rig;
@@ -228,6 +244,13 @@ Files files_of(const Arguments& arguments, const JobFile& file, const RunResult&
        residuals_csv(run_result.job(), run_result.fit(), run_result.diagnosis)},
       {kReportFile.name, report_page(run_result, {arguments.command, arguments.files.front(),
                                                   file.text, file.axis_file, file.axis_text})}};
+  if (!arguments.output.empty() && declares_too_little(file.job, run_result.job()))
+    files.emplace_back(
+        kNextJobFile.name,
+        next_job_text(file, run_result.job(), arguments.files.front(), arguments.data,
+                      arguments.output, kAxisFile.name,
+                      fmt::format("Goes on from {}, with what was accepted there: the axis is {}.",
+                                  origin, kAxisFile.name)));
   if (const Experiment* next = next_experiment(run_result)) {
     files.emplace_back(kMotionFile.name,
                        format_motion_file({next->motion, next->duration},
@@ -259,7 +282,8 @@ std::unique_ptr<OutputFolder> open_folder(const Arguments& arguments,
   if (!arguments.from.empty()) inputs.push_back(arguments.from);
   auto folder = std::make_unique<OutputFolder>(
       arguments.output,
-      std::vector<ResultName>{kResultFile, kAxisFile, kResidualsFile, kReportFile, kMotionFile},
+      std::vector<ResultName>{kResultFile, kAxisFile, kResidualsFile, kReportFile, kMotionFile,
+                              kNextJobFile},
       inputs);
   JournalFile& journal = folder->journal();
   const std::string found = fmt::format("{} solved least-squares problem{}", journal.recovered(),
@@ -323,7 +347,7 @@ int run_command(const Arguments& arguments) {
                     "recordings, use --init)",
                     arguments.files[1]));
   const std::string& job = arguments.files.front();
-  for (const char* ending : {".csv", ".mat"})
+  for (const char* ending : {".csv", ".txt", ".gz", ".mat", ".mcap", ".xlsx"})
     if (job.ends_with(ending))
       throw std::runtime_error(fmt::format(
           "{} is a recording; to create a job for it: fit-params --init {}", job, quoted(job)));

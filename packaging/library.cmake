@@ -27,11 +27,13 @@ install(FILES ${PROJECT_SOURCE_DIR}/examples/fit_in_memory.cpp
         DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT dev)
 
 # As they are linked, and the packages that have them.
-set(AXISFIT_LINK_LIBRARIES ceres glog fmt yaml-cpp matio udunits2 z)
+set(AXISFIT_LINK_LIBRARIES
+  ceres glog fmt yaml-cpp matio udunits2 minizip pugixml lz4 zstd z)
 string(REGEX REPLACE "([^;]+);?" "-l\\1 " AXISFIT_PC_LIBRARIES "${AXISFIT_LINK_LIBRARIES}")
 string(STRIP "${AXISFIT_PC_LIBRARIES}" AXISFIT_PC_LIBRARIES)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libceres-dev, libeigen3-dev, libgoogle-glog-dev, \
-libyaml-cpp-dev, libfmt-dev, libmatio-dev, libudunits2-dev, zlib1g-dev")
+libyaml-cpp-dev, libfmt-dev, libmatio-dev, libudunits2-dev, libminizip-dev, libpugixml-dev, \
+liblz4-dev, libzstd-dev, zlib1g-dev")
 
 include(CMakePackageConfigHelpers)
 set(config ${CMAKE_INSTALL_LIBDIR}/cmake/axisfit)

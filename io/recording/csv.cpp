@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "base/plain_text.h"
 #include "io/recording/table_builder.h"
@@ -111,8 +112,12 @@ Table read_csv(const std::string& path) {
     if (!is_comment(line)) data.push_back(line);
   const char separator = find_separator(data);
   std::vector<TextRow> rows;
-  for (std::size_t i = 0; i < head.lines.size(); ++i)
-    rows.push_back(row_of(head.lines[i], head.numbers[i], separator));
+  for (std::size_t i = 0; i < head.lines.size(); ++i) {
+    TextRow row = row_of(head.lines[i], head.numbers[i], separator);
+    // One of separators alone is blank, too.
+    if (std::ranges::any_of(row.fields, [](const std::string& field) { return !field.empty(); }))
+      rows.push_back(std::move(row));
+  }
   TextLayout layout = find_layout(path, rows, separator);
   const std::size_t first_row = layout.first_row;
   TableBuilder builder(path, std::move(layout));

@@ -13,6 +13,8 @@
 #include "base/units.h"
 #include "io/recording/csv.h"
 #include "io/recording/mat_file.h"
+#include "io/recording/mcap_file.h"
+#include "io/recording/xlsx_file.h"
 
 namespace axisfit {
 
@@ -22,7 +24,10 @@ namespace {
 constexpr double kLargest = 1e30;
 
 Table read_table(const std::string& path) {
-  return path.ends_with(".mat") ? read_mat(path) : read_csv(path);
+  if (path.ends_with(".mat")) return read_mat(path);
+  if (path.ends_with(".mcap")) return read_mcap(path);
+  if (path.ends_with(".xlsx")) return read_xlsx(path);
+  return read_csv(path);
 }
 
 /// The number from 1 that a text is; 0: it is none.

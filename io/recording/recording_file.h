@@ -13,7 +13,7 @@ namespace axisfit {
 /// A recording as stored: columns, whatever the format.
 class RecordingFile {
  public:
-  /// Reads `path`: what its name ends in says as what, .mat, or anything else as text. Throws
+  /// Reads `path` as what its name ends in: .mat, .xlsx, .mcap, or anything else as text. Throws
   /// RecordingError.
   explicit RecordingFile(const std::string& path);
 

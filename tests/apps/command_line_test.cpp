@@ -460,6 +460,20 @@ TEST_F(CommandLineTest, TheLoopIsClosedOnDemand) {
   EXPECT_NE(folder_.read("results/fitted.yaml").find("coulomb_friction:\n    F_c: "),
             std::string::npos);
   EXPECT_EQ(simulate({results + "/fitted.yaml", motion()}).exit_code, 0);
+
+  // The next job goes on where this one stands; the declared one cannot.
+  const std::string next = results + "/next-job.yaml";
+  EXPECT_NE(folder_.read("results/next-job.yaml").find("axis: fitted.yaml\n"), std::string::npos);
+  const Outcome again = fit({next, "--json"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_NEAR(Json::parse(again.out).at("reduced_chi_square").get<double>(),
+              json.at("after").at("reduced_chi_square").get<double>(), 1e-3);
+  EXPECT_EQ(fit({next, "--check"}).exit_code, 0);
+  const Outcome lost = fit({job(rubbing_job()), "--from", results + "/fitted.yaml"});
+  EXPECT_EQ(lost.exit_code, 2);
+  EXPECT_EQ(folder_.without_path(lost.err),
+            "--from results/fitted.yaml: this axis has the effect coulomb_friction, which the job "
+            "has not: run the next-job.yaml beside it, or name the effect in the job\n");
 }
 
 TEST_F(CommandLineTest, CtrlCKeepsWhatIsFinished) {

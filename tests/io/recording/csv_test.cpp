@@ -268,6 +268,7 @@ TEST_F(TableTest, TellsWhichColumnARowLacksOrExceeds) {
             "rec.csv:3: 2 fields for the 1 column of the header, more after column 't'; name them "
             "or remove them; or, if these are decimal commas, separate the fields by semicolons");
   EXPECT_EQ(read("t,q,\n0,1,,,\n1,2\n").columns.size(), 2u);
+  EXPECT_EQ(read("t,q\n,\n0,1\n,\n1,2\n").rows(), 2u);
 }
 
 TEST_F(TableTest, ARowReadsAlikeWhereverItStands) {

@@ -1,0 +1,64 @@
+#include "io/config/next_job.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/units.h"
+#include "io/config/yaml_text.h"
+
+namespace axisfit {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The same file from another folder.
+std::string moved(const std::string& file, const fs::path& from, const fs::path& to) {
+  if (fs::path(file).is_absolute()) return file;
+  return fs::proximate(fs::absolute(from / file), fs::absolute(to)).generic_string();
+}
+
+bool is_free(const Job& job, const FreeParameter& p) {
+  return std::ranges::any_of(job.free, [&](const FreeParameter& other) {
+    return other.quantity == p.quantity && other.recording == p.recording;
+  });
+}
+
+/// What an effect brought, with the bounds that it had.
+YAML::Node free_entry(const FreeParameter& p) {
+  const std::string_view unit = quantity_list()[p.quantity].quantity.unit;
+  YAML::Node entry(YAML::NodeType::Map);
+  for (const double bound : {p.lower, p.upper}) entry["bounds"].push_back(with_unit(bound, unit));
+  if (p.recording) entry["per_recording"] = true;
+  entry.SetStyle(YAML::EmitterStyle::Flow);
+  return entry;
+}
+
+}  // namespace
+
+std::string next_job_text(const JobFile& declared, const Job& reached, const std::string& path,
+                          const std::string& data_directory, const std::string& folder,
+                          const std::string& axis_name, const std::string& comment_text) {
+  YAML::Node job = YAML::Load(declared.text);
+  const fs::path data =
+      data_directory.empty() ? fs::path(path).parent_path() : fs::path(data_directory);
+  job["axis"] = axis_name;
+  // The axis has them, with their values.
+  job.remove("effects");
+  for (YAML::Node recording : job["recordings"]) {
+    recording["file"] = moved(recording["file"].Scalar(), data, folder);
+    for (auto signal : recording["signals"])
+      if (YAML::Node file = signal.second["file"]) file = moved(file.Scalar(), data, folder);
+  }
+  for (auto entry : job["free"])
+    if (entry.second.IsMap()) entry.second.remove("initial");
+  for (const FreeParameter& p : reached.free)
+    if (!is_free(declared.job, p)) job["free"][quantity_list()[p.quantity].name] = free_entry(p);
+  YAML::Emitter out;
+  out << job;
+  return comment(comment_text, 0) + out.c_str() + "\n";
+}
+
+}  // namespace axisfit
