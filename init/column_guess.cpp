@@ -190,6 +190,8 @@ constexpr Word kWords[]{
     {"current", current, 8},
     {"strom", current, 8},
     {"geber", position, 6},
+    {"scale", position, 5},
+    {"massstab", position, 6},
     {"lageist", position, 9},
     {"lagesoll", position, 9},
     {"lage", position, 7},

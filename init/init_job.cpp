@@ -32,6 +32,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kJobName = "job.yaml";
 constexpr const char* kAxisName = "axis.yaml";
+constexpr double kRoom = 0.01;  ///< s, of the delay between two clocks, to either side
 constexpr const char* kOnlyRatios = "a motion shows only ratios to it";
 
 /// The line by which editors find the schema that the Debian package installs.
@@ -175,6 +176,7 @@ class Initialiser {
     if (axis_.empty()) start_axis();
     list_candidates();
     choose_free();
+    if (axis_.empty()) try_delay();
     collect_guesses();
     return {files(), std::move(guesses_)};
   }
@@ -277,16 +279,17 @@ class Initialiser {
         kForceInputs, [&](const Input& i) { return has_input(driver->guess, i); });
     GuessedColumn column = *driver->guess.find(input->kind, input->is_setpoint);
     const GuessedColumn& clock = driver->guess.time;
-    const double offset = best_offset(*motion, clock.values, column.values);
+    // Early enough that the delay has room to either side.
+    const double offset = best_offset(*motion, clock.values, column.values) - kRoom;
     motion->input_file = driver->file;
     motion->input_offset = offset;
     column.clock = clock.column;
     column.clock_unit = clock.unit;
     column.values = at_times(motion->guess.time.values, clock.values, column.values, offset);
-    column.reasons.push_back(
-        fmt::format("from {}, whose clock was set {:.6g} s {}, where the force goes best with the "
-                    "acceleration; the delay T_d, which is free, does the rest",
-                    driver->name, std::abs(offset), offset < 0.0 ? "back" : "forward"));
+    column.reasons.push_back(fmt::format(
+        "from {}, whose clock was set {:.6g} s {}: a little before the force goes best with "
+        "the acceleration; the delay T_d, which is free, does the rest",
+        driver->name, std::abs(offset), offset < 0.0 ? "back" : "forward"));
     column.guessed = true;
     motion->guess.columns.push_back(std::move(column));
     joined_ = true;
@@ -531,7 +534,6 @@ class Initialiser {
     const auto bounds = [](double lower, double upper, std::string_view unit) {
       return fmt::format("{{bounds: [{}, {}]}}", with_unit(lower, unit), with_unit(upper, unit));
     };
-    if (joined_) add("T_d");
     for (const std::string& name : kCandidates) {
       const Quantity& q = find_quantity(name)->quantity;
       add(name, any_gain ? bounds(std::max(q.lower, 1e-3), q.upper, q.unit) : "{}");
@@ -548,6 +550,7 @@ class Initialiser {
       add(entry.name, force ? bounds(entry.quantity.lower < 0.0 ? -most : 0.0, most, "N") : "{}");
     }
     if (starter_ && !force_source()) add("K_1");
+    if (joined_) add_delay();
     // An encoder that rounds down reads half a step low.
     const RecordingGuess& first = sources_.front().guess;
     const GuessedColumn* position = first.find(Kind::position);
@@ -558,6 +561,42 @@ class Initialiser {
     if (!force_source() || std::ranges::any_of(sources_, drives_in_newtons)) return;
     add("K_f");
     if (starter_) candidates_.back().reason_not_free = kOnlyRatios;
+  }
+
+  /// The motion is often logged a sample or two after what drives it, which a fit without a delay
+  /// takes for a smaller force. Free where two fits show that.
+  void try_delay() {
+    constexpr std::size_t kMostSamples = 50000;
+    const std::vector<double>& times = sources_.front().guess.time.values;
+    if (!force_source() || joined_ || times.size() > kMostSamples) return;
+    const auto fitted = [&] {
+      Job job = read_job();
+      job.options.starts = 1;
+      return estimate(job);
+    };
+    const FitResult without = fitted();
+    add_delay();
+    const FitResult with = fitted();
+    constexpr double kLeastFall = 2.0, kLeastSamples = 0.5;
+    const double delay = with.parameters.back().value;
+    if (with.status == Status::converged && delay > kLeastSamples * sampling(times).interval &&
+        kLeastFall * with.reduced_chi_square < without.reduced_chi_square) {
+      guesses_.push_back(
+          fmt::format("T_d is free: the motion follows what drives it by {:.2g} ms, with which the "
+                      "chi-square falls from {:.3g} to {:.3g}; it is the time lag of drive or log",
+                      1e3 * delay, without.reduced_chi_square, with.reduced_chi_square));
+    } else {
+      candidates_.pop_back();
+    }
+  }
+
+  /// Two clocks may differ to either side.
+  void add_delay() {
+    const double interval = sampling(sources_.front().guess.time.values).interval;
+    const double initial = joined_ ? kRoom : round_to_digits(interval, 2);
+    const double most = joined_ ? 2.0 * kRoom : round_to_digits(20.0 * interval, 2);
+    candidates_.push_back({"T_d", fmt::format("{{initial: {}, bounds: [0 s, {}]}}",
+                                              with_unit(initial, "s"), with_unit(most, "s"))});
   }
 
   /// Whether the noise of a position is below the steps of its encoder, while a velocity tells of
