@@ -173,6 +173,7 @@ class Initialiser {
     choose_inputs();
     drop_recordings_without_input();
     correct_signs();
+    drop_idle_velocities();
     if (axis_.empty()) start_axis();
     list_candidates();
     choose_free();
@@ -215,8 +216,8 @@ class Initialiser {
   /// Whether the job compares the model with the column, unless it drives it.
   bool is_measured(const GuessedColumn& c) const {
     const auto signal = signal_of(c.kind);
-    return signal && !c.is_setpoint && !c.is_constant() && has_signal(*signal, structure_) &&
-           !(force_source() && c.kind == Kind::force);
+    return signal && !c.idle && !c.is_setpoint && !c.is_constant() &&
+           has_signal(*signal, structure_) && !(force_source() && c.kind == Kind::force);
   }
 
   void add(const std::string& path) {
@@ -482,6 +483,20 @@ class Initialiser {
     return found ? std::optional(found->correlation) : std::nullopt;
   }
 
+  /// Of a force source, whose simulation follows the recording.
+  void drop_idle_velocities() {
+    if (!force_source()) return;
+    for (Source& source : sources_) {
+      RecordingGuess& guess = source.guess;
+      const GuessedColumn& input = input_of(source);
+      const GuessedColumn* velocity = guess.find(Kind::velocity);
+      if (velocity == &input || !is_velocity_idle(guess, input.values)) continue;
+      GuessedColumn& idle = *guess.find(Kind::velocity);
+      idle.idle = true;
+      idle.reasons.push_back("not used: the position tells the same more precisely");
+    }
+  }
+
   /// A column has one sign in all recordings. It is turned if some clearly say so and none clearly
   /// the contrary; what is not clear is asked. A force that nobody recorded, such as that of
   /// gravity on a joint, can look like a wrong sign.
@@ -702,6 +717,11 @@ class Initialiser {
     std::vector<std::string> unused = guess.unused;
     for (const GuessedColumn& c : guess.columns) {
       if (&c == &input) continue;
+      if (c.idle) {
+        text += reasons_text(c, 6) + fmt::format("      # {}: {}\n", info(*signal_of(c.kind)).name,
+                                                 column_map(c, c.unit));
+        continue;
+      }
       if (!is_measured(c)) {
         unused.push_back(c.column);
         continue;
@@ -771,6 +791,20 @@ class Initialiser {
                        with_unit(position->values.front(), "m"));
   }
 
+  /// Whether the velocity says less than the position, over the time in which an observer follows
+  /// them: then the simulation would follow its noise. Drives often compute it from the position.
+  static bool is_velocity_idle(const RecordingGuess& recording, const std::vector<double>& input) {
+    const GuessedColumn *position = recording.find(Kind::position),
+                        *velocity = recording.find(Kind::velocity);
+    if (position == nullptr || velocity == nullptr) return false;
+    const double rate = suggested_observer_gain(recording.time.values, position->values, {}, input);
+    // The slope of a line through the positions of that time, beside the mean of the velocities.
+    constexpr double kSlope = 3.46, kClear = 2.0;
+    const double noise = std::max(noise_from_differences(position->values),
+                                  resolution_of(position->values) / kSlope);
+    return noise_from_differences(velocity->values) > kClear * kSlope * noise * rate;
+  }
+
   std::string fit_text() const {
     // A mass that a force drives is an open integral: free running it drifts away from the
     // recording whatever the fit.
@@ -779,9 +813,9 @@ class Initialiser {
                         *velocity = first.find(Kind::velocity);
     if (!force_source() || position == nullptr) return {};
     const std::vector<double> none;
-    const double rate = suggested_observer_gain(first.time.values, position->values,
-                                                velocity ? velocity->values : none,
-                                                input_of(sources_.front()).values);
+    const double rate = suggested_observer_gain(
+        first.time.values, position->values, velocity && !velocity->idle ? velocity->values : none,
+        input_of(sources_.front()).values);
     return "fit:\n" +
            comment(
                "The position is an open-loop integral of the force: a free-running simulation "

@@ -22,6 +22,7 @@ struct GuessedColumn {
   bool of_rating = false;            ///< in per cent of a rating, whatever `unit` says
   bool negative = false;             ///< its sign is to be turned
   std::vector<std::string> reasons;  ///< what was measured, sentences without a full stop
+  bool idle = false;                 ///< told by another one, and more precisely
   bool guessed = false;              ///< something of it neither name nor measurement says
   std::vector<double> values;        ///< in the SI unit of its kind, at the times of the recording
   std::string clock;                 ///< column of times of its own; empty: those of the recording

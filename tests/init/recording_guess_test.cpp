@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "tests/apps/files.h"
@@ -52,6 +53,59 @@ TEST(RecordingGuessTest, ATimeHasTheUnitThatPositionAndVelocityTell) {
   EXPECT_EQ(guess.time.unit, "us");
   EXPECT_FALSE(guess.time.guessed);
   EXPECT_NEAR(guess.time.values[100], 0.5, 1e-12);
+}
+
+TEST(RecordingGuessTest, AnAnswerComesBeforeNamesAndValues) {
+  const TempFolder folder;
+  Table table = swing(1.0, 1.0);
+  table.columns[1].name = "Status";
+  const std::string path = folder.write("a.csv", table);
+  const auto position = [&](const std::string& answer) {
+    const RecordingGuess guess = guess_recording(RecordingFile(path), path, {read_answer(answer)});
+    return *guess.find(Kind::position);
+  };
+  for (const char* answer : {"position=Status:um/8", "position=2:um/8"}) {
+    const GuessedColumn found = position(answer);
+    EXPECT_EQ(found.column, "Status");
+    EXPECT_EQ(found.unit, "um");
+    EXPECT_EQ(found.factor, 0.125);
+    EXPECT_FALSE(found.guessed);
+  }
+  EXPECT_DOUBLE_EQ(position("position=2:deg*0.5").factor, 0.5 * std::numbers::pi / 180.0);
+}
+
+TEST(ReadAnswer, SaysWhatIsWrong) {
+  const auto refusal = [](const char* text) {
+    try {
+      read_answer(text);
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  const std::string how =
+      "; write SIGNAL=COLUMN:UNIT, such as position=3:mm, position=\"Geber [Ink]:um/8\" or "
+      "force=Torque:N*0.2";
+  EXPECT_EQ(refusal("position=x"),
+            "--column position=x: the signal, the column or the unit is missing" + how);
+  EXPECT_EQ(refusal("positon=x:mm").find("--column positon=x:mm: there is no signal 'positon'"),
+            0u);
+  EXPECT_EQ(refusal("force=x:N*0"),
+            "--column force=x:N*0: the factor must be a number other than zero" + how);
+  EXPECT_NE(refusal("force=x:mm").find("--column force=x:mm: "), std::string::npos);
+  EXPECT_EQ(refusal("velocity=a: b:mm/s"), "none");
+}
+
+TEST(RecordingGuessTest, ValuesTellWhatHasNoName) {
+  const RecordingFile file(AXISFIT_TESTDATA "/drives/headerless.txt");
+  const RecordingGuess guess = guess_recording(file, "headerless.txt");
+  EXPECT_EQ(guess.time.column, "1");
+  EXPECT_EQ(guess.find(Kind::command)->column, "2");
+  EXPECT_EQ(guess.find(Kind::position)->column, "3");
+  EXPECT_EQ(guess.find(Kind::position)->unit, "mm");
+  EXPECT_EQ(guess.find(Kind::velocity)->column, "4");
+  EXPECT_EQ(guess.find(Kind::velocity)->unit, "mm/s");
+  EXPECT_TRUE(guess.find(Kind::position)->guessed);
 }
 
 }  // namespace

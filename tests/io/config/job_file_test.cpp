@@ -646,6 +646,43 @@ TEST_F(JobFileTest, MatAndCsvGiveTheSameJob) {
   EXPECT_EQ(a.measurements.front().sigma, b.measurements.front().sigma);
 }
 
+TEST_F(JobFileTest, SignalsKeepTheirClocks) {
+  std::string fast = "t,u\n", slow = "t;x;v\n";
+  for (int i = 0; i < 40; ++i) fast += fmt::format("{},{}\n", 0.01 * i, i % 2);
+  for (int i = 0; i < 15; ++i)
+    slow += fmt::format("{};{};{}\n", 0.02 * i, 0.1 * i, i == 4 ? "" : std::to_string(i));
+  folder_.write("fast.csv", fast);
+  folder_.write("slow.csv", slow);
+  const Recording recording = read(R"(axis: mass.yaml
+recordings:
+  - file: fast.csv
+    time: {column: t, unit: s}
+    signals:
+      command: {column: u, unit: V}
+      position: {column: x, unit: m, file: slow.csv, offset: 5 ms, sigma: 1 mm}
+      velocity: {column: v, unit: m/s, file: slow.csv, time: {column: 1, unit: s}, sigma: 1 mm/s}
+free:
+  M: {}
+)")
+                                  .job.recordings[0];
+  // Both clocks of what was measured, while the input is known.
+  ASSERT_EQ(recording.times.size(), 29u);
+  EXPECT_EQ(recording.command.times.size(), 40u);
+  const Measurement &position = *recording.find(Signal::position),
+                    &velocity = *recording.find(Signal::velocity);
+  std::size_t positions = 0, velocities = 0;
+  for (std::size_t i = 0; i < recording.times.size(); ++i) {
+    const double t = recording.times[i];
+    EXPECT_NE(position.counts(i), velocity.counts(i) || std::abs(t - 0.08) < 1e-9);
+    positions += position.counts(i);
+    velocities += velocity.counts(i);
+    // Between its samples a signal is on a curve through them.
+    EXPECT_NEAR(position.values[i], std::clamp(5.0 * (t - 0.005), 0.0, 1.4), 1e-12);
+  }
+  EXPECT_EQ(positions, 15u);
+  EXPECT_EQ(velocities, 14u);
+}
+
 TEST_F(JobFileTest, MatFilesMayHoldColumnsThatDoNotFit) {
   const std::string text = replaced(kJob, "data.csv", "data.mat");
   Data data;
