@@ -78,6 +78,9 @@ void add_configs(Seeds& seeds, const fs::path& project) {
                 together({{"axis.yaml", contents_of(axis)}, {"motion.yaml", contents_of(motion)}}));
   InputFiles recordings;
   for (const auto& entry : fs::recursive_directory_iterator(project / "testdata")) {
+    for (const char* format : {"mcap", "xlsx"})
+      if (entry.path().extension() == std::string(".") + format)
+        seeds.add(format, contents_of(entry));
     if (entry.path().extension() != ".csv") continue;
     constexpr int kLines = 30;
     const std::string all = contents_of(entry);
