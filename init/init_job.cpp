@@ -49,8 +49,8 @@ std::string scalar(const std::string& text) {
 
 /// "{column: time_s, unit: s}"
 std::string column_map(const GuessedColumn& column, const std::string& unit,
-                       const std::string& more = {}, const std::string& file = {},
-                       double offset = 0.0) {
+                       const std::pair<std::string, std::string>& more = {},
+                       const std::string& file = {}, double offset = 0.0) {
   YAML::Emitter out;
   out << YAML::Flow << YAML::BeginMap << YAML::Key << "column" << YAML::Value << column.column
       << YAML::Key << "unit" << YAML::Value << unit;
@@ -64,7 +64,7 @@ std::string column_map(const GuessedColumn& column, const std::string& unit,
         << column.clock_unit << YAML::EndMap;
   if (offset != 0.0)
     out << YAML::Key << "offset" << YAML::Value << with_unit(round_to_digits(offset, 6), "s");
-  if (!more.empty()) out << YAML::Key << more << YAML::Value << "false";
+  if (!more.first.empty()) out << YAML::Key << more.first << YAML::Value << more.second;
   out << YAML::EndMap;
   return out.c_str();
 }
@@ -136,6 +136,8 @@ struct Source {
   std::optional<Input> input;
   std::string input_file = {};  ///< of what drives the axis, where it is not `file`
   double input_offset = 0.0;    ///< s, added to the times of that
+  /// Whether what drives the axis goes better if each value holds, although it was measured.
+  bool is_held = false;
 };
 
 /// A quantity that the job may free.
@@ -177,7 +179,7 @@ class Initialiser {
     if (axis_.empty()) start_axis();
     list_candidates();
     choose_free();
-    if (axis_.empty()) try_delay();
+    if (axis_.empty()) try_timing();
     collect_guesses();
     return {files(), std::move(guesses_)};
   }
@@ -280,17 +282,16 @@ class Initialiser {
         kForceInputs, [&](const Input& i) { return has_input(driver->guess, i); });
     GuessedColumn column = *driver->guess.find(input->kind, input->is_setpoint);
     const GuessedColumn& clock = driver->guess.time;
-    // Early enough that the delay has room to either side.
-    const double offset = best_offset(*motion, clock.values, column.values) - kRoom;
+    const double offset = best_offset(*motion, clock.values, column.values);
     motion->input_file = driver->file;
     motion->input_offset = offset;
     column.clock = clock.column;
     column.clock_unit = clock.unit;
     column.values = at_times(motion->guess.time.values, clock.values, column.values, offset);
-    column.reasons.push_back(fmt::format(
-        "from {}, whose clock was set {:.6g} s {}: a little before the force goes best with "
-        "the acceleration; the delay T_d, which is free, does the rest",
-        driver->name, std::abs(offset), offset < 0.0 ? "back" : "forward"));
+    column.reasons.push_back(
+        fmt::format("from {}, whose clock was set {:.6g} s {}: there the force goes best with the "
+                    "acceleration; the delay T_d, which is free, does the rest",
+                    driver->name, std::abs(offset), offset < 0.0 ? "back" : "forward"));
     column.guessed = true;
     motion->guess.columns.push_back(std::move(column));
     joined_ = true;
@@ -578,9 +579,10 @@ class Initialiser {
     if (starter_) candidates_.back().reason_not_free = kOnlyRatios;
   }
 
-  /// The motion is often logged a sample or two after what drives it, which a fit without a delay
-  /// takes for a smaller force. Free where two fits show that.
-  void try_delay() {
+  /// A drive that holds its current for a sample is not what a straight line between samples says.
+  /// The motion is often logged a sample or two after what drives it, or before, which a fit
+  /// without a delay takes for a smaller force. Each as short fits show it.
+  void try_timing() {
     constexpr std::size_t kMostSamples = 50000;
     const std::vector<double>& times = sources_.front().guess.time.values;
     if (!force_source() || joined_ || times.size() > kMostSamples) return;
@@ -589,29 +591,51 @@ class Initialiser {
       job.options.starts = 1;
       return estimate(job);
     };
-    const FitResult without = fitted();
+    constexpr double kLeastFall = 2.0, kLeastSamples = 0.5;
+    FitResult without = fitted();
+    const auto hold_inputs = [&](bool hold) {
+      for (Source& source : sources_) source.is_held = hold;
+    };
+    if (std::ranges::any_of(sources_, is_measured_input)) {
+      hold_inputs(true);
+      FitResult held = fitted();
+      if (held.status == Status::converged &&
+          kLeastFall * held.reduced_chi_square < without.reduced_chi_square)
+        without = std::move(held);
+      else
+        hold_inputs(false);
+    }
     add_delay();
     const FitResult with = fitted();
-    constexpr double kLeastFall = 2.0, kLeastSamples = 0.5;
     const double delay = with.parameters.back().value;
-    if (with.status == Status::converged && delay > kLeastSamples * sampling(times).interval &&
+    if (with.status == Status::converged &&
+        std::abs(delay) > kLeastSamples * sampling(times).interval &&
         kLeastFall * with.reduced_chi_square < without.reduced_chi_square) {
       guesses_.push_back(
-          fmt::format("T_d is free: the motion follows what drives it by {:.2g} ms, with which the "
+          fmt::format("T_d is free: the motion {} what drives it by {:.2g} ms, with which the "
                       "chi-square falls from {:.3g} to {:.3g}; it is the time lag of drive or log",
-                      1e3 * delay, without.reduced_chi_square, with.reduced_chi_square));
+                      delay > 0.0 ? "follows" : "is logged before", 1e3 * std::abs(delay),
+                      without.reduced_chi_square, with.reduced_chi_square));
     } else {
       candidates_.pop_back();
     }
   }
 
+  /// Whether what drives the axis was measured, not commanded.
+  static bool is_measured_input(const Source& source) {
+    const GuessedColumn& input = input_of(source);
+    return !input.is_setpoint && (input.kind == Kind::current || input.kind == Kind::force ||
+                                  input.kind == Kind::motor_voltage);
+  }
+
   /// Two clocks may differ to either side.
   void add_delay() {
     const double interval = sampling(sources_.front().guess.time.values).interval;
-    const double initial = joined_ ? kRoom : round_to_digits(interval, 2);
-    const double most = joined_ ? 2.0 * kRoom : round_to_digits(20.0 * interval, 2);
-    candidates_.push_back({"T_d", fmt::format("{{initial: {}, bounds: [0 s, {}]}}",
-                                              with_unit(initial, "s"), with_unit(most, "s"))});
+    const double initial = joined_ ? 0.0 : round_to_digits(interval, 2);
+    const double most = joined_ ? kRoom : round_to_digits(20.0 * interval, 2);
+    candidates_.push_back(
+        {"T_d", fmt::format("{{initial: {}, bounds: [-{}, {}]}}", with_unit(initial, "s"),
+                            with_unit(most, "s"), with_unit(most, "s"))});
   }
 
   /// Whether the noise of a position is below the steps of its encoder, while a velocity tells of
@@ -734,8 +758,9 @@ class Initialiser {
                         "carries the same information",
                         resolution_of(c.values)));
       text += reasons_text(written, 6);
-      text += fmt::format("      {}: {}\n", info(*signal_of(c.kind)).name,
-                          column_map(c, c.unit, compared ? "fit" : ""));
+      text +=
+          fmt::format("      {}: {}\n", info(*signal_of(c.kind)).name,
+                      compared ? column_map(c, c.unit, {"fit", "false"}) : column_map(c, c.unit));
     }
     if (!unused.empty()) text += comment(fmt::format("Not used: {}", fmt::join(unused, ", ")), 4);
     return text;
@@ -762,9 +787,22 @@ class Initialiser {
             "the command of a force source; a job treats it as V, whatever its unit, and K_f as "
             "N/V");
     }
+    std::pair<std::string, std::string> hold;
+    const bool in_newtons = drives_in_newtons(source), is_measured = is_measured_input(source);
+    if (is_measured && source.is_held) {
+      if (in_newtons) hold = {"hold", "zero_order"};
+      written.reasons.push_back(
+          "each value holds until the next: so the motion goes better with it");
+    } else if (is_measured && !in_newtons) {
+      hold = {"hold", "linear"};
+      written.reasons.push_back("measured: between samples it goes straight from one to the next");
+    } else if (!is_measured && in_newtons) {
+      hold = {"hold", "zero_order"};
+      written.reasons.push_back("commanded: each value holds until the next");
+    }
     return reasons_text(written, 6) +
            fmt::format("      {}: {}\n", source.input->key,
-                       column_map(written, unit, {}, source.input_file, source.input_offset));
+                       column_map(written, unit, hold, source.input_file, source.input_offset));
   }
 
   /// A recording that begins at rest needs no more than where; another one its first samples.

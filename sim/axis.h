@@ -71,7 +71,7 @@ void visit_axis(AxisOfT& a, Visitor&& visit) {
   visit(Q{"w", "m/s", "speed above which F_s vanishes", 1e-6, 1, 0.002}, a.w);
   visit(Q{"K_v", "V/V", "power-unit forward gain", 10, 1e6, kRequired, velocity_loop}, a.K_v);
   visit(Q{"K_f", "N/V", "force per drive signal", 1e-6, 1e9, kRequired, force_source}, a.K_f);
-  visit(Q{"T_d", "s", "dead time of the command", 0, 1, 0.0}, a.T_d);
+  visit(Q{"T_d", "s", "dead time of the command", -1, 1, 0.0}, a.T_d);
 }
 
 }  // namespace axisfit

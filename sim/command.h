@@ -1,25 +1,40 @@
-// The input of the axis: a set-velocity voltage that is constant between switching instants.
+// The input of the axis: a set-velocity voltage, as it was commanded or measured.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "base/samples.h"
 
 namespace axisfit {
 
-/// A piecewise constant command: `values[k]` (V) from `times[k]` (s) on, later by the delay T_d of
-/// the axis. Before the first instant the command is zero.
+/// What the input does between two of its values.
+enum class Hold {
+  zero_order,  ///< keeps the first: as what is commanded
+  linear,      ///< goes straight to the second: as what is measured
+};
+
+/// A command of `values[k]` (V) from `times[k]` (s) on, later by the dead time T_d of the axis.
+/// Before the first instant it is zero, or if linear the first value; behind the last, the last.
 struct Schedule {
   Samples times;  ///< increasing
   Samples values;
+  Hold hold = Hold::zero_order;
 
   void append(double time, double value) {
     times.edit().push_back(time);
     values.edit().push_back(value);
   }
+  /// V/s, from the instant k to the next one.
+  double slope_after(std::size_t k) const {
+    if (hold == Hold::zero_order || k + 1 >= times.size()) return 0.0;
+    return (values[k + 1] - values[k]) / (times[k + 1] - times[k]);
+  }
 };
 
-/// The schedule of a command column: one entry wherever the value changes.
-Schedule schedule_from_samples(const std::vector<double>& times, const std::vector<double>& values);
+/// The schedule of a command column: one entry wherever the value changes; if linear, but for the
+/// inner ones of three that are equal.
+Schedule schedule_from_samples(const std::vector<double>& times, const std::vector<double>& values,
+                               Hold hold = Hold::zero_order);
 
 }  // namespace axisfit

@@ -33,6 +33,8 @@ Schedule simulate_controlled(
     const IntegratorOptions& options) {
   const ControllerSettings& settings = unit.settings();
   Schedule written;
+  // A dead time below zero is that of a log, not of a machine.
+  const double dead_time = std::max(0.0, model.axis.T_d);
   Integrator<double> axis(model, {}, options);
   const double start = times.front();
   axis.start(start, 0.0, {});
@@ -43,7 +45,7 @@ Schedule simulate_controlled(
       const double sampling = start + static_cast<double>(n) * settings.period;
       const double acting = written.times.size() == static_cast<std::size_t>(n)
                                 ? sampling
-                                : written.times.back() + model.axis.T_d;
+                                : written.times.back() + dead_time;
       if (!(acting < times[i])) break;
       if (!axis.advance_to(acting)) return written;
       if (written.times.size() == static_cast<std::size_t>(n)) {  // time to sample
@@ -51,7 +53,7 @@ Schedule simulate_controlled(
         written.append(sampling, unit.sample(n, encoder_reading(position, model.axis.r_g,
                                                                 settings.counts_per_revolution)));
       }
-      if (written.times.back() + model.axis.T_d <= value_of(axis.time())) {  // time to act
+      if (written.times.back() + dead_time <= value_of(axis.time())) {  // time to act
         axis.set_command(written.values.back());
         ++n;
       }

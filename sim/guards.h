@@ -38,8 +38,10 @@ class LinearGuards {
 
   /// `a`, `b`: A and B of the mode.
   LinearGuards(const Equations<double>& equations, const Mode& mode, const Matrix<double>& a,
-               const PerInput<State<double>>& b)
-      : states_used_(equations.states()), has_observer_(equations.observer().active()) {
+               const PerInput<State<double>>& b, const RampList& ramps)
+      : states_used_(equations.states()),
+        has_observer_(equations.observer().active()),
+        ramps_(ramps) {
     const auto read = [&](const State<double>& y, const Input<double>& input, Form& form) {
       count_ = 0;
       equations.visit_guards(mode, y, input,
@@ -67,8 +69,9 @@ class LinearGuards {
 
   std::size_t count() const { return count_; }
   std::size_t states() const { return states_used_; }
+  const RampList& ramps() const { return ramps_; }
 
-  /// Without tolerances. `slope`: of the target, per second.
+  /// Without tolerances. `slope`: of the ramps, per second.
   GuardValues guard_values(const State<double>& y, const Input<double>& input,
                            const Slopes& slope) const {
     Form sum = inputs_[kConstantInput];
@@ -77,8 +80,8 @@ class LinearGuards {
     if (has_observer_) {
       add(sum, input.target.velocity, inputs_[kTargetVelocityInput]);
       add(sum, input.target.position, inputs_[kTargetPositionInput]);
-      for (std::size_t r = 0; r < kRamps; ++r) add_ramp(sum, slope[r], r, 0.0);
     }
+    for (const std::size_t ramp : ramps_) add_ramp(sum, slope[ramp], ramp, 0.0);
     GuardValues seen;
     seen.count = count_;
     for (std::size_t i = 0; i < count_; ++i) seen.nodes[i] = {sum[i], sum[count_ + i], 0.0};
@@ -91,9 +94,9 @@ class LinearGuards {
     for (std::size_t j = 0; j < states_used_; ++j) add(sum, d[j], states_[j]);
     return sum;
   }
-  /// What a ramp of the target that has risen for t seconds does to sum, at `factor` per second.
+  /// What a ramp that has risen for t seconds does to sum, at `factor` per second.
   void add_ramp(Form& sum, double factor, std::size_t ramp, double t) const {
-    const Form& form = inputs_[kTargetVelocityInput + ramp];
+    const Form& form = inputs_[kCommandInput + ramp];
     add(sum, factor * t, form);
     for (std::size_t i = 0; i < count_; ++i) sum[count_ + i] += factor * form[i];
   }
@@ -105,6 +108,7 @@ class LinearGuards {
 
   std::size_t states_used_;
   bool has_observer_;
+  RampList ramps_;
   std::size_t count_ = 0;
   std::array<Form, kStates> states_{};
   PerInput<Form> inputs_{};
@@ -198,11 +202,13 @@ class GuardCourse {
 /// The linear forms of all guards at the instants that divide a step into 2^halvings parts.
 class GuardForms {
  public:
-  GuardForms(const LinearGuards& guards, Propagator<double>& propagator, int level, int halvings,
-             bool has_observer)
-      : guards_(guards.count()), states_(guards.states()), inner_((1U << halvings) - 1U) {
+  GuardForms(const LinearGuards& guards, Propagator<double>& propagator, int level, int halvings)
+      : guards_(guards.count()),
+        states_(guards.states()),
+        inner_((1U << halvings) - 1U),
+        ramps_(guards.ramps()) {
     const double part = propagator.step_levels().length(level + halvings);
-    columns_.reserve((states_ + kRamps) * inner_ * 2 * guards_);
+    columns_.reserve((states_ + ramps_.size()) * inner_ * 2 * guards_);
     const auto keep = [&](const LinearGuards::Form& form) {
       columns_.insert(columns_.end(), form.begin(),
                       form.begin() + static_cast<std::ptrdiff_t>(2 * guards_));
@@ -220,16 +226,16 @@ class GuardForms {
         keep(form);
       }
     }
-    for (std::size_t r = 0; has_observer && r < kRamps; ++r) {
+    for (const std::size_t ramp : ramps_) {
       State<double> d{};
       Slopes slope{};
-      slope[r] = 1.0;
+      slope[ramp] = 1.0;
       for (std::size_t k = 1; k <= inner_; ++k) {
         State<double> f = propagator.a_times(d);
         propagator.add_ramps(f, slope, part * static_cast<double>(k - 1));
         d = propagator.advance(d, f, slope, level + halvings);
         LinearGuards::Form form = guards.change(d);
-        guards.add_ramp(form, 1.0, r, part * static_cast<double>(k));
+        guards.add_ramp(form, 1.0, ramp, part * static_cast<double>(k));
         keep(form);
       }
     }
@@ -253,12 +259,12 @@ class GuardForms {
       column += size;
     };
     for (std::size_t j = 0; j < states_; ++j) add(f[j]);
-    if (columns_.size() > states_ * size)
-      for (const double s : slope) add(s);
+    for (const std::size_t ramp : ramps_) add(slope[ramp]);
   }
 
  private:
   std::size_t guards_, states_, inner_;
+  RampList ramps_;
   std::vector<double> columns_;  // by components of f, then by ramps
 };
 

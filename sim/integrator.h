@@ -46,6 +46,8 @@ struct IntegratorOptions {
   /// s. Between the instants to which the integration will be advanced, if they are even; else
   /// about. Steps are a fraction of it. Zero: not known, steps are `step`.
   double interval = 0.0;
+  /// Whether the command runs linearly between its switches.
+  bool has_command_ramp = false;
   /// Whether event times carry derivatives. Off only to show what that is worth.
   bool event_derivatives = true;
   /// Events within one step length before the simulation is given up as chattering.
@@ -70,7 +72,7 @@ class Integrator {
         equations_(model_, observer),
         plain_(plain_model_, observer, equations_.parts()),
         step_(longest_step()),
-        bounded_(has_observer() ? level_of(step_ / options.step - 1e-9) : 0) {}
+        bounded_(has_ramps() ? level_of(step_ / options.step - 1e-9) : 0) {}
 
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
@@ -80,6 +82,7 @@ class Integrator {
     y_ = initial_state(model_);
     input_ = {command, {T(target.velocity), T(target.position)}, T(time), {}};
     slope_ = {};
+    command_slope_ = 0.0;
     equations_.begin(y_, input_);
     copy_plain_input();
     switch_mode(equations_.mode_at(y_, input_));
@@ -90,6 +93,15 @@ class Integrator {
     input_.command = command;
     copy_plain_input();
     switch_mode(equations_.switched(mode_, y_, input_));
+  }
+
+  /// From now on the command goes on from where it is, within rounding, with the rate `slope` per
+  /// second. Needs IntegratorOptions::has_command_ramp.
+  void set_command_ramp(const T& command, double slope) {
+    input_.command = command;
+    command_slope_ = slope;
+    copy_plain_input();
+    here_.reset();
   }
 
   /// From now on the observer's target is `target` and moves with the rate `slope` per second.
@@ -157,7 +169,14 @@ class Integrator {
   bool has_observer() const { return equations_.observer().active(); }
   bool affine() const { return !equations_.has_smooth_forces(); }
   /// Whether nothing but switches and events sets anything off.
-  bool is_undisturbed() const { return affine() && !has_observer(); }
+  bool is_undisturbed() const { return affine() && !has_ramps(); }
+  bool has_ramps() const { return has_observer() || options_.has_command_ramp; }
+  RampList ramps() const {
+    RampList list;
+    if (options_.has_command_ramp) list.push_back(0);
+    if (has_observer()) list.insert(list.end(), {1, 2});
+    return list;
+  }
   const StepLevels& step_levels() const { return flow_->system.plain.step_levels(); }
 
   void copy_plain_input() {
@@ -175,6 +194,7 @@ class Integrator {
   Input<S> moved(Input<S> input, const U& length) const {
     input.time += length;
     input.target.move(slope_, length);
+    if (options_.has_command_ramp) input.command += command_slope_ * length;
     return input;
   }
 
@@ -196,8 +216,8 @@ class Integrator {
     return 0;
   }
   /// Level of the longest stretch between two looks at the guards: one radian to either side of its
-  /// middle, where they are looked at too. The target of an axis with an observer turns at every
-  /// sample and sets off what a longer one does not see.
+  /// middle, where they are looked at too. The target of an axis with an observer, or a command
+  /// that was measured, turns at every sample and sets off what a longer one does not see.
   int check_level() const { return std::max(bounded_, resolving_level() - 2); }
   /// Level of the longest step: of few stretches where these are parts of a step, else of one.
   int step_level() const {
@@ -227,8 +247,7 @@ class Integrator {
       return f;
     }
   }
-  /// Of the observer's target, in the order of the propagator's ramps.
-  Slopes slopes() const { return {slope_.velocity, slope_.position}; }
+  Slopes slopes() const { return {command_slope_, slope_.velocity, slope_.position}; }
 
   /// From the state y with the rate f.
   template <class S>
@@ -297,6 +316,7 @@ class Integrator {
   Input<T> input_;
   Input<double> plain_input_;
   Target slope_;
+  double command_slope_ = 0.0;  // V/s
   Flow* flow_ = nullptr;
   int level_ = 0;  // of the longest step now allowed; falls to 0 as steps grow after an event
   std::optional<GuardValues> here_;  // the guards at the present state, while they are known
@@ -336,9 +356,10 @@ typename Integrator<T>::System& Integrator<T>::system_of(const Mode& mode,
   const double shortest = std::ldexp(options_.step, -12);
   const Matrix<double> plain = axisfit::value_of(a);
   const StepLevels step_levels = step_levels_for(a, step_, level_of(step_ / shortest));
-  const auto ramps = [&]<class S>(const PerInput<State<S>>& b) -> std::vector<State<S>> {
-    if (!has_observer()) return {};
-    return {b[kTargetVelocityInput], b[kTargetPositionInput]};
+  const auto ramps_of = [&]<class S>(const PerInput<State<S>>& b) {
+    std::vector<Ramp<S>> list;
+    for (const std::size_t which : ramps()) list.push_back({which, b[kCommandInput + which]});
+    return list;
   };
   std::vector<std::pair<Oscillation, int>> followed;
   constexpr double kFollowed = 0.5;  // rad
@@ -346,8 +367,8 @@ typename Integrator<T>::System& Integrator<T>::system_of(const Mode& mode,
     followed.emplace_back(o, level_of(o.frequency * step_ / kFollowed, step_levels.last));
   const std::size_t n = equations_.states();
   return systems_
-      .emplace(key, System{plain, Propagator<T>(a, step_levels, ramps(exact_b), n),
-                           Propagator<double>(plain, step_levels, ramps(plain_b), n), followed})
+      .emplace(key, System{plain, Propagator<T>(a, step_levels, ramps_of(exact_b), n),
+                           Propagator<double>(plain, step_levels, ramps_of(plain_b), n), followed})
       .first->second;
 }
 
@@ -358,7 +379,7 @@ typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
   const PerInput<State<double>> plain = input_matrix(plain_, mode);
   System& system = system_of(mode, exact, plain);
   std::optional<LinearGuards> guards;
-  if (affine()) guards.emplace(plain_, mode, system.a, plain);
+  if (affine()) guards.emplace(plain_, mode, system.a, plain, ramps());
   Matrix<T> driven{};
   for (std::size_t c = 0; c < kInputs; ++c)
     for (std::size_t i = 0; i < kStates; ++i) driven[i][c] = exact[c][i];
@@ -426,9 +447,8 @@ Crossing Integrator<T>::try_step(const State<double>& from, int level, double le
       auto forms = flow_->forms.find({level, halvings});
       if (forms == flow_->forms.end())
         forms = flow_->forms
-                    .emplace(
-                        std::pair(level, halvings),
-                        GuardForms(*flow_->guards, now.propagator, level, halvings, has_observer()))
+                    .emplace(std::pair(level, halvings),
+                             GuardForms(*flow_->guards, now.propagator, level, halvings))
                     .first;
       forms->second.follow(*here_, f, slopes(), course);
     }

@@ -8,7 +8,7 @@
 // however stiff A is, and without error where f is zero. Psi and Xi come from their Taylor series
 // at the shortest length and from doubling: with E = exp(hA) - I, E(2h) = 2E + E E, Psi(2h) = 2 Psi
 // + E Psi and Xi(2h) = 2 Xi + E Xi + h Psi. (E = A Psi, but that product cancels badly when A is
-// stiff.) The slope s is a sum of two given vectors r, ramps, or zero, so that Xi is only needed
+// stiff.) The slope s is a sum of given vectors r, ramps, or zero, so that Xi is only needed
 // times these. The matrices of a length are computed when first needed, and all are kept for the
 // location of events, see integrator.h. Literature: N. J. Higham, Functions of Matrices, SIAM 2008,
 // chapter 10.
@@ -142,9 +142,18 @@ StepLevels step_levels_for(const Matrix<T>& a, double step, int least) {
 /// Terms of the series: 1 / 21! is far below rounding.
 inline constexpr int kSeriesTerms = 20;
 
-/// Factors of the ramps in s.
-inline constexpr std::size_t kRamps = 2;
+/// Factors of the ramps in s: of the command, and of the observer's target velocity and position.
+inline constexpr std::size_t kRamps = 3;
 using Slopes = std::array<double, kRamps>;
+/// Which of the ramps there are, in order.
+using RampList = std::vector<std::size_t>;
+
+/// A vector r of s.
+template <class T>
+struct Ramp {
+  std::size_t which = 0;  ///< its factor, in Slopes
+  State<T> direction{};
+};
 
 /// y(t) for a short time, as a polynomial: the Taylor series.
 template <class T>
@@ -164,8 +173,8 @@ struct Series {
 template <class T>
 class Propagator {
  public:
-  /// `a` = df/dy, of which the first n states are in use. `ramps`: the vectors r of s, or none.
-  Propagator(const Matrix<T>& a, const StepLevels& step_levels, std::vector<State<T>> ramps = {},
+  /// `a` = df/dy, of which the first n states are in use.
+  Propagator(const Matrix<T>& a, const StepLevels& step_levels, std::vector<Ramp<T>> ramps = {},
              std::size_t n = kStates)
       : states_(n), step_levels_(step_levels), a_(a), ramps_(std::move(ramps)) {
     const double h = step_levels.length(step_levels.last);
@@ -180,8 +189,8 @@ class Propagator {
     e_ = product(a, psi, n);
     // Xi r = h^2 (I/2 + hA/6 + ...) r
     std::vector<State<T>> xi;
-    for (const State<T>& ramp : ramps_) {
-      State<T> sum{}, next = ramp;
+    for (const Ramp<T>& ramp : ramps_) {
+      State<T> sum{}, next = ramp.direction;
       double factor = 0.5 * h * h;
       for (int k = 3; k <= kSeriesTerms + 2; ++k) {
         add(sum, factor, next);
@@ -204,7 +213,7 @@ class Propagator {
 
   /// f += t times each ramp times its slope
   void add_ramps(State<T>& f, const Slopes& slopes, double t) const {
-    for (std::size_t r = 0; r < ramps_.size(); ++r) add(f, t * slopes[r], ramps_[r]);
+    for (const Ramp<T>& ramp : ramps_) add(f, t * slopes[ramp.which], ramp.direction);
   }
 
   /// y(t + h / 2^level), from f = f(y(t)).
@@ -212,7 +221,8 @@ class Propagator {
     const Length& length = at(level);
     State<T> next = y;
     length.psi.add_product(f, next);
-    for (std::size_t r = 0; r < ramps_.size(); ++r) add(next, slopes[r], length.xi[r]);
+    for (std::size_t r = 0; r < ramps_.size(); ++r)
+      add(next, slopes[ramps_[r].which], length.xi[r]);
     return next;
   }
 
@@ -268,7 +278,7 @@ class Propagator {
       add(xi[r], 1.0, half.xi[r]);
       e.add_product(half.xi[r], xi[r]);
       State<T> psi{};
-      half.psi.add_product(ramps_[r], psi);
+      half.psi.add_product(ramps_[r].direction, psi);
       add(xi[r], h, psi);
     }
     const Matrix<T> psi = grown(psi_);
@@ -296,7 +306,7 @@ class Propagator {
   std::size_t states_;
   StepLevels step_levels_;
   SparseMatrix<T> a_;
-  std::vector<State<T>> ramps_;
+  std::vector<Ramp<T>> ramps_;
   Matrix<T> e_, psi_;            // of the longest length so far
   std::vector<Length> lengths_;  // from the shortest up
 };

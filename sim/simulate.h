@@ -49,7 +49,8 @@ inline IntegratorOptions recording_options(std::span<const double> times, double
 /// increasing).
 ///
 /// A reading precedes a command that switches at the same instant. With an observer, the target
-/// runs linearly between the measured values.
+/// runs linearly between the measured values. A dead time below zero, of a log that is late, is
+/// allowed: the command is all known.
 template <class T, class Read>
 SimulationResult simulate(const Model<T>& model, const Schedule& command,
                           std::span<const double> times, Read&& read, const Observer& observer = {},
@@ -58,15 +59,24 @@ SimulationResult simulate(const Model<T>& model, const Schedule& command,
   SimulationResult simulation_result;
   IntegratorOptions even = options;
   if (times.size() > 1) even.interval = mean_interval(times);
+  const bool linear = command.hold == Hold::linear;
+  even.has_command_ramp = linear;
   Integrator<T> axis(model, observer, even);
   std::size_t next = 0;
-  T in_force(0.0);
+  // What was measured had about its first value before.
+  T in_force(linear && !command.values.empty() ? command.values.front() : 0.0);
   const T delay = axis.command_delay();
   // Commands that acted before the first instant.
   for (; next < command.times.size() && command.times[next] + value_of(delay) < times.front();
        ++next)
     in_force = T(command.values[next]);
+  double slope = 0.0;
+  if (linear && next > 0) {
+    slope = command.slope_after(next - 1);
+    in_force += slope * (times.front() - (command.times[next - 1] + delay));
+  }
   axis.start(times.front(), in_force, measured.at(0));
+  if (linear) axis.set_command_ramp(in_force, slope);
   const auto reaches = [&](const T& instant) {
     const bool reached = axis.advance_to(instant);
     simulation_result.events = axis.events();
@@ -84,7 +94,10 @@ SimulationResult simulate(const Model<T>& model, const Schedule& command,
       const T instant = command.times[next] + delay;
       if (!(value_of(instant) < times[i])) break;
       if (!reaches(instant)) return simulation_result;
-      axis.set_command(T(command.values[next]));
+      if (linear)
+        axis.set_command_ramp(T(command.values[next]), command.slope_after(next));
+      else
+        axis.set_command(T(command.values[next]));
     }
     if (!reaches(T(times[i]))) return simulation_result;
     read(i, axis);

@@ -66,7 +66,8 @@ void add_model(Hash& hash, const Model<double>& model) {
 void add_recording(Hash& hash, const Recording& r) {
   hash << r.role;
   if (r.role != Role::fit) return;
-  hash << r.times << r.command.times << r.command.values << r.held_out << r.overrides.size();
+  hash << r.times << r.command.times << r.command.values << r.command.hold << r.held_out
+       << r.overrides.size();
   for (const auto& [quantity, value] : r.overrides) hash << quantity << value;
   hash << r.measurements.size();
   for (const Measurement& m : r.measurements)

@@ -137,6 +137,7 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
   const std::vector<double> both_signs{-2.0 * scales.interval, 2.0 * scales.interval};
   Candidate dead_time = single("dead_time", "drive", *find_quantity("T_d"));
   dead_time.probes = later(scales);
+  dead_time.probes.push_back(-2.0 * scales.interval);
   add_if_absent(std::move(dead_time));
   for (const SignalInfo& signal : kSignalTable) {
     if (!is_recorded(job, signal.signal)) continue;

@@ -30,6 +30,9 @@ constexpr double kMinSigma = 1e-40;
 /// Of a recording.
 constexpr std::size_t kLeastSamples = 10;
 
+/// How often a value may be recorded.
+constexpr std::int64_t kMostHeld = 100000;
+
 /// Every quantity of the list, as a value that differs from the axis file's.
 Section override_keys() {
   Section keys;
@@ -70,6 +73,15 @@ Section series_keys() {
   return keys;
 }
 
+/// What the input does between its samples.
+Key input_hold_key() {
+  return Key::optional("hold",
+                       Choice{{{"zero_order", "keeps the first: as what is commanded"},
+                               {"linear", "goes straight to the second: as what is measured"}}},
+                       DefaultText{"`zero_order`; of a drive_force `linear`"},
+                       "what it does between two samples");
+}
+
 /// The input and all that can be measured.
 Section signal_keys() {
   const Map column{column_keys(), 0, false, "column"};
@@ -79,9 +91,10 @@ Section signal_keys() {
                                             "other drives"},
                                 "standard deviation of the noise; 0 V: the axis received exactly "
                                 "these values"));
+  input.push_back(input_hold_key());
   Section keys{Key::optional("command", Map{std::move(input), 0, false, "input_column"},
                              DefaultText{"none if another input is given"},
-                             "set-velocity voltage U in V; each value holds until the next sample"),
+                             "set-velocity voltage U, or the input of a force source, in V"),
                Key::optional("position_reference", column, DefaultText{"not used with a command"},
                              "in m, in place of the command: the slave control unit of the axis "
                              "file computes the command from it and the position")};
@@ -99,10 +112,16 @@ Section signal_keys() {
                                      DefaultText{"none"},
                                      "digital filter that the samples went through before they "
                                      "were recorded; the simulated ones go through it too"));
-    measured.push_back(Key::optional("hold", Integer{1, 100000},
-                                     static_cast<double>(Measurement().hold),
-                                     "how often each value is recorded (sample and hold); only "
-                                     "the first of each counts"));
+    const Integer times{1, kMostHeld};
+    constexpr const char* kMeaning =
+        "how often each value is recorded (sample and hold); only the first of each counts";
+    if (signal.signal == Signal::drive_force)
+      measured.push_back(Key::optional("hold", AnyOf{{times, input_hold_key().form}},
+                                       DefaultText{"`1`; of an input `linear`"},
+                                       std::string(kMeaning) + "; of an input as of `command`"));
+    else
+      measured.push_back(
+          Key::optional("hold", times, static_cast<double>(Measurement().hold), kMeaning));
     keys.push_back(Key::optional(
         std::string(signal.name), Map{std::move(measured), 0, false, "measured_column"},
         DefaultText{"not measured"}, fmt::format("{}, in {}", signal.meaning, signal.unit)));
@@ -229,7 +248,7 @@ class RecordingReader {
     Values times = all;
     for (double& t : times) t -= begin;
     recording.times = std::move(times);
-    recording.command = schedule_from_samples(command_times, commands);
+    recording.command = schedule_from_samples(command_times, commands, recording.command.hold);
     if (recording.times.size() < kLeastSamples) {
       say_too_few(trim_node, *input, measured, recording.times.size());
       recording.times = {0.0, 1.0};
@@ -336,6 +355,7 @@ class RecordingReader {
     if (reference && !command) return read_reference(*reference, signals);
     std::optional<Series> input;
     if (force) {
+      recording.command.hold = Hold::linear;
       input = read_noisy_input(*force, "N", recording);
       // The source turns U into K_f U newtons; a force in newtons needs no gain.
       const std::size_t gain = find_quantity("K_f")->index;
@@ -359,6 +379,7 @@ class RecordingReader {
       recording.command_sigma = noise_of_input(input->values);
       recording.command_noise = NoiseSource::differences;
     }
+    map.read("hold", recording.command.hold);
     map.finish();
     return input;
   }
@@ -456,7 +477,9 @@ class RecordingReader {
     auto series = read_series(node, map, signal.unit);
     if (series) keep(trim, *series);
     map.read("fit", measurement.fitted);
-    const auto hold = map.read("hold", measurement.hold);
+    const auto hold = map.optional("hold");
+    if (hold)
+      measurement.hold = static_cast<std::size_t>(hold->as_integer(1, kMostHeld).value_or(1));
     const auto filter = map.optional("filter");
     if (filter)
       measurement.filter = read_filter(*filter, sampling(series ? series->times : Values()));

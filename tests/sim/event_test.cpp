@@ -506,6 +506,56 @@ TEST(Delay, HasMinusTheTimeDerivative) {
   EXPECT_LT(worst, 1e-7);
 }
 
+TEST(LinearCommand, IsIntegratedExactly) {
+  // From -0.1 s on a force of 3 + 40 t, to the corner at 0.25 s, then falling to zero at 0.35 s and
+  // kept there.
+  const Model<double> model = driven_mass(kMass);
+  const Schedule command{{-0.1, 0.25, 0.35}, {-1.0, 13.0, 0.0}, Hold::linear};
+  const auto r = run(model, command, std::vector<double>{0.0, 0.1, 0.2503, 0.35, 0.5});
+  const auto rising = [](double t) { return 3.0 * t + 20.0 * t * t; };
+  const auto falling = [](double t) { return 13.0 * t - 65.0 * t * t; };
+  EXPECT_NEAR(r.states[1][1], rising(0.1) / kMass, 1e-13);
+  EXPECT_NEAR(r.states[1][0], (1.5 * 0.01 + 20.0 / 3.0 * 0.001) / kMass, 1e-13);
+  EXPECT_NEAR(r.states[2][1], (rising(0.25) + falling(0.0003)) / kMass, 1e-13);
+  EXPECT_NEAR(r.states[3][1], (rising(0.25) + falling(0.1)) / kMass, 1e-13);
+  EXPECT_NEAR(r.states[4][1], r.states[3][1], 1e-13);
+}
+
+TEST(LinearCommand, HasItsFirstValueBefore) {
+  const Schedule command{{0.2, 0.3}, {12.0, 0.0}, Hold::linear};
+  const auto r = run(driven_mass(kMass), command, std::vector<double>{0.0, 0.2, 0.3});
+  EXPECT_NEAR(r.states[1][1], 12.0 * 0.2 / kMass, 1e-13);
+  EXPECT_NEAR(r.states[2][1], 12.0 * 0.25 / kMass, 1e-13);
+}
+
+TEST(LinearCommand, BreaksAwayAtTheAnalyticInstant) {
+  // 50 t beyond 20 N at 0.4 s; then m v' = 50 (t - 0.4), with the observer or without.
+  const Model<double> model = rubbing_mass(20.0);
+  Schedule command{{0.0}, {0.0}, Hold::linear};
+  for (int k = 1; k <= 60; ++k) command.append(0.01 * k, 0.5 * k);
+  for (const double t : {0.3, 0.39999}) EXPECT_EQ(state_at(model, command, t)[1], 0.0);
+  for (const double t : {0.41, 0.5, 0.6})
+    EXPECT_NEAR(state_at(model, command, t)[1], 25.0 * (t - 0.4) * (t - 0.4) / kMass, 1e-12) << t;
+}
+
+TEST(LinearCommand, DerivativeByADeadTimeOfEitherSign) {
+  // x'' = F(t - T_d) / m with F = 40 t from zero to 1 s: v = 20 (t - T_d)^2 / m + the first value.
+  using J = ceres::Jet<double, 1>;
+  for (const double delay : {-0.0123, 0.0, 0.0123}) {
+    Model<J> model = convert<J>(driven_mass(kMass));
+    model.axis.T_d = J(delay, 0);
+    Schedule command{{-1.0}, {-40.0}, Hold::linear};
+    for (int k = -99; k <= 100; ++k) command.append(0.01 * k, 0.4 * k);
+    const auto result =
+        simulate(model, command, instants(600, 1e-3), [&](std::size_t, const Integrator<J>& axis) {
+          const double t = value_of(axis.time());
+          EXPECT_NEAR(axis.state()[1].a, 20.0 * (t * t - 2.0 * t * delay) / kMass, 1e-12);
+          EXPECT_NEAR(axis.state()[1].v[0], -40.0 * t / kMass, 1e-11);
+        });
+    EXPECT_TRUE(result.finished);
+  }
+}
+
 TEST(Delay, OfACommandThatPrecedesTheRecording) {
   // What was commanded before the first instant is in force from the start.
   Model<double> model = driven_mass(kMass);

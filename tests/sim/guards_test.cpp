@@ -12,7 +12,8 @@ namespace {
 
 /// Guards as the equations have them, with rates by a unit step along f.
 GuardValues by_equations(const Equations<double>& equations, const Mode& mode,
-                         const State<double>& y, Input<double> input, const Target& slope) {
+                         const State<double>& y, Input<double> input, const Target& slope,
+                         double command_slope) {
   GuardValues seen;
   equations.visit_guards(mode, y, input, [&](Guard, double g, double scale) {
     seen.push_back({g, 0.0, scale});
@@ -21,6 +22,7 @@ GuardValues by_equations(const Equations<double>& equations, const Mode& mode,
   const State<double> f = equations.rate(mode, y, input);
   for (std::size_t i = 0; i < kStates; ++i) ahead[i] += f[i];
   input.target.move(slope, 1.0);
+  input.command += command_slope;
   std::size_t n = 0;
   equations.visit_guards(mode, ahead, input, [&](Guard, double g, double) {
     seen.nodes[n].rate = g - seen.nodes[n].value;
@@ -36,14 +38,16 @@ void expect_followed(const Model<double>& model, const Observer& observer, const
   const Equations<double> equations(model, observer);
   const Matrix<double> a = system_matrix(equations, mode);
   const PerInput<State<double>> b = input_matrix(equations, mode);
-  Propagator<double> propagator(a, step_levels_for(a, 1e-3, 12),
-                                {b[kTargetVelocityInput], b[kTargetPositionInput]},
-                                equations.states());
-  const LinearGuards guards(equations, mode, a, b);
+  Propagator<double> propagator(
+      a, step_levels_for(a, 1e-3, 12),
+      {{0, b[kCommandInput]}, {1, b[kTargetVelocityInput]}, {2, b[kTargetPositionInput]}},
+      equations.states());
+  const LinearGuards guards(equations, mode, a, b, {0, 1, 2});
   constexpr int kLevel = 1, kHalvings = 3;
-  const GuardForms forms(guards, propagator, kLevel, kHalvings, true);
+  const GuardForms forms(guards, propagator, kLevel, kHalvings);
   const Target slope{normal(random), normal(random)};
-  const Slopes slopes{slope.velocity, slope.position};
+  const double command_slope = normal(random);
+  const Slopes slopes{command_slope, slope.velocity, slope.position};
   State<double> y{0.1 * normal(random), 0.1, 0.0, 20.0, normal(random), 50.0, 3.0};
   if (mode.sliding == 0) y[1] = 0.0;
   y[2] = (y[0] + 1e-5 * mode.contact) / model.axis.r_g;
@@ -58,8 +62,9 @@ void expect_followed(const Model<double>& model, const Observer& observer, const
   for (int k = 1; k < 1 << kHalvings; ++k) {
     y = propagator.advance(y, equations.rate(mode, y, input), slopes, kLevel + kHalvings);
     input.target.move(slope, part);
+    input.command += command_slope * part;
     const GuardValues linear = guard_values(),
-                      exact = by_equations(equations, mode, y, input, slope);
+                      exact = by_equations(equations, mode, y, input, slope, command_slope);
     ASSERT_EQ(linear.count, exact.count);
     for (std::size_t i = 0; i < exact.count; ++i, ++inner) {
       const auto& [value, rate, scale] = exact.nodes[i];

@@ -45,10 +45,10 @@ State<T> unit(std::size_t j) {
 /// A propagator of which the first ramp leads to state j.
 template <class T>
 Propagator<T> with_ramp(const Matrix<T>& a, const StepLevels& step_levels, std::size_t j) {
-  return Propagator<T>(a, step_levels, {unit<T>(j), State<T>{}});
+  return Propagator<T>(a, step_levels, {{0, unit<T>(j)}, {2, State<T>{}}});
 }
 
-constexpr Slopes kFlat{}, kRising{1.0, 0.0};
+constexpr Slopes kFlat{}, kRising{1.0, 0.0, 0.0};
 
 /// Largest errors of the columns of exp, Psi and Xi at a level, by the largest entry of each
 /// matrix.
@@ -194,9 +194,9 @@ TEST(Propagator, StepsCompose) {
   const Matrix<double> a = stiff_matrix(1e5);
   const State<double> y{0.1, 0.2, 15.0, 30.0, 2.0, -50.0, 3.0};
   Propagator<double> propagator(a, step_levels_for(a, 0.5e-3, 3),
-                                {State<double>{0.0, 1.0, 2.0, 3.0, 0.0, 0.0, 7.0},
-                                 State<double>{0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0}});
-  constexpr Slopes slope{1.0, 5.0};
+                                {{0, State<double>{0.0, 1.0, 2.0, 3.0, 0.0, 0.0, 7.0}},
+                                 {2, State<double>{0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0}}});
+  constexpr Slopes slope{1.0, 100.0, 5.0};  // of the second there is no ramp
   const auto rate = [&](const State<double>& at, double t) {
     State<double> f = propagator.a_times(at);
     propagator.add_ramps(f, slope, t);

@@ -356,6 +356,20 @@ TEST_F(JobFileTest, TheNoiseOfAnInputIsGivenOrOfAForceSourceEstimated) {
   EXPECT_EQ(force.command_sigma, 2.0);
 }
 
+TEST_F(JobFileTest, WhatWasMeasuredRunsLinearlyBetweenItsSamples) {
+  const auto hold_with = [&](const std::string& input) {
+    return read(replaced(kJob, "command: {column: u, unit: V}", input))
+        .job.recordings.front()
+        .command.hold;
+  };
+  EXPECT_EQ(hold_with("command: {column: u, unit: V}"), Hold::zero_order);
+  EXPECT_EQ(hold_with("command: {column: u, unit: V, hold: linear}"), Hold::linear);
+  EXPECT_EQ(hold_with("drive_force: {column: f, unit: kN}"), Hold::linear);
+  EXPECT_EQ(hold_with("drive_force: {column: f, unit: kN, hold: zero_order}"), Hold::zero_order);
+  EXPECT_EQ(errors_with("command: {column: u, unit: V}", "command: {column: u, unit: V, hold: 2}"),
+            "job.yaml:6:43: hold must be one of zero_order, linear, not '2'");
+}
+
 TEST_F(JobFileTest, ADriveForceReplacesTheCommandOfAForceSource) {
   const JobFile file =
       read(replaced(kJob, "command: {column: u, unit: V}", "drive_force: {column: f, unit: kN}"));
