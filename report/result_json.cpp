@@ -263,17 +263,21 @@ Json residual_json(const Job& job, const Diagnosis& diagnosis) {
 
 Json effect_json(const EffectTrial& t) {
   const bool judged = t.improvement.comparable;
-  return {{"name", t.candidate.name},
-          {"acts_on", t.candidate.acts_on},
-          {"meaning", t.candidate.meaning},
-          {"decision", decision_name(t.decision)},
-          {"accepted", t.decision == Decision::accepted},
-          {"reason", reason_text(t)},
-          {"round", t.round},
-          {"score", t.score},
-          {"parameters", list(t.parameters, estimate_json)},
-          {"p_value", optional(judged, t.improvement.p_value)},
-          {"validation_improvement_percent", optional(judged, t.improvement.validate_percent)}};
+  Json json{{"name", t.candidate.name},
+            {"acts_on", t.candidate.acts_on},
+            {"meaning", t.candidate.meaning},
+            {"decision", decision_name(t.decision)},
+            {"accepted", t.decision == Decision::accepted},
+            {"reason", reason_text(t)},
+            {"round", t.round},
+            {"score", t.score},
+            {"parameters", list(t.parameters, estimate_json)},
+            {"p_value", optional(judged, t.improvement.p_value)},
+            {"validation_improvement_percent", optional(judged, t.improvement.validate_percent)}};
+  if (t.replication)
+    json["elsewhere"] = {{"alike", t.replication->is_alike},
+                         {"parameters", list(t.replication->parameters, estimate_json)}};
+  return json;
 }
 
 Json score_json(const Job& job, const SignalScore& score) {

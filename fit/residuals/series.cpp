@@ -100,6 +100,27 @@ double autocorrelation_time(std::span<const double> values) {
   return std::max(1.0, time);
 }
 
+double variance_along(std::span<const double> change, std::span<const double> residual) {
+  const std::size_t n = residual.size();
+  const std::vector<double> c = lagged_products({change.begin(), change.end()}),
+                            r = lagged_products({residual.begin(), residual.end()});
+  if (!(c[0] > 0.0)) return mean_square(residual) * autocorrelation_time(residual);
+  // A wide band has little scatter, a narrow one follows the peak of a drift: the larger counts.
+  constexpr std::size_t kLeastLags = 32, kParts[] = {8, 32};
+  double largest = 0.0;
+  for (const std::size_t part : kParts) {
+    const std::size_t lags = std::min(n - 1, std::max(kLeastLags, n / part));
+    double sum = c[0] * r[0];
+    for (std::size_t lag = 1; lag <= lags; ++lag) {
+      const double x = static_cast<double>(lag) / static_cast<double>(lags);
+      const double parzen = x < 0.5 ? 1.0 - 6.0 * x * x * (1.0 - x) : 2.0 * std::pow(1.0 - x, 3);
+      sum += 2.0 * parzen * c[lag] * r[lag];
+    }
+    largest = std::max(largest, sum);
+  }
+  return largest / (c[0] * static_cast<double>(n));
+}
+
 void allow_for_parameters(const Job& job, const FitResult& result,
                           std::vector<ResidualSeries>& list) {
   // The recordings to validate, as if they were to be fitted.

@@ -57,6 +57,14 @@ double mean_square(std::span<const double> values);
 /// Source: C. J. Geyer, Statistical Science 7 (1992), initial positive sequence.
 double autocorrelation_time(std::span<const double> values);
 
+/// Variance of a residual along a change of the prediction, per sample: of sum(change residual)
+/// when they have nothing to do with each other, over sum(change^2). That of white noise is its
+/// mean square; a slow drift of the residual counts little against a fast change, and much against
+/// a slow one. The mean of the residual's spectrum over that of the change, the former smoothed by
+/// Parzen's window: what was fitted leaves no hole in it. Where nothing changes, that along a slow
+/// change. Literature: M. B. Priestley, Spectral Analysis and Time Series, 1981, section 6.2.
+double variance_along(std::span<const double> change, std::span<const double> residual);
+
 /// Finds the allowances of all series that were not fitted: what the fit leaves open, another
 /// motion may show all the more. Likewise what noise of their inputs adds, where it is given.
 void allow_for_parameters(const Job& job, const FitResult& result,

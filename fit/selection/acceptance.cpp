@@ -10,13 +10,30 @@
 namespace axisfit {
 namespace {
 
-/// Mean square times autocorrelation time: what one independent sample contributes.
-double variance_per_independent_sample(const ResidualSeries& series) {
-  return mean_square(series.values) * autocorrelation_time(series.values);
-}
-
 double sum_of_squares(const ResidualSeries& series) {
   return mean_square(series.values) * static_cast<double>(series.values.size());
+}
+
+/// a - b
+std::vector<double> difference(const ResidualSeries& a, const ResidualSeries& b) {
+  std::vector<double> d(a.values.size());
+  for (std::size_t i = 0; i < d.size(); ++i) d[i] = a.values[i] - b.values[i];
+  return d;
+}
+
+/// Of the sum of products of a change with the residual that it leaves, if they have nothing to do
+/// with each other. Both may be large at the same places, such as where the motion turns: then
+/// their products scatter more than those of two stationary series.
+double variance_of_products(const std::vector<double>& change, const ResidualSeries& after) {
+  std::vector<double> products(change.size());
+  double square = 0.0;
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    products[i] = change[i] * after.values[i];
+    square += change[i] * change[i];
+  }
+  const std::vector<double> ones(products.size(), 1.0);
+  return std::max(square * variance_along(change, after.values),
+                  static_cast<double>(products.size()) * variance_along(ones, products));
 }
 
 }  // namespace
@@ -28,18 +45,16 @@ Improvement improvement(const std::vector<ResidualSeries>& before,
   for (const ResidualSeries& old : before) {
     const ResidualSeries* now = find_series(after, old);
     if (now == nullptr) return result;
-    const double unit = variance_per_independent_sample(*now);
+    const std::vector<double> change = difference(old, *now);
     if (old.fitted) {
+      const double unit = variance_along(change, now->values);
       result.fit_gain += (sum_of_squares(old) - sum_of_squares(*now)) / unit;
-      result.samples += static_cast<double>(now->values.size()) / autocorrelation_time(now->values);
+      result.samples += sum_of_squares(*now) / unit;
       continue;
     }
     // With d the change of the prediction, r' = r - d: the fall of the sum of squares is
-    // |d|^2 + 2 d r', of which only the second part is chance, with the variance 4 d^2 * worth.
-    double change = 0.0;
-    for (std::size_t i = 0; i < old.values.size(); ++i)
-      change += std::pow(old.values[i] - now->values[i], 2);
-    variance += 4.0 * change * unit;
+    // |d|^2 + 2 d r', of which only the second part is chance.
+    variance += 4.0 * variance_of_products(change, *now);
     square_before += sum_of_squares(old);
     square_after += sum_of_squares(*now);
   }
@@ -58,9 +73,9 @@ double bic_difference(const std::vector<ResidualSeries>& best, std::size_t best_
   for (const ResidualSeries& series : best) {
     const ResidualSeries* rival = find_series(other, series);
     if (rival == nullptr) return INFINITY;
-    loss +=
-        (sum_of_squares(*rival) - sum_of_squares(series)) / variance_per_independent_sample(series);
-    samples += static_cast<double>(series.values.size()) / autocorrelation_time(series.values);
+    const double unit = variance_along(difference(*rival, series), series.values);
+    loss += (sum_of_squares(*rival) - sum_of_squares(series)) / unit;
+    samples += sum_of_squares(series) / unit;
   }
   return loss + (static_cast<double>(other_parameters) - static_cast<double>(best_parameters)) *
                     std::log(std::max(2.0, samples));
@@ -68,9 +83,9 @@ double bic_difference(const std::vector<ResidualSeries>& best, std::size_t best_
 
 bool is_clearly_worse(double bic_difference) { return bic_difference > 2.0 * std::log(100.0); }
 
-bool is_needed(const Improvement& gain, std::size_t parameters) {
+bool is_needed(const Improvement& gain, std::size_t parameters, bool replicates) {
   const double price = static_cast<double>(parameters) * std::log(std::max(2.0, gain.samples));
-  return gain.comparable && gain.fit_gain > price && gain.p_value < kChance;
+  return gain.comparable && gain.fit_gain > price && (replicates || gain.p_value < kChance);
 }
 
 Determination determination(const Job& job, const FitResult& result, const Candidate& candidate,
@@ -117,9 +132,12 @@ Determination determination(const Job& job, const FitResult& result, const Candi
   if (others.cols() > 0) residual -= others * LeastSquaresSolver(others).solve(shown);
   d.distinct = shown.squaredNorm() > 0.0 ? residual.squaredNorm() / shown.squaredNorm() : 0.0;
   for (const SeriesRows& rows : at.series)
-    if (const auto* series = find_series(residuals, {rows.recording, rows.measurement, true}))
-      d.wald += residual.segment(rows.first, rows.count).squaredNorm() /
-                variance_per_independent_sample(*series);
+    if (const auto* series = find_series(residuals, {rows.recording, rows.measurement, true})) {
+      const Eigen::VectorXd own_part = residual.segment(rows.first, rows.count);
+      d.wald += own_part.squaredNorm() /
+                variance_along({own_part.data(), static_cast<std::size_t>(own_part.size())},
+                               series->values);
+    }
   return d;
 }
 
@@ -130,7 +148,7 @@ double least_gain(const Candidate& candidate, double samples, std::size_t tried)
 
 std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvement& gain,
                                       const Determination& determined, std::size_t tried,
-                                      double chance) {
+                                      double chance, bool replicates) {
   using enum Rejection::Test;
   if (!gain.comparable) return Rejection{.test = simulation};
   const double required = least_gain(candidate, gain.samples, tried);
@@ -140,8 +158,9 @@ std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvem
                      .required = required,
                      .tried = tried};
   constexpr double kMinPercent = 0.5;
-  if (gain.p_value > chance) return Rejection{.test = validation, .found = gain.p_value};
-  if (gain.validate_percent < kMinPercent)
+  if (!replicates && gain.p_value > chance)
+    return Rejection{.test = validation, .found = gain.p_value};
+  if (!replicates && gain.validate_percent < kMinPercent)
     return Rejection{.test = validation_size, .found = gain.validate_percent};
   if (!determined.at_bound.empty())
     return Rejection{.test = bound, .parameter = determined.at_bound};

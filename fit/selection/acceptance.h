@@ -11,8 +11,8 @@
 namespace axisfit {
 
 /// What an extended model does to the errors of a simpler one. Sums of squares are in units of the
-/// information of one independent sample: divided by the mean square of the extended model's
-/// residual and by its autocorrelation time, series by series.
+/// information of one independent sample: divided by the variance of the extended model's residual
+/// along the change that the extension makes, series by series; see variance_along().
 struct Improvement {
   bool comparable = false;  ///< false: the extended model could not be simulated everywhere
   double fit_gain = 0.0;    ///< fall of the sum of squares of what was fitted
@@ -56,7 +56,8 @@ constexpr double kChance = 1e-3;
 /// Whether an accepted effect is needed beside those that were accepted later. `gain` is what it
 /// does to the model without it: more to the fit than the price of its parameters by Schwarz's
 /// criterion, and more than chance to what was not fitted.
-bool is_needed(const Improvement& gain, std::size_t parameters);
+/// With `replicates` only the former counts, see replication.h.
+bool is_needed(const Improvement& gain, std::size_t parameters, bool replicates = false);
 
 /// A test that a candidate failed.
 struct Rejection {
@@ -89,9 +90,11 @@ struct Rejection {
 double least_gain(const Candidate& candidate, double samples, std::size_t tried);
 
 /// The first test that the candidate fails; none when it may stay.
-/// `tried` is the number of candidates and settings among which it was chosen.
+/// `tried` is the number of candidates and settings among which it was chosen. `chance` is how
+/// probable it may be that it lowers the validation error by chance; of one that replicates,
+/// nothing is asked of that error.
 std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvement& gain,
                                       const Determination& determined, std::size_t tried,
-                                      double chance = kChance);
+                                      double chance = kChance, bool replicates = false);
 
 }  // namespace axisfit

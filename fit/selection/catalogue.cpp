@@ -72,6 +72,7 @@ Candidate candidate_of(const EffectInfo& effect, SearchEntry entry) {
   candidate.shapes_are_free = !entry.is_curve;
   candidate.probes = std::move(entry.probes);
   candidate.is_curve = entry.is_curve;
+  candidate.has_phase = entry.has_phase;
   return candidate;
 }
 

@@ -29,7 +29,8 @@ struct Candidate {
   /// Strengths at which the score test looks instead of at zero, where the derivative there says
   /// little: that of a lag or delay holds while it is shorter than anything else. Empty: none.
   std::vector<double> probes = {};
-  bool is_curve = false;  ///< a curve: it fits whatever no other effect explains
+  bool is_curve = false;   ///< a curve: it fits whatever no other effect explains
+  bool has_phase = false;  ///< the strengths are sine and cosine of a phase
   /// A value of the axis file that is not free: the hypothesis is that it is another.
   bool is_constant = false;
 

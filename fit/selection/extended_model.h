@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fit/selection/acceptance.h"
+#include "fit/selection/replication.h"
 
 namespace axisfit {
 
@@ -13,9 +14,10 @@ struct ExtendedModel {
   Job job;  ///< the candidate's parameters are its last
   FitResult fit;
   std::vector<ResidualSeries> residuals;
-  double score = 0.0;                  ///< gain that the score test promised
-  Improvement gain;                    ///< against the model before
-  std::optional<Rejection> rejection;  ///< by the gate; none: it may stay
+  double score = 0.0;                        ///< gain that the score test promised
+  Improvement gain;                          ///< against the model before
+  std::optional<Rejection> rejection;        ///< by the gate; none: it may stay
+  std::optional<Replication> replication{};  ///< where it was asked for
 };
 
 /// Fits from close by, content with less than a final fit: one start, one continuation.

@@ -39,6 +39,7 @@ class EffectSelector {
         drop_imitators();
         record_rivals();
         drop_undecided();
+        record_replications();
       } catch (const Interrupted&) {
         result_.interrupted = true;
         restore(std::move(last_valid_));
@@ -59,6 +60,7 @@ class EffectSelector {
   struct Accepted {
     Candidate candidate;
     std::vector<Rival> rivals;  ///< that explained as much when it was chosen
+    bool replicates = false;    ///< why it was accepted, see replication.h
   };
 
   /// An accepted effect (its place) and another that explains the data as well.
@@ -94,15 +96,14 @@ class EffectSelector {
     while (has_room() && round(true)) {
     }
     const SearchState appended = snapshot();
-    const bool appends = accepted_.size() > named.accepted.size();
-    if (named.accepted.empty()) return;
+    // Where no curve is left to find, the named effects have imitated none.
+    if (named.accepted.empty() || accepted_.size() == named.accepted.size()) return;
     provisional_ = true;
     restart();
     if (!round(true)) return restore(appended);
     search_named();
     eliminate_backward();
-    const double loss = loss_of(appended.models.back(), current());
-    if (loss > 0.0 && (appends || is_clearly_worse(loss))) restore(appended);
+    if (loss_of(appended.models.back(), current()) > 0.0) restore(appended);
   }
 
   /// By how much b explains the recordings worse than a, parameters counted.
@@ -240,6 +241,9 @@ class EffectSelector {
       else if (is_preferred(e, **other))
         *other = &e;
     }
+    if (std::ranges::all_of(contenders,
+                            [](const ExtendedModel* e) { return e->rejection.has_value(); }))
+      for (ExtendedModel* e : contenders) try_to_replicate(*e);
     ExtendedModel* best = nullptr;
     for (ExtendedModel* e : contenders)
       if (!e->rejection && (best == nullptr || bic_advantage(*e, *best) > 0.0)) best = e;
@@ -252,7 +256,7 @@ class EffectSelector {
     for (ExtendedModel* e : contenders) record_trial(*e, best);
     if (best == nullptr) return false;
 
-    Accepted accepted{best->candidate, {}};
+    Accepted accepted{best->candidate, {}, best->replication.has_value()};
     for (const ExtendedModel* e : contenders) {
       if (e == best || !e->fit.usable || !e->gain.comparable) continue;
       // Rivals are seen again when all else is explained.
@@ -263,6 +267,23 @@ class EffectSelector {
     result_.models.push_back({best->candidate.name, std::move(best->job), std::move(best->fit)});
     if (!provisional_) last_valid_ = snapshot();
     return true;
+  }
+
+  /// What lowers the error of one recording and not that of another may yet be in both, where
+  /// something else differs between them.
+  void try_to_replicate(ExtendedModel& e) {
+    if (!e.fit.usable || !e.rejection || e.rejection->test != Rejection::Test::validation ||
+        result_.held_out_blocks)
+      return;
+    report_progress("does " + e.candidate.name + " replicate?");
+    const auto elsewhere = fit_elsewhere(e.job, e.fit, context_);
+    if (!elsewhere) return;
+    Replication found = replication(e.job, e.fit, *elsewhere, e.candidate);
+    if (!found.is_alike) return;
+    e.rejection =
+        rejection_of(e.candidate, e.gain, determination(e.job, e.fit, e.candidate, e.residuals),
+                     tried_, kChance, true);
+    if (!e.rejection) e.replication = std::move(found);
   }
 
   /// A simulation that is far from the data must track them to be scored. Of one that is not, the
@@ -289,7 +310,8 @@ class EffectSelector {
                             e.fit.parameters.end());
     if (&e == best) {
       trial.decision = Decision::accepted;
-      trial.reason = Reason::explains_best;
+      trial.reason = e.replication ? Reason::replicates : Reason::explains_best;
+      trial.replication = e.replication;
     } else if (e.rejection) {
       trial.rejection = e.rejection;
     } else {
@@ -347,7 +369,7 @@ class EffectSelector {
       const Candidate& candidate = accepted_[a].candidate;
       const Improvement gain = improvement(residual_series(reduced.job, reduced.fit),
                                            residual_series(current().job, current().fit));
-      if (!reduced.fit.usable || is_needed(gain, candidate.parameters())) {
+      if (!reduced.fit.usable || is_needed(gain, candidate.parameters(), accepted_[a].replicates)) {
         ++a;
         continue;
       }
@@ -362,17 +384,22 @@ class EffectSelector {
   }
 
   /// Where the fit stays far from the noise, a flexible effect lowers every error a little,
-  /// whatever is missing: named is only what accounts for a good part of it.
+  /// whatever is missing: named is only what accounts for a good part of it, or what other
+  /// recordings show alike.
   void drop_imitators() {
     constexpr double kLeastPercent = 25.0;
     while (!accepted_.empty() && !explained()) {
+      const std::optional<FitResult> elsewhere = fit_elsewhere_now();
       const auto now = residual_series(current().job, current().fit);
       SelectionStep least;
       std::size_t place = 0;
       double percent = kLeastPercent;
       for (std::size_t a = 0; a < accepted_.size(); ++a) {
-        report_progress("what does " + accepted_[a].candidate.name + " explain?");
-        if (accepted_[a].candidate.is_curve) continue;
+        const Candidate& candidate = accepted_[a].candidate;
+        if (elsewhere && replication(current().job, current().fit, *elsewhere, candidate).is_alike)
+          continue;
+        report_progress("what does " + candidate.name + " explain?");
+        if (candidate.is_curve) continue;
         SelectionStep reduced = without(a);
         const Improvement gain = improvement(residual_series(reduced.job, reduced.fit), now);
         if (!reduced.fit.usable || gain.validate_percent >= percent) continue;
@@ -385,6 +412,21 @@ class EffectSelector {
       accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(place));
       rebuild(std::move(least));
     }
+  }
+
+  std::optional<FitResult> fit_elsewhere_now() {
+    if (result_.held_out_blocks) return std::nullopt;
+    report_progress("do the recordings to validate tell the same?");
+    return fit_elsewhere(current().job, current().fit, context_);
+  }
+
+  /// What the recordings to validate, fitted by themselves, say of what was accepted.
+  void record_replications() {
+    if (accepted_.empty()) return;
+    if (const auto elsewhere = fit_elsewhere_now())
+      for (const Accepted& a : accepted_)
+        if (EffectTrial* trial = trial_of(a.candidate))
+          trial->replication = replication(current().job, current().fit, *elsewhere, a.candidate);
   }
 
   /// Of a model with which most of the error remains, no part is named.

@@ -13,6 +13,7 @@
 #include "fit/estimation/estimate.h"
 #include "fit/selection/acceptance.h"
 #include "fit/selection/catalogue.h"
+#include "fit/selection/replication.h"
 
 namespace axisfit {
 
@@ -31,6 +32,7 @@ enum class Decision {
 enum class Reason {
   failed_test,       ///< EffectTrial::rejection
   explains_best,     ///< of all that were tried in its round
+  replicates,        ///< the recordings to validate, fitted by themselves, tell the same of it
   explains_less,     ///< than the other
   replaced,          ///< by the other, which explains more
   explains_equally,  ///< as well as the other
@@ -48,6 +50,8 @@ struct EffectTrial {
   double score = 0.0;                       ///< gain that the score test promised
   std::vector<ParameterResult> parameters;  ///< its own
   Improvement improvement;                  ///< against the model before it
+  /// Of an accepted effect, what the recordings to validate say of it by themselves.
+  std::optional<Replication> replication{};
 };
 
 /// One intermediate model: the declared one, and one after each accepted effect.

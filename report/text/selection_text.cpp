@@ -13,18 +13,18 @@ namespace axisfit {
 namespace {
 
 /// "F_c = 24.95 +- 0.12 N"; of a curve the range of its coefficients.
-std::string estimate_of(const EffectTrial& trial) {
+std::string estimates_text(const std::vector<ParameterResult>& parameters, bool is_curve) {
   const auto unit_of = [](const ParameterResult& p) {
     return find_quantity(p.name)->quantity.unit;
   };
-  if (trial.parameters.empty()) return "";
-  if (trial.candidate.is_curve) {
-    const auto [low, high] = std::ranges::minmax(trial.parameters, {}, &ParameterResult::value);
-    return fmt::format("{} coefficients from {:.3g} to {}", trial.parameters.size(), low.value,
+  if (parameters.empty()) return "";
+  if (is_curve) {
+    const auto [low, high] = std::ranges::minmax(parameters, {}, &ParameterResult::value);
+    return fmt::format("{} coefficients from {:.3g} to {}", parameters.size(), low.value,
                        with_unit(fmt::format("{:.3g}", high.value), unit_of(high)));
   }
   std::vector<std::string> parts;
-  for (const ParameterResult& p : trial.parameters) {
+  for (const ParameterResult& p : parameters) {
     const ParameterUncertainty& u = p.uncertainty;
     const std::string number =
         u.determined ? fmt::format("{} +- {:.2g}", with_digits_of(p.value, u.standard_error),
@@ -42,15 +42,24 @@ Tone tone_of(Decision decision) {
                                            : Tone::neutral;
 }
 
+/// What other recordings say of an accepted effect.
+std::string elsewhere_text(const EffectTrial& t) {
+  if (!t.replication || t.candidate.is_curve) return "";
+  return fmt::format("; the recordings to validate, fitted by themselves, {}: {}",
+                     t.replication->is_alike ? "tell alike" : "tell otherwise",
+                     estimates_text(t.replication->parameters, false));
+}
+
 std::string effects_text(const EffectSelection& selection, bool colour) {
   if (selection.effects.empty()) return "";
   std::vector<std::vector<std::string>> rows;
   for (const Decision decision : {Decision::accepted, Decision::undecided, Decision::rejected})
     for (const EffectTrial& t : selection.effects) {
       if (t.decision != decision) continue;
-      const std::string estimate = estimate_of(t);
-      rows.push_back({toned(decision_name(decision), tone_of(decision), colour), t.candidate.name,
-                      estimate + (estimate.empty() ? "" : ": ") + reason_text(t)});
+      const std::string estimate = estimates_text(t.parameters, t.candidate.is_curve);
+      rows.push_back(
+          {toned(decision_name(decision), tone_of(decision), colour), t.candidate.name,
+           estimate + (estimate.empty() ? "" : ": ") + reason_text(t) + elsewhere_text(t)});
     }
   return "Effects tried\n" +
          format_table(rows, {Alignment::left, Alignment::left, Alignment::wrapped}) + "\n";

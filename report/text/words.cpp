@@ -258,6 +258,9 @@ std::string reason_text(const EffectTrial& trial) {
           "explains the residual best: {:.3g} % lower validation error ({:.3g} standard deviations "
           "above chance)",
           trial.improvement.validate_percent, trial.improvement.z);
+    case Reason::replicates:
+      return "explains the residual best of what the recordings to validate, fitted by themselves, "
+             "tell alike";
     case Reason::explains_less:
       return "explains less than " + trial.other;
     case Reason::replaced:

@@ -33,7 +33,10 @@ struct CoggingTorque {
   }
 
   static std::vector<SearchEntry> search(const SearchScales& scales) {
-    return {{{"T_s", "T_c"}, {"order"}, orders_per_turn(scales.periods, scales.pinion_radius)}};
+    return {{.strengths = {"T_s", "T_c"},
+             .shapes = {"order"},
+             .settings = orders_per_turn(scales.periods, scales.pinion_radius),
+             .has_phase = true}};
   }
 
   T motor_torque(const Instant<T>& at) const {

@@ -37,8 +37,11 @@ struct PeriodicForce {
   }
 
   static std::vector<SearchEntry> search(const SearchScales& scales) {
-    return {{{"F_s1", "F_c1"}, {"period"}, one_by_one(scales.periods)},
-            {.strengths = {"F_s2", "F_c2"}, .extends = true}};
+    return {{.strengths = {"F_s1", "F_c1"},
+             .shapes = {"period"},
+             .settings = one_by_one(scales.periods),
+             .has_phase = true},
+            {.strengths = {"F_s2", "F_c2"}, .extends = true, .has_phase = true}};
   }
 
   T arm_force(const Instant<T>& at) const {

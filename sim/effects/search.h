@@ -73,6 +73,8 @@ struct SearchEntry {
   UsedBy used_by = UsedBy::every_axis;  ///< the axes for which it is offered
   bool extends = false;   ///< whether it is offered only to an axis that has the effect
   bool is_curve = false;  ///< a curve, whose ends are not estimated
+  /// Whether the two strengths are sine and cosine of a phase, which homing may shift.
+  bool has_phase = false;
 };
 
 /// One setting of one shape for each value.

@@ -37,8 +37,10 @@ struct TorqueRipple {
   }
 
   static std::vector<SearchEntry> search(const SearchScales& scales) {
-    return {
-        {{"r_s", "r_c"}, {"order"}, orders_per_turn(scales.drive_periods, scales.pinion_radius)}};
+    return {{.strengths = {"r_s", "r_c"},
+             .shapes = {"order"},
+             .settings = orders_per_turn(scales.drive_periods, scales.pinion_radius),
+             .has_phase = true}};
   }
 
   T motor_torque(const Instant<T>& at) const {

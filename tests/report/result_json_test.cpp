@@ -670,10 +670,11 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
   EXPECT_EQ(json.at("selection").at("held_out_blocks"), false);
   int accepted = 0;
   for (const Json& effect : json.at("effects")) {
-    EXPECT_EQ(keys(effect),
-              (std::vector<std::string>{"name", "acts_on", "meaning", "decision", "accepted",
-                                        "reason", "round", "score", "parameters", "p_value",
-                                        "validation_improvement_percent"}));
+    std::vector<std::string> known = keys(effect);
+    EXPECT_EQ(std::erase(known, "elsewhere") == 1, effect.at("accepted").get<bool>());
+    EXPECT_EQ(known, (std::vector<std::string>{"name", "acts_on", "meaning", "decision", "accepted",
+                                               "reason", "round", "score", "parameters", "p_value",
+                                               "validation_improvement_percent"}));
     EXPECT_EQ(effect.at("accepted"), effect.at("decision") == "accepted");
     EXPECT_NE(effect.at("reason"), "");
     if (!effect.at("accepted").get<bool>()) continue;
@@ -683,6 +684,8 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
     EXPECT_NEAR(effect.at("parameters")[0].at("value"), 6.0, 0.1);
     EXPECT_LT(effect.at("p_value"), 1e-3);
     EXPECT_GT(effect.at("validation_improvement_percent"), 50.0);
+    EXPECT_EQ(effect.at("elsewhere").at("alike"), true);
+    EXPECT_NEAR(effect.at("elsewhere").at("parameters")[0].at("value"), 6.0, 0.2);
   }
   EXPECT_EQ(accepted, 1);
 

@@ -51,6 +51,36 @@ TEST(AutocorrelationTime, IsNeverLessThanOneSample) {
   EXPECT_EQ(autocorrelation_time(std::vector<double>{}), 1.0);
 }
 
+/// Mean over some seeds of the variance along a wave of w rad per sample.
+double mean_variance_along(double w, double phi) {
+  constexpr std::uint64_t kTrials = 20;
+  double sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= kTrials; ++seed) {
+    std::vector<double> wave(5000);
+    for (std::size_t i = 0; i < wave.size(); ++i) wave[i] = std::sin(w * static_cast<double>(i));
+    sum += variance_along(wave, autoregressive(phi, wave.size(), seed)) / kTrials;
+  }
+  return sum;
+}
+
+TEST(VarianceAlong, AWaveIsTheSpectrumAtItsFrequency) {
+  for (const double phi : {0.0, 0.5, 0.95})
+    for (const double w : {0.3, 1.0, 2.5}) {
+      const double exact = 1.0 / (1.0 - 2.0 * phi * std::cos(w) + phi * phi);
+      EXPECT_NEAR(mean_variance_along(w, phi), exact, 0.2 * exact) << phi << " " << w;
+    }
+}
+
+TEST(VarianceAlong, ASlowChangeIsTheMeanSquareTimesTheAutocorrelationTime) {
+  const double phi = 0.8, exact = 1.0 / std::pow(1.0 - phi, 2);
+  EXPECT_NEAR(mean_variance_along(0.002, phi), exact, 0.3 * exact);
+}
+
+TEST(VarianceAlong, NoChangeIsThatOfASlowOne) {
+  const std::vector<double> r = autoregressive(0.8, 5000, 1), none(r.size(), 0.0);
+  EXPECT_EQ(variance_along(none, r), mean_square(r) * autocorrelation_time(r));
+}
+
 /// A job and a result by hand: recordings of ten samples whose measured values are 10, 11, ... 19
 /// and whose simulated values are zero, at a sigma of 2.
 class ResidualSeriesTest : public testing::Test {

@@ -1,0 +1,93 @@
+#include "fit/selection/replication.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/selection/extended_model.h"
+
+namespace axisfit {
+namespace {
+
+struct Estimate {
+  double value = 0.0, error = 0.0;
+};
+
+bool is_far_from_zero(const Estimate& e, double neutral) {
+  constexpr double kFar = 4.0;  // standard errors
+  return std::abs(e.value - neutral) > kFar * e.error;
+}
+
+bool is_near(const Estimate& a, const Estimate& b, double neutral) {
+  constexpr double kErrors = 3.0, kPart = 0.1;
+  return std::abs(a.value - b.value) <=
+         std::max(kErrors * std::hypot(a.error, b.error), kPart * std::abs(a.value - neutral));
+}
+
+/// The length of two strengths that are sine and cosine of a phase.
+Estimate amplitude(const Estimate& sine, const Estimate& cosine) {
+  return {std::hypot(sine.value, cosine.value),
+          std::hypot(sine.error, cosine.error) / std::sqrt(2)};
+}
+
+}  // namespace
+
+std::optional<FitResult> fit_elsewhere(const Job& job, const FitResult& fit,
+                                       const RunContext& context) {
+  Job other = job;
+  bool any = false;
+  for (Recording& r : other.recordings) {
+    any = any || r.role == Role::validate;
+    r.role = r.role == Role::fit ? Role::validate : Role::fit;
+    r.held_out.clear();
+  }
+  if (!any || std::ranges::any_of(job.free, [](const auto& p) { return p.recording.has_value(); }))
+    return std::nullopt;
+  FitResult result = refit_from(std::move(other), values_of(fit), context);
+  if (!result.usable) return std::nullopt;
+  return result;
+}
+
+Replication replication(const Job& job, const FitResult& fit, const FitResult& elsewhere,
+                        const Candidate& candidate) {
+  Replication result;
+  bool determined = !candidate.is_curve;
+  std::vector<Estimate> here, there;
+  const auto read = [&](std::size_t quantity) {
+    const auto free = std::ranges::find(job.free, quantity, &FreeParameter::quantity);
+    if (free == job.free.end()) return;
+    const auto i = static_cast<std::size_t>(free - job.free.begin());
+    for (const FitResult* f : {&fit, &elsewhere}) {
+      const ParameterResult& p = f->parameters[i];
+      determined = determined && p.uncertainty.standard_error > 0.0;
+      (f == &fit ? here : there).push_back({p.value, p.uncertainty.standard_error});
+    }
+    result.parameters.push_back(elsewhere.parameters[i]);
+  };
+  for (const std::size_t q : candidate.strengths) read(q);
+  const std::size_t strengths = here.size();
+  if (candidate.shapes_are_free)
+    for (const std::size_t q : candidate.shapes) read(q);
+  if (!determined || strengths != candidate.strengths.size()) return result;
+
+  std::vector<double> neutral = candidate.neutral;
+  neutral.resize(here.size(), 0.0);
+  if (candidate.has_phase) {
+    for (auto* list : {&here, &there}) {
+      (*list)[0] = amplitude((*list)[0], (*list)[1]);
+      list->erase(list->begin() + 1);
+    }
+    neutral.erase(neutral.begin());
+  }
+  bool far_here = false, far_there = false;
+  result.is_alike = true;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    result.is_alike = result.is_alike && is_near(here[i], there[i], neutral[i]);
+    if (i + (candidate.has_phase ? 1 : 0) >= strengths) continue;
+    far_here = far_here || is_far_from_zero(here[i], neutral[i]);
+    far_there = far_there || is_far_from_zero(there[i], neutral[i]);
+  }
+  result.is_alike = result.is_alike && far_here && far_there;
+  return result;
+}
+
+}  // namespace axisfit
