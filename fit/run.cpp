@@ -76,9 +76,13 @@ void run_requested_analyses(RunResult& result, const RunContext& context) {
   if (result.selection && has_noise_from(result.baseline, NoiseSource::fit) &&
       !result.selection->effects.empty())
     result.selection->result.fit = estimate_with_noise(result.selection->result.job, context);
-  if (result.fit().usable) {
+  if (!result.fit().recordings.empty()) {
     report_progress("analysing the residual");
     result.diagnosis = diagnose(result.job(), result.fit(), context.quiet());
+    // Where nothing can be simulated there is nothing to tell.
+    if (result.diagnosis->tests.empty() &&
+        std::ranges::none_of(result.diagnosis->forces, &MissingForce::found))
+      result.diagnosis.reset();
   }
   if (result.fit().usable && !options.profiles.empty())
     result.profiles = profiles(result.job(), result.fit(),

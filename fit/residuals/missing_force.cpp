@@ -67,22 +67,28 @@ std::vector<double> low_pass(std::vector<double> values, double interval, double
   return values;
 }
 
+double percent_of_drive(const MissingForce& force) {
+  if (!force.found || force.rms < 2.0 * force.noise) return 0.0;
+  return 100.0 * std::sqrt(force.rms * force.rms - force.noise * force.noise) / force.drive_rms;
+}
+
 MissingForce missing_force(const Job& job, const FitResult& result, std::size_t index) {
   MissingForce missing;
   const Recording& recording = job.recordings[index];
-  if (!observer_for(recording, 1.0).active() ||
-      result.recordings[index].free_running.samples.empty())
-    return missing;
+  if (!observer_for(recording, 1.0).active()) return missing;
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values_of(result));
   const Model<double> model = model_at(job, space, u.data(), index);
   const double mass = Equations<double>(model).moving_mass();
   const double interval = mean_interval(recording.times);
   double largest = 0.0;
-  for (const Sample& s : result.recordings[index].free_running.samples)
-    largest = std::max(largest, std::abs(s.drive_force));
   missing.cutoff = std::min(40.0, 0.1 / interval);
   const auto observer = [&] { return observer_for(recording, 2.0 * kPi * missing.cutoff); };
+  // The free run tells how large the drive force is; where it does not finish, one that tracks.
+  std::vector<Sample> samples = result.recordings[index].free_running.samples;
+  if (samples.empty())
+    samples = simulate_recording(job, space, index, u.data(), observer()).samples;
+  for (const Sample& s : samples) largest = std::max(largest, std::abs(s.drive_force));
   const auto floor = [&] {
     return noise_floor(recording, observer(), mass, interval, missing.cutoff);
   };

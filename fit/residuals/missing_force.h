@@ -21,6 +21,10 @@ struct MissingForce {
   double drive_rms = 0.0;  ///< N, of the drive force, low-passed alike: the size to compare with
 };
 
+/// The missing force beyond what noise makes of it, in per cent of the drive force; zero where it
+/// is hardly more.
+double percent_of_drive(const MissingForce& force);
+
 /// Of one recording, with the parameters of a fit. The cutoff is 40 Hz, halved while noise makes
 /// more than 1 % of the largest drive force, down to 5 Hz.
 MissingForce missing_force(const Job& job, const FitResult& result, std::size_t recording);

@@ -73,7 +73,10 @@ double bic_difference(const std::vector<ResidualSeries>& best, std::size_t best_
   for (const ResidualSeries& series : best) {
     const ResidualSeries* rival = find_series(other, series);
     if (rival == nullptr) return INFINITY;
-    const double unit = variance_along(difference(*rival, series), series.values);
+    // Neither needs to be true, so that what both lack may tell them apart: at least as much as a
+    // slow change is worth.
+    const double unit = std::max(variance_along(difference(*rival, series), series.values),
+                                 mean_square(series.values) * autocorrelation_time(series.values));
     loss += (sum_of_squares(*rival) - sum_of_squares(series)) / unit;
     samples += sum_of_squares(series) / unit;
   }

@@ -72,6 +72,7 @@ struct Rejection {
     distinct,         ///< other parameters can imitate it
     strength,         ///< the data leave its strength open
     share,            ///< it lowers the validation error too little where most remains unexplained
+    misfit,           ///< the declared model does not fit, with it or without
   };
   Test test = Test::fit;
   /// Of significance, the fall of the sum of squares; of validation, the p-value; of

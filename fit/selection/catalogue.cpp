@@ -137,6 +137,7 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
   for (const ActsOn place : kPlacesToAct) add_effects(place, false);
   const std::vector<double> both_signs{-2.0 * scales.interval, 2.0 * scales.interval};
   Candidate dead_time = single("dead_time", "drive", *find_quantity("T_d"));
+  dead_time.is_timing = true;
   dead_time.probes = later(scales);
   dead_time.probes.push_back(-2.0 * scales.interval);
   add_if_absent(std::move(dead_time));
@@ -148,7 +149,8 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
       if (is_ignored(*entry, job.options.observer)) continue;
       Candidate candidate = single(name, "sensor", *entry);
       if (part == "lag") candidate.probes = later(scales);
-      if (part == "delay") candidate.probes = both_signs;
+      candidate.is_timing = part == "delay";
+      if (candidate.is_timing) candidate.probes = both_signs;
       add_if_absent(std::move(candidate));
     }
   }

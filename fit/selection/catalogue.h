@@ -31,6 +31,7 @@ struct Candidate {
   std::vector<double> probes = {};
   bool is_curve = false;   ///< a curve: it fits whatever no other effect explains
   bool has_phase = false;  ///< the strengths are sine and cosine of a phase
+  bool is_timing = false;  ///< a delay of the input or of an instrument
   /// A value of the axis file that is not free: the hypothesis is that it is another.
   bool is_constant = false;
 

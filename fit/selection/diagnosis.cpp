@@ -13,7 +13,7 @@ Diagnosis diagnose(const Job& job, const FitResult& result, const RunContext& co
       !diagnosis.tests.empty() && std::ranges::all_of(diagnosis.tests, &SeriesTest::explained);
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     diagnosis.forces.push_back(missing_force(job, result, r));
-  if (diagnosis.explained || !result.usable) return diagnosis;
+  if (diagnosis.explained) return diagnosis;
   const ScoreTest test =
       score_test(job, values_of(result), score_gains(job).front(), false, context);
   constexpr std::size_t kSuspects = 5;

@@ -24,7 +24,8 @@ struct Diagnosis {
   std::vector<SuspectedEffect> suspected_effects;  ///< strongest first, none when explained
 };
 
-/// Looks at a usable fit. The suspects take one score test of the catalogue.
+/// Looks at a fit, also at one that is not usable: what is missing shows all the more there. The
+/// suspects take one score test of the catalogue.
 Diagnosis diagnose(const Job& job, const FitResult& result, const RunContext& context = {});
 
 }  // namespace axisfit

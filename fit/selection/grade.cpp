@@ -7,7 +7,7 @@ namespace axisfit {
 namespace {
 
 // Half is what a model must do to be one.
-constexpr double kLeastPercent = 50.0, kLargestForcePercent = 50.0;
+constexpr double kLeastPercent = 50.0;
 // Of a simulation that drifts, the missing force must be small all the more.
 constexpr double kSmallForcePercent = 10.0;
 
@@ -67,10 +67,7 @@ FitGrade worst_simulation(const Job& job, const FitResult& fit) {
 FitGrade worst_force(const Job& job, const Diagnosis& diagnosis) {
   FitGrade worst{.reason = FitGrade::Reason::force};
   for (std::size_t r = 0; r < diagnosis.forces.size(); ++r) {
-    const MissingForce& force = diagnosis.forces[r];
-    if (!force.found || force.rms < 2.0 * force.noise) continue;
-    const double missing = std::sqrt(force.rms * force.rms - force.noise * force.noise);
-    const double percent = 100.0 * missing / force.drive_rms;
+    const double percent = percent_of_drive(diagnosis.forces[r]);
     if (!(percent > worst.percent)) continue;
     worst.recording = job.recordings[r].name;
     worst.percent = percent;

@@ -8,6 +8,9 @@
 
 namespace axisfit {
 
+/// Per cent of the drive force that may be missing of a model that describes the machine.
+constexpr double kLargestForcePercent = 50.0;
+
 /// Best first.
 enum class Grade {
   explained,           ///< every signal of every recording shows no more than its noise

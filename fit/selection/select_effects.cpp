@@ -9,8 +9,10 @@
 #include <set>
 
 #include "base/parallel.h"
+#include "fit/residuals/missing_force.h"
 #include "fit/selection/alternatives.h"
 #include "fit/selection/extended_model.h"
+#include "fit/selection/grade.h"
 #include "fit/selection/shortlist.h"
 
 namespace axisfit {
@@ -45,6 +47,7 @@ class EffectSelector {
         restore(std::move(last_valid_));
       }
       drop_all_where_half_remains();
+      drop_all_of_a_misfit();
     }
     finish();
     return std::move(result_);
@@ -253,6 +256,11 @@ class EffectSelector {
           e->candidate.parameters() < best->candidate.parameters() &&
           !is_clearly_worse(bic_advantage(*best, *e)))
         best = e;
+    // Nor does a clock that is a little off: that is no part of the machine.
+    for (ExtendedModel* e : contenders)
+      if (best != nullptr && !best->candidate.is_timing && e->candidate.is_timing &&
+          !e->rejection && !is_clearly_worse(bic_advantage(*best, *e)))
+        best = e;
     for (ExtendedModel* e : contenders) record_trial(*e, best);
     if (best == nullptr) return false;
 
@@ -438,6 +446,41 @@ class EffectSelector {
     for (const Accepted& a : accepted_) reject_for_share(a.candidate, percent);
     accepted_.clear();
     result_.models.resize(1);
+  }
+
+  /// A declared parameter at its bound makes up for what it is not, and where most of the drive
+  /// force is missing the simulation is elsewhere: effects then imitate what is wrong with the
+  /// model.
+  void drop_all_of_a_misfit() {
+    if (explained()) return;
+    SelectionVerdict& verdict = result_.verdict;
+    const SelectionStep& last = current();
+    for (std::size_t i = 0; i < declared_job().free.size() && verdict.at_bound.empty(); ++i)
+      if (is_stuck(last.job.free[i], last.fit.parameters[i]))
+        verdict.at_bound = last.fit.parameters[i].name;
+    for (std::size_t r = 0; r < last.job.recordings.size(); ++r) {
+      const double percent = percent_of_drive(missing_force(last.job, last.fit, r));
+      if (percent <= std::max(kLargestForcePercent, verdict.force_percent)) continue;
+      verdict.force_percent = percent;
+      verdict.recording = last.job.recordings[r].name;
+    }
+    if (verdict.at_bound.empty() && verdict.recording.empty()) return;
+    for (const Accepted& a : accepted_)
+      if (EffectTrial* trial = trial_of(a.candidate)) {
+        trial->decision = Decision::rejected;
+        trial->reason = Reason::failed_test;
+        trial->rejection = {.test = Rejection::Test::misfit};
+      }
+    accepted_.clear();
+    result_.models.resize(1);
+  }
+
+  /// At a bound that is not the natural end of the quantity, where it has no part in the axis.
+  static bool is_stuck(const FreeParameter& free, const ParameterResult& found) {
+    const double natural = quantity_list()[free.quantity].quantity.lower;
+    const bool none = free.lower == natural && natural == 0.0 &&
+                      found.value - free.lower < 0.5 * (free.upper - free.lower);
+    return found.uncertainty.at_bound && !none;
   }
 
   void reject_for_share(const Candidate& candidate, double percent) {
@@ -653,7 +696,8 @@ void EffectSelector::decide() {
   } else if (result_.interrupted) {
     verdict.kind = stopped;
   } else {
-    verdict.kind = verdict.undecided.empty() ? none_passes : undecided;
+    const bool is_misfit = !verdict.at_bound.empty() || !verdict.recording.empty();
+    verdict.kind = is_misfit ? misfit : verdict.undecided.empty() ? none_passes : undecided;
   }
 }
 

@@ -77,6 +77,7 @@ struct SelectionVerdict {
     stopped,           ///< before an effect was accepted
     undecided,         ///< no effect was accepted, some explain the recordings equally well
     none_passes,       ///< something is missing, but every effect was rejected
+    misfit,            ///< the declared model does not fit, so that nothing can be said of effects
   };
   Kind kind = Kind::no_usable_fit;
   std::vector<std::string> accepted{}, undecided{};  ///< effects
@@ -89,6 +90,10 @@ struct SelectionVerdict {
     bool operator==(const Correction&) const = default;
   };
   std::vector<Correction> corrections{};
+  /// Of misfit: a declared parameter that is at its bound, or else the recording of which so much
+  /// of the drive force is missing.
+  std::string at_bound{}, recording{};
+  double force_percent = 0.0;
   /// Fall of the root mean square of what was not fitted, by the accepted effects together.
   double validate_percent = 0.0;
 

@@ -27,8 +27,11 @@ std::vector<ShortlistEntry> best_of(const ScoreTest& test, std::size_t length, b
   for (const Score& score : test.scores) {
     const Candidate& candidate = test.candidates[score.candidate];
     if (candidate.is_constant != constants) continue;
-    if (score.gain < kMinGain || taken.size() >= 2 * length) break;
-    if (taken.size() >= length && score.gain < kNearly * taken.front().score.gain) break;
+    if (score.gain < kMinGain) break;
+    const bool beyond = taken.size() >= 2 * length ||
+                        (taken.size() >= length && score.gain < kNearly * taken.front().score.gain);
+    // A clock that is a little off is heard before anything else is blamed.
+    if (beyond && !candidate.is_timing) continue;
     const auto same = std::ranges::count_if(
         taken, [&](const ShortlistEntry& p) { return same_effect(p.candidate, candidate); });
     if (same < kSettings)
@@ -70,7 +73,9 @@ std::vector<ShortlistEntry> screened(const Job& job, std::vector<ShortlistEntry>
   std::vector<ShortlistEntry> kept;
   for (const std::size_t i : order) {
     if (!std::isfinite(runs[i].cost)) break;
-    if (kept.size() >= kKept && runs[i].cost > kMaxCostRatio * runs[order.front()].cost) break;
+    const bool far =
+        kept.size() >= kKept && runs[i].cost > kMaxCostRatio * runs[order.front()].cost;
+    if (far && !list[i].candidate.is_timing) continue;
     ShortlistEntry& p = kept.emplace_back(std::move(list[i]));
     const auto base = runs[i].values.begin() + static_cast<std::ptrdiff_t>(job.free.size());
     const auto shapes = base + static_cast<std::ptrdiff_t>(p.candidate.strengths.size());

@@ -125,7 +125,8 @@ class Page {
   Html verdict() {
     Html summary = paragraph_of(overall_verdict(run_result_));
     if (!run_result_.selection && run_result_.diagnosis)
-      summary += paragraph_of(residual_verdict(job_, *run_result_.diagnosis));
+      summary += paragraph_of(
+          residual_verdict(job_, *run_result_.diagnosis, run_result_.options.select_effects));
     Html all = html(R"(<div class="verdict {}">{}</div>)", verdict_class(), summary);
     for (const Discrimination& s : run_result_.discriminations)
       all += paragraph_of(discrimination_text(s));
@@ -313,7 +314,10 @@ class Page {
   Html residual() {
     if (!run_result_.diagnosis) return {};
     const Diagnosis& diagnosis = *run_result_.diagnosis;
-    Html all = run_result_.selection ? Html() : paragraph_of(residual_verdict(job_, diagnosis));
+    Html all =
+        run_result_.selection
+            ? Html()
+            : paragraph_of(residual_verdict(job_, diagnosis, run_result_.options.select_effects));
     all += tests(diagnosis);
     if (const std::string faults = instruments_text(job_, diagnosis); !faults.empty())
       all += html("<h3>Instruments</h3>{}", paragraph_of(faults));

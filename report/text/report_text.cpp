@@ -187,7 +187,7 @@ std::string report_text(const RunResult& run_result, bool colour) {
   for (const Discrimination& s : run_result.discriminations)
     text += paragraph(discrimination_text(s));
   if (!run_result.selection && run_result.diagnosis)
-    text += residual_verdict(job, *run_result.diagnosis, colour);
+    text += residual_verdict(job, *run_result.diagnosis, run_result.options.select_effects, colour);
   if (run_result.interrupted) {
     const int starts = std::max(1, job.options.starts);
     return text + "\n" +

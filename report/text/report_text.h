@@ -25,7 +25,8 @@ std::string instruments_text(const Job& job, const Diagnosis& diagnosis);
 std::string suspected_effects_text(const Job& job, const Diagnosis& diagnosis);
 
 /// The verdict on the residual, one paragraph.
-std::string residual_verdict(const Job& job, const Diagnosis& diagnosis, bool colour = false);
+std::string residual_verdict(const Job& job, const Diagnosis& diagnosis,
+                             bool loop_was_asked_for = false, bool colour = false);
 
 /// Its part on the closed loop: effects that were tried, and the errors before and after.
 std::string selection_text(const RunResult& run_result, bool colour = false);

@@ -119,7 +119,8 @@ std::string suspected_effects_text(const Job& job, const Diagnosis& diagnosis) {
                       {Alignment::left, Alignment::left, Alignment::right, Alignment::wrapped});
 }
 
-std::string residual_verdict(const Job& job, const Diagnosis& diagnosis, bool colour) {
+std::string residual_verdict(const Job& job, const Diagnosis& diagnosis, bool loop_was_asked_for,
+                             bool colour) {
   const auto& tests = diagnosis.tests;
   if (tests.empty()) return "";
   if (!diagnosis.explained) {
@@ -135,10 +136,14 @@ std::string residual_verdict(const Job& job, const Diagnosis& diagnosis, bool co
           "As much is left by {}: if the axis never received this noise, give it as sigma. ",
           input_noise_text(job));
     if (diagnosis.suspected_effects.empty())
-      text += "No effect that axisfit knows explains it.";
+      text += "No effect that axisfit knows explains it. ";
     else
-      text += fmt::format("Most likely cause: {}. To test the suspected effects, use --close-loop.",
+      text += fmt::format("Most likely cause: {}. ",
                           diagnosis.suspected_effects.front().candidate.name);
+    if (loop_was_asked_for)
+      text += "The declared model does not fit: nothing can be said about effects yet.";
+    else if (!diagnosis.suspected_effects.empty())
+      text += "To test the suspected effects, use --close-loop.";
     return paragraph(text);
   }
   std::set<std::string> on;

@@ -38,6 +38,8 @@ std::string rejection_text(const Rejection& rejection) {
     case strength:
       return fmt::format("its strength is not determined: {:.2g} standard errors from zero",
                          rejection.found);
+    case misfit:
+      return "the declared model does not fit, with it or without";
     case share:
       return fmt::format(
           "lowers the validation error by no more than {:.2g} %, where most remains unexplained: "
@@ -229,6 +231,16 @@ std::string verdict_text(const EffectSelection& selection) {
                       selection.explained ? ", and every signal is explained down to its noise."
                                           : ", but not down to the noise.");
       break;
+    case misfit:
+      return verdict.at_bound.empty()
+                 ? fmt::format(
+                       "The declared model does not fit: of {}, {:.3g} % of the drive force is "
+                       "missing. Nothing can be said about effects yet.",
+                       verdict.recording, verdict.force_percent)
+                 : fmt::format(
+                       "The declared model does not fit: {} is at its bound. Nothing can be said "
+                       "about effects yet.",
+                       verdict.at_bound);
     case undecided:
       break;
   }

@@ -672,8 +672,15 @@ TEST_F(CommandLineTest, NoLoopIsClosedAroundAnUnusableFit) {
   const Outcome outcome = fit({poor, "--close-loop", "--json"});
   EXPECT_EQ(outcome.exit_code, 3);
   const Json json = Json::parse(outcome.out);
-  EXPECT_TRUE(json.at("residual").is_null());
   EXPECT_FALSE(json.contains("selection"));
+  // What is missing is shown all the same.
+  EXPECT_GT(json.at("residual").at("missing_force")[0].at("rms_n"), 1.0);
+  EXPECT_FALSE(json.at("residual").at("suspected_effects").empty());
+  std::string told = fit({poor, "--close-loop"}).out;
+  std::ranges::replace(told, '\n', ' ');
+  EXPECT_NE(told.find("The declared model does not fit: nothing can be said about effects yet."),
+            std::string::npos)
+      << told;
 }
 
 TEST_F(CommandLineTest, WhatCanBeDeterminedIsToldBeforeTheFit) {

@@ -96,6 +96,23 @@ TEST(SelectEffects, AddsNothingForNoiseThatIsLargerThanStated) {
   }
 }
 
+// A mass that may not be as large as it is: what is left looks like this effect or that.
+TEST(SelectEffects, SaysNothingOfEffectsWhileADeclaredParameterIsAtItsBound) {
+  const Model<double> truth = slide();
+  Job job = two_recordings(truth, truth, {"M", "B_a"});
+  FreeParameter& mass = job.free.front();
+  mass.upper = 0.8 * truth.axis.M;
+  mass.lower = 0.1 * truth.axis.M;
+  mass.initial = 0.5 * truth.axis.M;
+  const EffectSelection selection = close(job);
+  EXPECT_FALSE(selection.explained);
+  EXPECT_EQ(selection.verdict.kind, SelectionVerdict::Kind::misfit);
+  EXPECT_EQ(selection.verdict.at_bound, "M");
+  EXPECT_EQ(accepted(selection), Names{});
+  EXPECT_EQ(selection.models.size(), 1u);
+  EXPECT_FALSE(selection.effects.empty());
+}
+
 TEST(SelectEffects, HoldsOutBlocksWhereThereIsNothingToValidate) {
   const HiddenEffect secret = hidden_effect_named("coulomb_friction");
   Job job = secret.job();

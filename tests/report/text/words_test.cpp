@@ -68,6 +68,14 @@ TEST(WordsTest, OfWhatASearchComesTo) {
   selection.verdict.kind = none_passes;
   EXPECT_EQ(verdict_text(selection),
             "Something is missing, but no effect passes the tests: see the reasons.");
+  selection.verdict = {.kind = misfit, .at_bound = "M", .force_percent = 0.0};
+  EXPECT_EQ(verdict_text(selection),
+            "The declared model does not fit: M is at its bound. Nothing can be said about effects "
+            "yet.");
+  selection.verdict = {.kind = misfit, .recording = "train", .force_percent = 91.23};
+  EXPECT_EQ(verdict_text(selection),
+            "The declared model does not fit: of train, 91.2 % of the drive force is missing. "
+            "Nothing can be said about effects yet.");
   selection.verdict = {.kind = hardly_anything, .small = {"spring"}};
   EXPECT_EQ(verdict_text(selection),
             "Hardly anything is missing: spring is significant, but hardly lowers the validation "
