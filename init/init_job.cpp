@@ -136,8 +136,8 @@ struct Source {
   std::optional<Input> input;
   std::string input_file = {};  ///< of what drives the axis, where it is not `file`
   double input_offset = 0.0;    ///< s, added to the times of that
-  /// Whether what drives the axis goes better if each value holds, although it was measured.
-  bool is_held = false;
+  /// Whether the motion goes better with the other hold than what its kind suggests.
+  bool has_other_hold = false;
 };
 
 /// A quantity that the job may free.
@@ -593,18 +593,16 @@ class Initialiser {
     };
     constexpr double kLeastFall = 2.0, kLeastSamples = 0.5;
     FitResult without = fitted();
-    const auto hold_inputs = [&](bool hold) {
-      for (Source& source : sources_) source.is_held = hold;
+    const auto swap_holds = [&] {
+      for (Source& source : sources_) source.has_other_hold = !source.has_other_hold;
     };
-    if (std::ranges::any_of(sources_, is_measured_input)) {
-      hold_inputs(true);
-      FitResult held = fitted();
-      if (held.status == Status::converged &&
-          kLeastFall * held.reduced_chi_square < without.reduced_chi_square)
-        without = std::move(held);
-      else
-        hold_inputs(false);
-    }
+    swap_holds();
+    FitResult swapped = fitted();
+    if (swapped.status == Status::converged &&
+        kLeastFall * swapped.reduced_chi_square < without.reduced_chi_square)
+      without = std::move(swapped);
+    else
+      swap_holds();
     add_delay();
     const FitResult with = fitted();
     const double delay = with.parameters.back().value;
@@ -788,18 +786,17 @@ class Initialiser {
             "N/V");
     }
     std::pair<std::string, std::string> hold;
-    const bool in_newtons = drives_in_newtons(source), is_measured = is_measured_input(source);
-    if (is_measured && source.is_held) {
-      if (in_newtons) hold = {"hold", "zero_order"};
-      written.reasons.push_back(
-          "each value holds until the next: so the motion goes better with it");
-    } else if (is_measured && !in_newtons) {
-      hold = {"hold", "linear"};
-      written.reasons.push_back("measured: between samples it goes straight from one to the next");
-    } else if (!is_measured && in_newtons) {
-      hold = {"hold", "zero_order"};
-      written.reasons.push_back("commanded: each value holds until the next");
-    }
+    const bool in_newtons = drives_in_newtons(source),
+               is_linear = is_measured_input(source) != source.has_other_hold;
+    if (is_linear != in_newtons)  // else the default of the key
+      hold = {"hold", is_linear ? "linear" : "zero_order"};
+    if (!hold.first.empty() || source.has_other_hold)
+      written.reasons.push_back(std::string(is_linear
+                                                ? "it goes straight from one sample to the next"
+                                                : "each value holds until the next") +
+                                (source.has_other_hold ? ": so the motion goes better with it"
+                                 : is_linear           ? ", as what is measured does"
+                                                       : ", as what is commanded does"));
     return reasons_text(written, 6) +
            fmt::format("      {}: {}\n", source.input->key,
                        column_map(written, unit, hold, source.input_file, source.input_offset));

@@ -46,6 +46,15 @@ CandidateValues candidate_values(const Job& job, const FitResult& fit, const Can
   return own;
 }
 
+std::string shape_at_bound(const Job& job, const FitResult& fit, const Candidate& candidate) {
+  if (!candidate.shapes_are_free) return {};
+  for (std::size_t i = 0; i < job.free.size(); ++i)
+    if (std::ranges::find(candidate.shapes, job.free[i].quantity) != candidate.shapes.end() &&
+        fit.parameters[i].uncertainty.at_bound)
+      return fit.parameters[i].name;
+  return {};
+}
+
 double bic_advantage(const ExtendedModel& a, const ExtendedModel& b) {
   const double of_a =
       bic_difference(a.residuals, a.job.free.size(), b.residuals, b.job.free.size());

@@ -147,8 +147,32 @@ class EffectSelector {
 
   void search_named() {
     swapped_ = false;
-    while (has_room())
-      if (!round(false) && !try_swap()) break;
+    do {
+      while (has_room())
+        if (!round(false) && !try_swap()) break;
+    } while (drop_degenerate());
+  }
+
+  /// Takes out what has become a simpler effect beside those accepted after it, and does not try it
+  /// again: the simpler one is in the catalogue. Returns whether there was one.
+  bool drop_degenerate() {
+    for (std::size_t a = 0; a < accepted_.size(); ++a) {
+      const Candidate candidate = accepted_[a].candidate;
+      const std::string shape = shape_at_bound(current().job, current().fit, candidate);
+      if (shape.empty()) continue;
+      SelectionStep reduced = without(a);
+      if (!reduced.fit.usable) continue;
+      if (EffectTrial* trial = trial_of(candidate)) {
+        trial->decision = Decision::rejected;
+        trial->reason = Reason::failed_test;
+        trial->rejection = {.test = Rejection::Test::bound, .parameter = shape};
+      }
+      degenerate_.push_back(candidate);
+      accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(a));
+      rebuild(std::move(reduced));
+      return true;
+    }
+    return false;
   }
 
   SearchState snapshot() const { return {result_.models, result_.effects, accepted_}; }
@@ -161,6 +185,7 @@ class EffectSelector {
     result_.models.resize(1);
     result_.effects.clear();
     accepted_.clear();
+    degenerate_.clear();
   }
 
   void report_progress(const std::string& phase, int done = 0, int of = 0) {
@@ -205,6 +230,10 @@ class EffectSelector {
                                curves, options_.shortlist, context_);
     std::vector<ShortlistEntry>& entries = list.entries;
     tried_ = list.tried;
+    std::erase_if(entries, [&](const ShortlistEntry& entry) {
+      return std::ranges::any_of(
+          degenerate_, [&](const Candidate& c) { return same_effect(c, entry.candidate); });
+    });
     const auto before = residual_series(current().job, current().fit);
     if (is_complete)
       std::erase_if(entries, [&](const ShortlistEntry& entry) {
@@ -631,6 +660,7 @@ class EffectSelector {
   bool provisional_ = false;  ///< what is accepted has yet to prove better than that
   std::vector<Accepted> accepted_;
   std::vector<RivalPair> rival_pairs_;
+  std::vector<Candidate> degenerate_;  ///< not to be tried again
   std::size_t tried_ = 1;
   int round_ = 0;
   bool swapped_ = false;

@@ -202,6 +202,22 @@ TEST_F(InitJobTest, AForceNeedsNoGain) {
   expect_the_driven_mass(fitted(read()), 1.0);
 }
 
+// Recordings of a simulation that is not ours: 4.2 kg, 9 N s/m, 2.1 N. As a staircase the force
+// would make 9.4 N s/m of it.
+TEST_F(InitJobTest, WhatWasMeasuredIsNoStaircase) {
+  for (const auto& [file, gain] :
+       {std::pair("labview-like.csv", std::optional<double>()), {"headerless.txt", 6.5}}) {
+    SCOPED_TRACE(file);
+    make({std::string(AXISFIT_TESTDATA "/drives/") + file}, {}, gain);
+    const JobFile job = read();
+    EXPECT_EQ(job.job.recordings.front().command.hold, Hold::linear);
+    const auto found = fitted(job);
+    EXPECT_NEAR(found.at("M"), 4.2, 0.002);
+    EXPECT_NEAR(found.at("B_a"), 9.0, 0.1);
+    EXPECT_NEAR(found.at("coulomb_friction.F_c"), 2.1, 0.01);
+  }
+}
+
 TEST_F(InitJobTest, NamesCannotBreakOutOfTheFile) {
   const std::string name = "pos: {x}, # \"q\" - 'a' [mm]";
   Table table = renamed(
