@@ -99,14 +99,18 @@ class EffectSelector {
     while (has_room() && round(true)) {
     }
     const SearchState appended = snapshot();
-    // Where no curve is left to find, the named effects have imitated none.
-    if (named.accepted.empty() || accepted_.size() == named.accepted.size()) return;
+    const bool appends = accepted_.size() > named.accepted.size();
+    // A simulation that tracks the data shows a curve also beside effects that imitate a part of
+    // it.
+    const bool tracks = declared_job().options.observer == ObserverMode::fixed;
+    if (named.accepted.empty() || (tracks && !appends)) return;
     provisional_ = true;
     restart();
     if (!round(true)) return restore(appended);
     search_named();
     eliminate_backward();
-    if (loss_of(appended.models.back(), current()) > 0.0) restore(appended);
+    const double loss = loss_of(appended.models.back(), current());
+    if (loss > 0.0 && (appends || is_clearly_worse(loss))) restore(appended);
   }
 
   /// By how much b explains the recordings worse than a, parameters counted.
