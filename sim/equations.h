@@ -13,6 +13,14 @@
 
 namespace axisfit {
 
+/// Small accelerations that are added to the axis. Zero in value: what counts is their derivatives,
+/// which tell what a force would do that the model lacks.
+template <class T>
+struct Disturbance {
+  T arm{0.0};    ///< m/s^2, of the arm while it moves; with a rigid transmission the motor follows
+  T motor{0.0};  ///< rad/s^2, of a motor behind backlash
+};
+
 /// What acts on the axis at one instant besides its state.
 template <class T>
 struct Input {
@@ -20,6 +28,7 @@ struct Input {
   TargetOf<T> target;
   T time{0.0};  ///< s, of the recording
   RestMemory<T> memory;
+  Disturbance<T> disturbance = {};
 };
 
 /// Which terms of the right-hand side to include.
@@ -164,7 +173,7 @@ class Equations {
     if (is_.directions)
       force -=
           double(mode.sliding) * dry_friction(mode.doublet, mode.sliding, mode, y, input, terms);
-    return force / moving_mass();
+    return force / moving_mass() + input.disturbance.arm;
   }
 
   /// Force that the observer adds to the arm, N: what the model lacks, or noise.
@@ -191,7 +200,7 @@ class Equations {
       const T torque = p.r_g * drive_force(mode, y, input, terms);
       d[2] = y[3] + position_correction / p.r_g;
       d[3] = (torque - p.B_m * y[3] - p.r_g * gear_force(mode, y)) / p.J_m +
-             acceleration_correction / p.r_g;
+             acceleration_correction / p.r_g + input.disturbance.motor;
     } else {
       d[2] = d[0] / p.r_g;
       d[3] = d[1] / p.r_g;
@@ -207,6 +216,15 @@ class Equations {
       d[8] = y[9];
       d[9] = -elastic_rate(y) - model_acceleration;
     }
+    return d;
+  }
+
+  /// What the disturbance adds to rate().
+  State<T> disturbance_rate(const Mode& mode, const Disturbance<T>& disturbance) const {
+    State<T> d{};
+    if (mode.sliding != 0) d[1] = disturbance.arm;
+    d[3] = is_.has.has_backlash ? disturbance.motor : d[1] / m_.axis.r_g;
+    if (is_.elastic) d[9] = -d[1];
     return d;
   }
 

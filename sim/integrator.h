@@ -48,6 +48,8 @@ struct IntegratorOptions {
   double interval = 0.0;
   /// Whether the command runs linearly between its switches.
   bool has_command_ramp = false;
+  /// Whether there are disturbances.
+  bool has_disturbance = false;
   /// Whether event times carry derivatives. Off only to show what that is worth.
   bool event_derivatives = true;
   /// Events within one step length before the simulation is given up as chattering.
@@ -103,6 +105,9 @@ class Integrator {
     copy_plain_input();
     here_.reset();
   }
+
+  /// From now on this disturbs the axis. Needs IntegratorOptions::has_disturbance.
+  void set_disturbance(const Disturbance<T>& disturbance) { input_.disturbance = disturbance; }
 
   /// From now on the observer's target is `target` and moves with the rate `slope` per second.
   void set_target(const Target& target, const Target& slope) {
@@ -237,9 +242,13 @@ class Integrator {
     if constexpr (std::is_same_v<S, double>) {
       return view.equations.rate(mode_, y, view.input);
     } else {
-      const auto& [command, target, time, memory] = view.input;
+      const auto& [command, target, time, memory, disturbance] = view.input;
       State<S> f = view.propagator.a_times(y);
       flow_->driven.add_product({S(1.0), command, target.velocity, target.position}, f);
+      if (options_.has_disturbance) {
+        const State<S> disturbed = view.equations.disturbance_rate(mode_, disturbance);
+        for (std::size_t i = 0; i < kStates; ++i) f[i] += disturbed[i];
+      }
       if (!affine()) {
         const State<S> smooth = view.equations.smooth_rate(mode_, y, view.input);
         for (std::size_t i = 0; i < kStates; ++i) f[i] += smooth[i];

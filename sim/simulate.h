@@ -51,13 +51,17 @@ inline IntegratorOptions recording_options(std::span<const double> times, double
 /// A reading precedes a command that switches at the same instant. With an observer, the target
 /// runs linearly between the measured values. A dead time below zero, of a log that is late, is
 /// allowed: the command is all known.
+///
+/// Disturbances, where there are any, are those at the instants. Between two of them their mean
+/// acts.
 template <class T, class Read>
 SimulationResult simulate(const Model<T>& model, const Schedule& command,
                           std::span<const double> times, Read&& read, const Observer& observer = {},
-                          const TargetSeries& measured = {},
-                          const IntegratorOptions& options = {}) {
+                          const TargetSeries& measured = {}, const IntegratorOptions& options = {},
+                          std::span<const Disturbance<T>> disturbances = {}) {
   SimulationResult simulation_result;
   IntegratorOptions even = options;
+  even.has_disturbance = !disturbances.empty();
   if (times.size() > 1) even.interval = mean_interval(times);
   const bool linear = command.hold == Hold::linear;
   even.has_command_ramp = linear;
@@ -90,6 +94,10 @@ SimulationResult simulate(const Model<T>& model, const Schedule& command,
       axis.set_target(from, {(to.velocity - from.velocity) / duration,
                              (to.position - from.position) / duration});
     }
+    if (i > 0 && even.has_disturbance) {
+      const Disturbance<T>&from = disturbances[i - 1], &to = disturbances[i];
+      axis.set_disturbance({0.5 * (from.arm + to.arm), 0.5 * (from.motor + to.motor)});
+    }
     for (; next < command.times.size(); ++next) {
       const T instant = command.times[next] + delay;
       if (!(value_of(instant) < times[i])) break;
@@ -100,6 +108,7 @@ SimulationResult simulate(const Model<T>& model, const Schedule& command,
         axis.set_command(T(command.values[next]));
     }
     if (!reaches(T(times[i]))) return simulation_result;
+    if (even.has_disturbance) axis.set_disturbance(disturbances[i]);
     read(i, axis);
     simulation_result.reached = i + 1;
   }

@@ -151,8 +151,9 @@ struct FitOptions {
   int starts = 1;            ///< the first from the initial values, the others drawn around them
   double spread = 5.0;       ///< starts are drawn within this factor, either way
   std::uint64_t seed = 1;
-  int threads = 0;       ///< 0: as many as the machine has
-  double step = 0.5e-3;  ///< s, of the integrator
+  int threads = 0;             ///< 0: as many as the machine has
+  double step = 0.5e-3;        ///< s, of the integrator
+  int input_noise_draws = 64;  ///< see input_noise.h; their standard deviation errs by 9 %
 };
 
 /// What the machine may be asked for. What is not given is taken to be what the recordings covered,

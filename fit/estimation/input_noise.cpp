@@ -10,9 +10,6 @@
 namespace axisfit {
 namespace {
 
-// The standard deviation of 64 draws errs by 9 %.
-constexpr std::size_t kDraws = 64;
-
 /// The job as it would have been recorded, with another draw of the inputs' noise.
 Job with_input_noise(Job job, std::size_t draw) {
   std::mt19937_64 generator(draw + 1);
@@ -48,13 +45,14 @@ std::optional<InputNoise> input_noise(const Job& job, const ParameterSpace& spac
     return r.role == Role::fit && r.command_sigma > 0.0;
   };
   if (!at.finite || std::ranges::none_of(job.recordings, is_noisy)) return std::nullopt;
+  const int draws = job.options.input_noise_draws;
   InputNoise result;
-  result.gradients.setZero(at.jacobian.cols(), kDraws);
-  result.mean_squares.setZero(static_cast<Eigen::Index>(at.series.size()), kDraws);
+  result.gradients.setZero(at.jacobian.cols(), draws);
+  result.mean_squares.setZero(static_cast<Eigen::Index>(at.series.size()), draws);
   const Eigen::VectorXd length = at.jacobian.colwise().norm().cwiseMax(1e-300);
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(at.jacobian *
                                                        length.cwiseInverse().asDiagonal());
-  parallel_for(kDraws, [&](std::size_t draw) {
+  parallel_for(static_cast<std::size_t>(draws), [&](std::size_t draw) {
     const Job noisy = with_input_noise(job, draw);
     const Eigen::VectorXd residuals = residuals_at(noisy, space, u, observer_gain);
     if (residuals.size() != at.residuals.size()) return;  // it does not finish

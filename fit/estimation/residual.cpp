@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "fit/estimation/jet.h"
@@ -19,11 +20,12 @@ std::vector<double> target_values(const Recording& recording, Signal signal) {
 }
 
 /// Runs a recording through a model, read by a recorder of these signals; `also` sees the axis at
-/// every sample.
+/// every instant of the recorder, and whether that is a sample.
 template <class T, class Also>
 SimulationResult run(const Job& job, const Recording& recording, const Model<T>& model,
                      const Observer& observer, Recorder<T>& recorder, Also&& also,
-                     std::vector<ModeChange>* modes = nullptr, const StopFlag* stop = nullptr) {
+                     std::vector<ModeChange>* modes = nullptr, const StopFlag* stop = nullptr,
+                     std::span<const Disturbance<T>> disturbances = {}) {
   IntegratorOptions options = recording_options(recording.times, job.options.step);
   options.modes = modes;
   options.stop = stop;
@@ -43,9 +45,9 @@ SimulationResult run(const Job& job, const Recording& recording, const Model<T>&
       model, recording.command, recorder.instants(),
       [&](std::size_t i, const Integrator<T>& axis) {
         recorder.read(axis);
-        if (recorder.is_sample(i)) also(axis);
+        also(axis, recorder.is_sample(i));
       },
-      observer, {velocity, position}, options);
+      observer, {velocity, position}, options, disturbances);
 }
 
 /// sign(r) sqrt(rho(r^2)) for Huber's rho of width k, and its derivative.
@@ -82,7 +84,8 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
   const TargetSeries measured{velocity, position};
   const SimulationResult simulation_result = run(
       job, recording, model, observer, recorder,
-      [&](const Integrator<double>& axis) {
+      [&](const Integrator<double>& axis, bool is_sample) {
+        if (!is_sample) return;
         const Equations<double>& equations = axis.equations();
         const State<double>& y = axis.state();
         const double drive = equations.drive_force(axis.mode(), y, axis.input());
@@ -124,7 +127,6 @@ RecordingCost::RecordingCost(const Job& job, const ParameterSpace& space, std::s
 template <class T>
 bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobian,
                              std::span<const std::size_t> columns) const {
-  const Recording& recording = job_.recordings[recording_];
   Model<T> model = convert<T>(model_at(job_, space_, u, recording_));
   if constexpr (!std::is_same_v<T, double>) {
     const std::vector<T*> member = members(model);
@@ -132,9 +134,18 @@ bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobia
       member[space_[columns[k]].quantity]->v[static_cast<Eigen::Index>(k)] =
           space_.slope(columns[k], u[columns[k]]);
   }
+  return evaluate_model<T>(model, {}, residuals, {jacobian, space_.size(), columns});
+}
+
+template <class T>
+bool RecordingCost::evaluate_model(const Model<T>& model,
+                                   std::span<const Disturbance<T>> disturbances, double* residuals,
+                                   const Derivatives& derivatives) const {
+  const Recording& recording = job_.recordings[recording_];
   Recorder<T> recorder(model.instruments, signals_, recording.times);
   if (!run(
-           job_, recording, model, observer_, recorder, [](const Integrator<T>&) {}, nullptr, stop_)
+           job_, recording, model, observer_, recorder, [](const Integrator<T>&, bool) {}, nullptr,
+           stop_, disturbances)
            .finished)
     return false;
   bool finite = true;
@@ -150,9 +161,9 @@ bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobia
       residuals[row] = r;
       finite = finite && std::isfinite(r);
       if constexpr (!std::is_same_v<T, double>) {
-        for (std::size_t k = 0; k < columns.size(); ++k) {
+        for (std::size_t k = 0; k < derivatives.columns.size(); ++k) {
           const double d = -weight * simulated[i].v[static_cast<Eigen::Index>(k)] / m.sigma;
-          jacobian[row * space_.size() + columns[k]] = d;
+          derivatives.data[row * derivatives.stride + derivatives.columns[k]] = d;
           finite = finite && std::isfinite(d);
         }
       }
@@ -191,6 +202,47 @@ bool RecordingCost::evaluate_with_jacobian(const double* u, double* residuals,
     if (!finished) return false;
   } while (!remaining.empty());
   return true;
+}
+
+std::vector<AxisInstant> RecordingCost::trajectory(const double* u) const {
+  const Recording& recording = job_.recordings[recording_];
+  const Model<double> model = model_at(job_, space_, u, recording_);
+  Recorder<double> recorder(model.instruments, signals_, recording.times);
+  std::vector<AxisInstant> instants;
+  const auto note = [&](const Integrator<double>& axis, bool) {
+    instants.push_back({axis.mode(), axis.state(), axis.input()});
+  };
+  if (!run(job_, recording, model, observer_, recorder, note, nullptr, stop_).finished) return {};
+  return instants;
+}
+
+Eigen::MatrixXd RecordingCost::disturbance_response(const double* u,
+                                                    const Disturbances& disturbances) const {
+  constexpr int kWidth = 24;
+  using T = ceres::Jet<double, kWidth>;
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Model<T> model = convert<T>(model_at(job_, space_, u, recording_));
+  const Eigen::Index instants = disturbances.arm.rows(), all = disturbances.arm.cols();
+  Eigen::MatrixXd response(num_residuals(), all);
+  std::vector<double> residuals(static_cast<std::size_t>(num_residuals()));
+  std::vector<Disturbance<T>> of_pass(static_cast<std::size_t>(instants));
+  std::vector<std::size_t> columns(kWidth);
+  std::iota(columns.begin(), columns.end(), 0);
+  RowMajor block(num_residuals(), kWidth);
+  for (Eigen::Index first = 0; first < all; first += kWidth) {
+    const Eigen::Index n = std::min<Eigen::Index>(kWidth, all - first);
+    for (Eigen::Index i = 0; i < instants; ++i) {
+      Disturbance<T>& at = of_pass[static_cast<std::size_t>(i)];
+      at.arm.v.head(n) = disturbances.arm.row(i).segment(first, n).transpose();
+      at.motor.v.head(n) = disturbances.motor.row(i).segment(first, n).transpose();
+    }
+    if (!evaluate_model<T>(
+            model, of_pass, residuals.data(),
+            {block.data(), kWidth, std::span(columns).first(static_cast<std::size_t>(n))}))
+      return {};
+    response.middleCols(first, n) = block.leftCols(n);
+  }
+  return response;
 }
 
 }  // namespace axisfit

@@ -3,6 +3,7 @@
 
 #include <ceres/cost_function.h>
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "base/interrupt.h"
@@ -21,6 +22,19 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
 /// The observer of a recording at a rate: to its velocity, or else to its position, or none.
 Observer observer_for(const Recording& recording, double rate);
 
+/// The axis at one instant of a simulation.
+struct AxisInstant {
+  Mode mode;
+  State<double> state;
+  Input<double> input;
+};
+
+/// Small accelerations at the instants of a simulation: instants by columns, each column one of
+/// them. As in Disturbance, m/s^2 and rad/s^2.
+struct Disturbances {
+  Eigen::MatrixXd arm, motor;
+};
+
 /// Residuals (measured - simulated) / sigma of all fitted measurements of a recording, measurement
 /// by measurement, without the samples that are left out. One parameter block: the whole vector u
 /// of the space.
@@ -38,10 +52,28 @@ class RecordingCost : public ceres::CostFunction {
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
 
+  /// The axis at all instants at which its simulation is read, the first of them the first sample;
+  /// none where it does not finish.
+  std::vector<AxisInstant> trajectory(const double* u) const;
+
+  /// The derivatives of the residuals with respect to disturbances at those instants, residuals by
+  /// columns. Exact but for the course of a disturbance between two instants, and much cheaper than
+  /// effects that make such forces. Empty where the simulation does not finish.
+  Eigen::MatrixXd disturbance_response(const double* u, const Disturbances& disturbances) const;
+
  private:
+  /// Where derivatives go: that of the k-th dual part to column columns[k] of a row-major matrix.
+  struct Derivatives {
+    double* data = nullptr;
+    std::size_t stride = 0;
+    std::span<const std::size_t> columns;
+  };
   template <class T>
   bool evaluate(const double* u, double* residuals, double* jacobian,
                 std::span<const std::size_t> columns) const;
+  template <class T>
+  bool evaluate_model(const Model<T>& model, std::span<const Disturbance<T>> disturbances,
+                      double* residuals, const Derivatives& derivatives) const;
   bool evaluate_with_jacobian(const double* u, double* residuals, double* jacobian) const;
 
   const Job& job_;

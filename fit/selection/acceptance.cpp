@@ -41,7 +41,8 @@ double variance_of_products(const std::vector<double>& change, const ResidualSer
 Improvement improvement(const std::vector<ResidualSeries>& before,
                         const std::vector<ResidualSeries>& after) {
   Improvement result;
-  double gain = 0.0, variance = 0.0, square_before = 0.0, square_after = 0.0;
+  double gain = 0.0, expected = 0.0, variance = 0.0, least_variance = 0.0, square_before = 0.0,
+         square_after = 0.0, noise = 0.0;
   for (const ResidualSeries& old : before) {
     const ResidualSeries* now = find_series(after, old);
     if (now == nullptr) return result;
@@ -54,16 +55,24 @@ Improvement improvement(const std::vector<ResidualSeries>& before,
     }
     // With d the change of the prediction, r' = r - d: the fall of the sum of squares is
     // |d|^2 + 2 d r', of which only the second part is chance.
-    variance += 4.0 * variance_of_products(change, *now);
+    const double by_chance = variance_of_products(change, *now);
+    variance += 4.0 * by_chance;
+    // A wrong change is in what it leaves, a right one was in what there was.
+    least_variance += 4.0 * std::min(by_chance, variance_of_products(change, old));
+    for (const double d : change) expected += d * d;
     square_before += sum_of_squares(old);
     square_after += sum_of_squares(*now);
+    if (old.noise != NoiseSource::fit) noise += static_cast<double>(old.values.size());
   }
   gain = square_before - square_after;
   result.comparable = true;
   result.z = variance > 0.0 ? gain / std::sqrt(variance) : 0.0;
+  result.expected_z = least_variance > 0.0 ? expected / std::sqrt(least_variance) : 0.0;
   result.p_value = 0.5 * std::erfc(result.z / std::sqrt(2.0));
   result.validate_percent =
       square_before > 0.0 ? 100.0 * (1.0 - std::sqrt(square_after / square_before)) : 0.0;
+  const double missing = square_before - noise, left = std::max(0.0, square_after - noise);
+  result.missing_percent = missing > 0.0 ? 100.0 * (1.0 - std::sqrt(left / missing)) : 0.0;
   return result;
 }
 
@@ -161,8 +170,10 @@ std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvem
                      .required = required,
                      .tried = tried};
   constexpr double kMinPercent = 0.5;
+  // An effect that is there passes with nine in ten of such recordings.
+  constexpr double kPower = 4.4;
   if (!replicates && gain.p_value > chance)
-    return Rejection{.test = validation, .found = gain.p_value};
+    return Rejection{.test = gain.expected_z < kPower ? power : validation, .found = gain.p_value};
   if (!replicates && gain.validate_percent < kMinPercent)
     return Rejection{.test = validation_size, .found = gain.validate_percent};
   if (!determined.at_bound.empty())

@@ -21,7 +21,13 @@ struct Improvement {
   /// were chance, and the probability of that or more.
   double z = 0.0;
   double p_value = 1.0;
+  /// What z would be on average if the effect were as the fit found it: small where the motion that
+  /// was not fitted hardly shows it.
+  double expected_z = 0.0;
   double validate_percent = 0.0;  ///< fall of the root mean square of what was not fitted
+  /// The same of its part beyond the noise of the stated size, which is all that a model can take
+  /// away.
+  double missing_percent = 0.0;
 };
 
 Improvement improvement(const std::vector<ResidualSeries>& before,
@@ -66,6 +72,7 @@ struct Rejection {
     simulation,       ///< with it the simulation does not finish for all recordings
     significance,     ///< the best of many by chance lowers the sum of squares as much
     validation,       ///< it does not lower the validation error
+    power,            ///< nor could it: what was not fitted hardly shows it
     validation_size,  ///< it hardly does
     bound,            ///< a parameter of it is held by a bound
     shape,            ///< the data leave a shape of it open
@@ -75,9 +82,9 @@ struct Rejection {
     misfit,           ///< the declared model does not fit, with it or without
   };
   Test test = Test::fit;
-  /// Of significance, the fall of the sum of squares; of validation, the p-value; of
-  /// validation_size and share, the fall of the validation error, %; of strength, the standard
-  /// errors from zero.
+  /// Of significance, the fall of the sum of squares; of validation and power, the p-value; of
+  /// validation_size, the fall of the validation error, %; of share, that beyond the noise; of
+  /// strength, the standard errors from zero.
   double found = 0.0;
   double required = 0.0;    ///< of significance: the least fall of the sum of squares
   std::size_t tried = 0;    ///< of significance: candidates and settings among which it was chosen

@@ -12,6 +12,7 @@ FitResult refit(const Job& job, const RunContext& context) {
   quick.options.attempts = 1;
   quick.options.tolerance = 1e-7;
   quick.options.max_iterations = std::min(job.options.max_iterations, 25);
+  quick.options.input_noise_draws = 8;  // enough to judge by, an error of a quarter
   // Smooth effects are then a few parts in a hundred thousand off, and twice as quick.
   quick.options.step = 2.0 * job.options.step;
   if (job.options.observer == ObserverMode::continuation)

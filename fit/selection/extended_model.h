@@ -19,6 +19,7 @@ struct ExtendedModel {
   Improvement gain;                          ///< against the model before
   std::optional<Rejection> rejection;        ///< by the gate; none: it may stay
   std::optional<Replication> replication{};  ///< where it was asked for
+  bool on_stretches = false;  ///< accepted by held-out stretches of the fitted recordings
 };
 
 /// Fits from close by, content with less than a final fit: one start, one continuation.

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 #include "base/linear_algebra.h"
 #include "base/parallel.h"
 #include "fit/estimation/continuation.h"
 #include "fit/estimation/residual.h"
+#include "fit/selection/effect_columns.h"
 #include "fit/selection/periods.h"
 #include "sim/sampling.h"
 
@@ -74,6 +77,174 @@ SearchScales scales_of(const Job& job, const ParameterSpace& space, const Eigen:
   return s;
 }
 
+/// What one step of least squares makes of a candidate's columns.
+class Scorer {
+ public:
+  Scorer(const ParameterSpace& space, const Eigen::VectorXd& u, const Linearization& base,
+         const Eigen::MatrixXd& basis, const Eigen::VectorXd& residual)
+      : space_(space),
+        u_(u),
+        base_(base),
+        basis_(basis),
+        residual_(residual),
+        solver_(base.jacobian) {}
+
+  /// Enters strengths, values and gain where that is more than the score has.
+  void consider(const EffectSetting& setting, const Eigen::MatrixXd& rows, Score& score) const {
+    const Eigen::MatrixXd derivatives = with_priors(rows);
+    const Eigen::MatrixXd columns = projected(derivatives);
+    if (columns.size() == 0) return;
+    const Eigen::VectorXd step = LeastSquaresSolver(columns).solve(-residual_);
+    if (!step.allFinite()) return;
+    std::vector<double> reached;
+    for (std::size_t k = 0; k < setting.strengths.size(); ++k) {
+      const Quantity& q = quantity_list()[setting.candidate->strengths[k]].quantity;
+      reached.push_back(
+          moved(*setting.candidate, setting.strengths[k], step[static_cast<Eigen::Index>(k)]));
+      if (setting.strengths.size() == 1 && (reached[k] < q.lower || reached[k] > q.upper)) return;
+    }
+    const double gain = residual_.squaredNorm() - (residual_ + columns * step).squaredNorm();
+    if (!(gain > score.gain)) return;
+    score.gain = gain;
+    score.shapes = setting.shapes;
+    score.strengths = reached;
+    // The free parameters adapt to the effect, no further than a linear step can be trusted.
+    const Eigen::VectorXd way = solver_.solve(-(base_.residuals + derivatives * step));
+    score.values = space_.values(u_ + way.cwiseMax(-0.7).cwiseMin(0.7));
+  }
+
+  /// The step of the shapes, from a score and the derivatives with respect to strengths and shapes
+  /// there; none where they say nothing.
+  std::optional<Eigen::VectorXd> step_of_shapes(const EffectSetting& setting,
+                                                const Eigen::MatrixXd& rows) const {
+    const Eigen::MatrixXd columns = projected(with_priors(rows));
+    if (columns.size() == 0) return std::nullopt;
+    const auto strengths = static_cast<Eigen::Index>(setting.strengths.size());
+    Eigen::VectorXd way(strengths);
+    for (Eigen::Index k = 0; k < strengths; ++k)
+      way[k] = setting.strengths[static_cast<std::size_t>(k)] -
+               setting.candidate->neutral[static_cast<std::size_t>(k)];
+    const Eigen::VectorXd there = residual_ + columns.leftCols(strengths) * way;
+    const Eigen::VectorXd step = LeastSquaresSolver(columns).solve(-there);
+    if (!step.allFinite()) return std::nullopt;
+    return step.tail(step.size() - strengths);
+  }
+
+ private:
+  static double moved(const Candidate& candidate, double value, double step) {
+    return candidate.is_constant && value > 0.0 ? value * std::exp(step) : value + step;
+  }
+
+  /// Candidates have no part in what is known of the free parameters.
+  Eigen::MatrixXd with_priors(const Eigen::MatrixXd& rows) const {
+    if (rows.cols() == 0) return {};
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(residual_.size(), rows.cols());
+    all.topRows(rows.rows()) = rows;
+    return all;
+  }
+
+  /// Without what the free parameters do; empty where nothing is left of a column but rounding.
+  Eigen::MatrixXd projected(const Eigen::MatrixXd& derivatives) const {
+    Eigen::MatrixXd columns = derivatives - basis_ * (basis_.transpose() * derivatives);
+    for (Eigen::Index k = 0; k < columns.cols(); ++k)
+      if (!(columns.col(k).norm() >= 1e-4 * derivatives.col(k).norm())) return {};
+    return columns;
+  }
+
+  const ParameterSpace& space_;
+  const Eigen::VectorXd& u_;
+  const Linearization& base_;
+  const Eigen::MatrixXd& basis_;
+  const Eigen::VectorXd& residual_;
+  const LeastSquaresSolver solver_;
+};
+
+/// The mean derivatives up to each of a candidate's probes.
+std::vector<std::pair<double, Eigen::MatrixXd>> probed(const Job& fixed, const Candidate& candidate,
+                                                       const std::vector<double>& shapes,
+                                                       double rate) {
+  std::vector<std::pair<double, Eigen::MatrixXd>> list;
+  Candidate shaped = candidate;
+  shaped.shapes_are_free = false;
+  const Job extended = with_candidate(fixed, shaped, {}, candidate.neutral, shapes);
+  const ParameterSpace space(extended);
+  const Eigen::VectorXd at_rest =
+      residuals_at(extended, space, space.internal(candidate.neutral), rate);
+  for (const double probe : candidate.probes) {
+    const Eigen::VectorXd there =
+        residuals_at(extended, space, space.internal(std::vector{probe}), rate);
+    if (there.size() == 0 || there.size() != at_rest.size()) continue;
+    list.emplace_back(probe, (there - at_rest) / (probe - candidate.neutral[0]));
+  }
+  return list;
+}
+
+/// Of one shape, the least and the most that is tried.
+std::pair<double, double> range_of_settings(const Candidate& candidate, std::size_t shape) {
+  double least = INFINITY, most = -INFINITY;
+  for (const auto& setting : candidate.settings) {
+    least = std::min(least, setting[shape]);
+    most = std::max(most, setting[shape]);
+  }
+  // A period is not on a grid, but where the spectrum has a peak.
+  constexpr double kBeyond = 0.05;
+  const double beyond = kBeyond * std::max(std::abs(least), std::abs(most));
+  return {least - beyond, most + beyond};
+}
+
+/// The shapes of the candidates that gain most go on from the settings tried to where they gain
+/// most, by steps of Gauss and Newton.
+void refine_shapes(const Job& fixed, const EffectColumns& columns, const Scorer& scorer,
+                   ScoreTest& test) {
+  constexpr std::size_t kRefined = 8;
+  constexpr int kSteps = 2;
+  std::vector<std::size_t> order(test.scores.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, std::greater{},
+                           [&](std::size_t i) { return test.scores[i].gain; });
+  std::vector<std::size_t> chosen;
+  for (const std::size_t i : order) {
+    const Candidate& candidate = test.candidates[test.scores[i].candidate];
+    if (candidate.shapes.empty() || !candidate.shapes_are_free || !(test.scores[i].gain > 0.0))
+      continue;
+    const bool known = std::ranges::any_of(chosen, [&](std::size_t other) {
+      return test.scores[other].candidate == test.scores[i].candidate;
+    });
+    if (!known && chosen.size() < kRefined) chosen.push_back(i);
+  }
+  for (int step = 0; step < kSteps; ++step) {
+    std::vector<EffectSetting> here;
+    for (const std::size_t i : chosen) {
+      const Score& score = test.scores[i];
+      here.push_back({&test.candidates[score.candidate], score.strengths, score.shapes, true});
+    }
+    const std::vector<Eigen::MatrixXd> slopes = columns.derivatives(here);
+    std::vector<EffectSetting> next;
+    std::vector<std::size_t> of_next;
+    for (std::size_t c = 0; c < chosen.size(); ++c) {
+      const auto way = scorer.step_of_shapes(here[c], slopes[c]);
+      if (!way) continue;
+      EffectSetting moved{here[c].candidate, here[c].candidate->neutral, here[c].shapes};
+      const Job ranges = with_candidate(fixed, *moved.candidate, {}, moved.strengths, moved.shapes);
+      const std::size_t first = ranges.free.size() - moved.shapes.size();
+      for (std::size_t k = 0; k < moved.shapes.size(); ++k) {
+        const FreeParameter& p = ranges.free[first + k];
+        const double most = p.logarithmic ? 0.7 : 0.1 * (p.upper - p.lower);
+        const double by = std::clamp((*way)[static_cast<Eigen::Index>(k)], -most, most);
+        const double value = p.logarithmic ? moved.shapes[k] * std::exp(by) : moved.shapes[k] + by;
+        const auto [least, most_tried] = range_of_settings(*moved.candidate, k);
+        moved.shapes[k] =
+            std::clamp(value, std::max(p.lower, least), std::min(p.upper, most_tried));
+      }
+      next.push_back(std::move(moved));
+      of_next.push_back(chosen[c]);
+    }
+    const std::vector<Eigen::MatrixXd> there = columns.derivatives(next);
+    for (std::size_t c = 0; c < next.size(); ++c)
+      scorer.consider(next[c], there[c], test.scores[of_next[c]]);
+  }
+}
+
 }  // namespace
 
 ScoreTest score_test(const Job& job, const std::vector<double>& values, double rate, bool curves,
@@ -102,48 +273,30 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
     for (const auto& setting : test.candidates[c].settings)
       test.scores.push_back({c, setting, {}, tracking_values, 0.0});
 
-  const LeastSquaresSolver base_solver(base.jacobian);
   const Job fixed = fixed_at(job, tracking_values);
+  const EffectColumns columns(fixed, rate, context);
+  Scorer scorer(space, tracking.u, base, basis, residual);
+  std::vector<EffectSetting> settings;
+  std::vector<Score*> of_setting;
+  for (Score& score : test.scores) {
+    const Candidate& candidate = test.candidates[score.candidate];
+    score.strengths = candidate.neutral;
+    if (!candidate.probes.empty()) continue;
+    settings.push_back({&candidate, candidate.neutral, score.shapes});
+    of_setting.push_back(&score);
+  }
+  const std::vector<Eigen::MatrixXd> derivatives = columns.derivatives(settings);
+  for (std::size_t i = 0; i < settings.size(); ++i)
+    scorer.consider(settings[i], derivatives[i], *of_setting[i]);
   parallel_for(test.scores.size(), [&](std::size_t i) {
-    context.check_stop();
     Score& score = test.scores[i];
     const Candidate& candidate = test.candidates[score.candidate];
-    score.strengths.assign(candidate.strengths.size(), 0.0);
-    const std::vector<double>& neutral = candidate.neutral;
-    Candidate shaped = candidate;
-    shaped.shapes_are_free = false;
-    const Job extended = with_candidate(fixed, shaped, {}, neutral, score.shapes);
-    const ParameterSpace strengths(extended);
-    const Eigen::VectorXd u = strengths.internal(neutral);
-    const Linearization d = linearize(extended, strengths, u, rate);
-    if (!d.finite || d.jacobian.rows() != basis.rows()) return;
-    const auto consider = [&](const Eigen::MatrixXd& derivatives) {
-      const Eigen::MatrixXd columns = derivatives - basis * (basis.transpose() * derivatives);
-      // What is left of a column is rounding where the free parameters do the same.
-      for (Eigen::Index k = 0; k < columns.cols(); ++k)
-        if (columns.col(k).norm() < 1e-4 * derivatives.col(k).norm()) return;
-      const Eigen::VectorXd step = LeastSquaresSolver(columns).solve(-residual);
-      if (!step.allFinite()) return;
-      const std::vector<double> reached = strengths.values(u + step);
-      for (std::size_t k = 0; k < reached.size(); ++k) {
-        const Quantity& q = quantity_list()[candidate.strengths[k]].quantity;
-        if (reached.size() == 1 && (reached[k] < q.lower || reached[k] > q.upper)) return;
-      }
-      const double gain = test.sum_of_squares - (residual + columns * step).squaredNorm();
-      if (!(gain > score.gain)) return;
-      score.gain = gain;
-      score.strengths = reached;
-      // The free parameters adapt to the effect, no further than a linear step can be trusted.
-      const Eigen::VectorXd way = base_solver.solve(-(base.residuals + derivatives * step));
-      score.values = space.values(tracking.u + way.cwiseMax(-0.7).cwiseMin(0.7));
-    };
-    if (candidate.probes.empty()) consider(d.jacobian);
-    for (const double probe : candidate.probes) {
-      const Eigen::VectorXd there = strengths.internal(std::vector{probe});
-      const Linearization probed = linearize(extended, strengths, there, rate);
-      if (probed.finite) consider((probed.residuals - d.residuals) / (there[0] - u[0]));
-    }
+    if (candidate.probes.empty()) return;
+    context.check_stop();
+    for (const auto& [probe, derivative] : probed(fixed, candidate, score.shapes, rate))
+      scorer.consider({&candidate, candidate.neutral, score.shapes}, derivative, score);
   });
+  refine_shapes(fixed, columns, scorer, test);
   std::ranges::stable_sort(test.scores, std::greater{}, &Score::gain);
   return test;
 }

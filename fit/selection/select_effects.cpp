@@ -62,8 +62,8 @@ class EffectSelector {
   };
   struct Accepted {
     Candidate candidate;
-    std::vector<Rival> rivals;  ///< that explained as much when it was chosen
-    bool replicates = false;    ///< why it was accepted, see replication.h
+    std::vector<Rival> rivals;       ///< that explained as much when it was chosen
+    bool is_seen_elsewhere = false;  ///< it replicates, or held-out stretches show it
   };
 
   /// An accepted effect (its place) and another that explains the data as well.
@@ -279,7 +279,10 @@ class EffectSelector {
     }
     if (std::ranges::all_of(contenders,
                             [](const ExtendedModel* e) { return e->rejection.has_value(); }))
-      for (ExtendedModel* e : contenders) try_to_replicate(*e);
+      for (ExtendedModel* e : contenders) {
+        try_to_replicate(*e);
+        try_on_stretches(*e);
+      }
     ExtendedModel* best = nullptr;
     for (ExtendedModel* e : contenders)
       if (!e->rejection && (best == nullptr || bic_advantage(*e, *best) > 0.0)) best = e;
@@ -297,7 +300,7 @@ class EffectSelector {
     for (ExtendedModel* e : contenders) record_trial(*e, best);
     if (best == nullptr) return false;
 
-    Accepted accepted{best->candidate, {}, best->replication.has_value()};
+    Accepted accepted{best->candidate, {}, best->replication || best->on_stretches};
     for (const ExtendedModel* e : contenders) {
       if (e == best || !e->fit.usable || !e->gain.comparable) continue;
       // Rivals are seen again when all else is explained.
@@ -310,11 +313,15 @@ class EffectSelector {
     return true;
   }
 
+  static bool is_of_validation(const Rejection& rejection) {
+    return rejection.test == Rejection::Test::validation ||
+           rejection.test == Rejection::Test::power;
+  }
+
   /// What lowers the error of one recording and not that of another may yet be in both, where
   /// something else differs between them.
   void try_to_replicate(ExtendedModel& e) {
-    if (!e.fit.usable || !e.rejection || e.rejection->test != Rejection::Test::validation ||
-        result_.held_out_blocks)
+    if (!e.fit.usable || !e.rejection || !is_of_validation(*e.rejection) || result_.held_out_blocks)
       return;
     report_progress("does " + e.candidate.name + " replicate?");
     const auto elsewhere = fit_elsewhere(e.job, e.fit, context_);
@@ -325,6 +332,32 @@ class EffectSelector {
         rejection_of(e.candidate, e.gain, determination(e.job, e.fit, e.candidate, e.residuals),
                      tried_, kChance, true);
     if (!e.rejection) e.replication = std::move(found);
+  }
+
+  /// What the recordings to validate could not have shown is judged by stretches of the fitted
+  /// ones, held out from both fits.
+  void try_on_stretches(ExtendedModel& e) {
+    if (!e.fit.usable || !e.rejection || e.rejection->test != Rejection::Test::power ||
+        result_.held_out_blocks)
+      return;
+    report_progress("do held-out stretches show " + e.candidate.name + "?");
+    const auto held_out = [&](SelectionStep model) {
+      hold_out_blocks(model);
+      auto series = residual_series(model.job, model.fit);
+      std::erase_if(series, [&](const ResidualSeries& s) {
+        return model.job.recordings[s.recording].role != Role::fit;
+      });
+      return series;
+    };
+    Improvement gain = improvement(held_out(current()), held_out({"", e.job, e.fit}));
+    gain.fit_gain = e.gain.fit_gain;
+    gain.samples = e.gain.samples;
+    if (rejection_of(e.candidate, gain, determination(e.job, e.fit, e.candidate, e.residuals),
+                     tried_))
+      return;
+    e.rejection.reset();
+    e.gain = gain;
+    e.on_stretches = true;
   }
 
   /// A simulation that is far from the data must track them to be scored. Of one that is not, the
@@ -351,7 +384,9 @@ class EffectSelector {
                             e.fit.parameters.end());
     if (&e == best) {
       trial.decision = Decision::accepted;
-      trial.reason = e.replication ? Reason::replicates : Reason::explains_best;
+      trial.reason = e.replication    ? Reason::replicates
+                     : e.on_stretches ? Reason::shown_by_stretches
+                                      : Reason::explains_best;
       trial.replication = e.replication;
     } else if (e.rejection) {
       trial.rejection = e.rejection;
@@ -410,7 +445,8 @@ class EffectSelector {
       const Candidate& candidate = accepted_[a].candidate;
       const Improvement gain = improvement(residual_series(reduced.job, reduced.fit),
                                            residual_series(current().job, current().fit));
-      if (!reduced.fit.usable || is_needed(gain, candidate.parameters(), accepted_[a].replicates)) {
+      if (!reduced.fit.usable ||
+          is_needed(gain, candidate.parameters(), accepted_[a].is_seen_elsewhere)) {
         ++a;
         continue;
       }
@@ -443,8 +479,8 @@ class EffectSelector {
         if (candidate.is_curve) continue;
         SelectionStep reduced = without(a);
         const Improvement gain = improvement(residual_series(reduced.job, reduced.fit), now);
-        if (!reduced.fit.usable || gain.validate_percent >= percent) continue;
-        percent = gain.validate_percent;
+        if (!reduced.fit.usable || gain.missing_percent >= percent) continue;
+        percent = gain.missing_percent;
         place = a;
         least = std::move(reduced);
       }
@@ -474,7 +510,7 @@ class EffectSelector {
   void drop_all_where_half_remains() {
     constexpr double kLeastPercent = 50.0;
     if (accepted_.empty() || explained()) return;
-    const double percent = percent_of_all();
+    const double percent = of_all().missing_percent;
     if (percent >= kLeastPercent) return;
     for (const Accepted& a : accepted_) reject_for_share(a.candidate, percent);
     accepted_.clear();
@@ -525,10 +561,9 @@ class EffectSelector {
   }
 
   /// By how much all accepted effects lower the validation error.
-  double percent_of_all() {
+  Improvement of_all() {
     return improvement(residual_series(declared_job(), result_.models.front().fit),
-                       residual_series(current().job, current().fit))
-        .validate_percent;
+                       residual_series(current().job, current().fit));
   }
 
   /// Refits the intermediate models after an effect was removed or swapped; the last one is given.
@@ -722,7 +757,7 @@ void EffectSelector::decide() {
   }
   if (!verdict.accepted.empty()) {
     verdict.kind = effects_accepted;
-    verdict.validate_percent = percent_of_all();
+    verdict.validate_percent = of_all().validate_percent;
   } else if (result_.explained && verdict.undecided.empty()) {
     verdict.kind = nothing_missing;
   } else if (!verdict.small.empty() && verdict.undecided.empty() && explained()) {

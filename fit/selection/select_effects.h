@@ -30,13 +30,14 @@ enum class Decision {
 
 /// What a decision on an effect rests on.
 enum class Reason {
-  failed_test,       ///< EffectTrial::rejection
-  explains_best,     ///< of all that were tried in its round
-  replicates,        ///< the recordings to validate, fitted by themselves, tell the same of it
-  explains_less,     ///< than the other
-  replaced,          ///< by the other, which explains more
-  explains_equally,  ///< as well as the other
-  not_needed,        ///< any longer, with the effects that were accepted after it
+  failed_test,         ///< EffectTrial::rejection
+  explains_best,       ///< of all that were tried in its round
+  replicates,          ///< the recordings to validate, fitted by themselves, tell the same of it
+  shown_by_stretches,  ///< held out from the fitted recordings, since those to validate could not
+  explains_less,       ///< than the other
+  replaced,            ///< by the other, which explains more
+  explains_equally,    ///< as well as the other
+  not_needed,          ///< any longer, with the effects that were accepted after it
 };
 
 /// One effect that was refitted, and what became of it.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/parallel.h"
 
@@ -18,71 +17,49 @@ bool nearly_same(const ShortlistEntry& a, const ShortlistEntry& b) {
          });
 }
 
-/// The best constants, or the best of the others.
-std::vector<ShortlistEntry> best_of(const ScoreTest& test, std::size_t length, bool constants) {
+/// The best of the scores: no more than `length`, but for those that nearly gain as much, and never
+/// one that gains no more than a simpler one does.
+std::vector<ShortlistEntry> best_of(const ScoreTest& test, std::size_t length) {
   constexpr double kMinGain = 6.0;  // of a sum of squares: below is chance
   constexpr double kNearly = 0.9;   // of the best gain: heard even beyond the length
-  constexpr int kSettings = 2;      // of one candidate: no crowding out of the others
+  constexpr double kWorth = 0.5;    // of the best gain: heard beyond the first three
+  constexpr std::size_t kFirst = 3;
+  // Constants are many, and alike: they crowd no effect out.
+  const std::size_t most_constants = (length + 1) / 2;
+  const double unit = std::max(1.0, test.mean_square);
+  const double samples = test.sum_of_squares / std::max(1e-300, test.mean_square);
   std::vector<ShortlistEntry> taken;
+  std::size_t constants = 0;
   for (const Score& score : test.scores) {
     const Candidate& candidate = test.candidates[score.candidate];
-    if (candidate.is_constant != constants) continue;
     if (score.gain < kMinGain) break;
-    const bool beyond = taken.size() >= 2 * length ||
-                        (taken.size() >= length && score.gain < kNearly * taken.front().score.gain);
+    const double best = taken.empty() ? score.gain : taken.front().score.gain;
+    const std::size_t effects = taken.size() - constants;
+    bool beyond = candidate.is_constant
+                      ? constants >= most_constants
+                      : effects >= 2 * length || (effects >= length && score.gain < kNearly * best);
+    beyond = beyond || (taken.size() >= kFirst && score.gain < kWorth * best);
     // A clock that is a little off is heard before anything else is blamed.
     if (beyond && !candidate.is_timing) continue;
-    const auto same = std::ranges::count_if(
-        taken, [&](const ShortlistEntry& p) { return same_effect(p.candidate, candidate); });
-    if (same < kSettings)
-      taken.push_back({candidate, score, score.gain / std::max(1.0, test.mean_square)});
+    if (std::ranges::any_of(
+            taken, [&](const ShortlistEntry& p) { return same_effect(p.candidate, candidate); }))
+      continue;
+    constants += candidate.is_constant ? 1 : 0;
+    taken.push_back({candidate, score, score.gain / unit});
   }
-  return taken;
-}
-
-/// Fits each while tracking with the gain `rate`, and keeps those that may yet turn out the best.
-std::vector<ShortlistEntry> screened(const Job& job, std::vector<ShortlistEntry> list, double rate,
-                                     const RunContext& context) {
-  constexpr std::size_t kKept = 3;
-  constexpr double kMaxCostRatio =
-      1.05;  // of the best cost: the free run will not make up for more
-  if (list.size() <= kKept) return list;
-  struct Run {
-    double cost = INFINITY;
-    std::vector<double> values;
-  };
-  std::vector<Run> runs(list.size());
-  parallel_for(list.size(), [&](std::size_t i) {
-    const ShortlistEntry& p = list[i];
-    const Job extended =
-        with_candidate(job, p.candidate, p.score.values, p.score.strengths, p.score.shapes);
-    const ParameterSpace space(extended);
-    std::vector<double> start;
-    for (const FreeParameter& free : extended.free) start.push_back(free.initial);
-    SolveOptions options;
-    options.max_iterations = 8;
-    options.function_tolerance = 1e-4;
-    options.penalize_distance_from_start = true;
-    const SolveResult solved =
-        solve(extended, space, space.internal(start), rate, options, context);
-    if (solved.usable) runs[i] = {solved.cost, space.values(solved.u)};
-  });
-  std::vector<std::size_t> order(list.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return runs[i].cost; });
+  // What a simpler one gains as well, more parameters gain by chance.
+  std::vector<bool> is_beaten(taken.size());
+  for (std::size_t i = 0; i < taken.size(); ++i)
+    for (const ShortlistEntry& simple : taken) {
+      const std::size_t own = taken[i].candidate.parameters(),
+                        fewer = simple.candidate.parameters();
+      if (fewer >= own) continue;
+      const double price = static_cast<double>(own - fewer) * std::log(std::max(2.0, samples));
+      if (taken[i].gain < simple.gain + price && !taken[i].candidate.is_timing) is_beaten[i] = true;
+    }
   std::vector<ShortlistEntry> kept;
-  for (const std::size_t i : order) {
-    if (!std::isfinite(runs[i].cost)) break;
-    const bool far =
-        kept.size() >= kKept && runs[i].cost > kMaxCostRatio * runs[order.front()].cost;
-    if (far && !list[i].candidate.is_timing) continue;
-    ShortlistEntry& p = kept.emplace_back(std::move(list[i]));
-    const auto base = runs[i].values.begin() + static_cast<std::ptrdiff_t>(job.free.size());
-    const auto shapes = base + static_cast<std::ptrdiff_t>(p.candidate.strengths.size());
-    p.score.values.assign(runs[i].values.begin(), base);
-    p.score.strengths.assign(base, shapes);
-    if (p.candidate.shapes_are_free) p.score.shapes.assign(shapes, runs[i].values.end());
-  }
+  for (std::size_t i = 0; i < taken.size(); ++i)
+    if (!is_beaten[i]) kept.push_back(std::move(taken[i]));
   return kept;
 }
 
@@ -96,12 +73,7 @@ Shortlist shortlist(const Job& job, const std::vector<double>& values,
   parallel_for(rates.size(), [&](std::size_t i) {
     const ScoreTest test = score_test(job, values, rates[i], curves, context);
     of_rate[i].tried = test.scores.size();
-    const auto most = static_cast<std::size_t>(length);
-    of_rate[i].entries = best_of(test, most, false);
-    // Constants are many, and alike: they crowd no effect out.
-    for (ShortlistEntry& entry : best_of(test, (most + 1) / 2, true))
-      of_rate[i].entries.push_back(std::move(entry));
-    of_rate[i].entries = screened(job, std::move(of_rate[i].entries), rates[i], context);
+    of_rate[i].entries = best_of(test, static_cast<std::size_t>(length));
   });
   Shortlist result;
   for (Shortlist& list : of_rate) {

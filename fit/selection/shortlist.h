@@ -22,9 +22,8 @@ struct Shortlist {
 
 /// The best by score_test() at each of these observer gains, about `length` of each, from a fit
 /// with the given values of the free parameters; those of the catalogue or, with `curves`, those
-/// without a name. Those of a rate are then fitted while the simulation still tracks with it, which
-/// is quick: what is far behind there is dropped, and the others start from there. The thread pool
-/// shares the work.
+/// without a name. An effect that gains no more than a simpler one is left out, and so is, beyond
+/// the first three, what gains less than half as much as the best. The thread pool shares the work.
 Shortlist shortlist(const Job& job, const std::vector<double>& values,
                     const std::vector<double>& observer_gains, bool curves, int length,
                     const RunContext& context = {});

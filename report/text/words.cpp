@@ -27,6 +27,9 @@ std::string rejection_text(const Rejection& rejection) {
           rejection.found, rejection.tried, rejection.required);
     case validation:
       return fmt::format("does not lower the validation error (p = {:.2g})", rejection.found);
+    case power:
+      return fmt::format("cannot be judged: the recordings to validate hardly show it (p = {:.2g})",
+                         rejection.found);
     case validation_size:
       return fmt::format("hardly lowers the validation error, by {:.2g} %", rejection.found);
     case bound:
@@ -42,11 +45,20 @@ std::string rejection_text(const Rejection& rejection) {
       return "the declared model does not fit, with it or without";
     case share:
       return fmt::format(
-          "lowers the validation error by no more than {:.2g} %, where most remains unexplained: "
+          "lowers what of the validation error is not noise by no more than {:.2g} %, and most of "
+          "it "
+          "remains: "
           "it may imitate what is missing",
           rejection.found);
   }
   return "";
+}
+
+/// What to record where an effect cannot be judged.
+std::string advice_text(const EffectTrial& trial) {
+  const auto effect = effect_named(trial.candidate.name);
+  if (trial.rejection->test != Rejection::Test::power || !effect) return "";
+  return fmt::format("; record {}", kEffectTable[*effect].excitation);
 }
 
 std::string text_of(const StepMotion& motion) {
@@ -264,7 +276,7 @@ std::string overall_verdict(const RunResult& run_result, bool colour) {
 std::string reason_text(const EffectTrial& trial) {
   switch (trial.reason) {
     case Reason::failed_test:
-      return rejection_text(trial.rejection.value());
+      return rejection_text(trial.rejection.value()) + advice_text(trial);
     case Reason::explains_best:
       return fmt::format(
           "explains the residual best: {:.3g} % lower validation error ({:.3g} standard deviations "
@@ -273,6 +285,11 @@ std::string reason_text(const EffectTrial& trial) {
     case Reason::replicates:
       return "explains the residual best of what the recordings to validate, fitted by themselves, "
              "tell alike";
+    case Reason::shown_by_stretches:
+      return fmt::format(
+          "explains the residual best: {:.3g} % lower error on held-out stretches of the fitted "
+          "recordings, since those to validate could not have shown it",
+          trial.improvement.validate_percent);
     case Reason::explains_less:
       return "explains less than " + trial.other;
     case Reason::replaced:

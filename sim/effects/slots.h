@@ -38,6 +38,8 @@ struct Slots {
   T elastic_mass{0.0};        ///< kg, the part of the arm that a spring carries, and of that mode
   T elastic_frequency{0.0};   ///< rad/s, with the arm held, and
   T elastic_damping{0.0};     ///< 1, damping ratio
+
+  bool operator==(const Slots&) const = default;
 };
 
 /// Where the arm last came to rest, and the state there of the hysteresis of the effect that asks;

@@ -301,6 +301,23 @@ TEST(RefusalTest, OfWhatOnlyFits) {
   EXPECT_EQ(rejection, (Rejection{.test = Rejection::Test::validation, .found = gain.p_value}));
 }
 
+// The motion that was not fitted has a thirtieth of the effect: no recording of noise tells.
+TEST(RefusalTest, OfWhatTheOtherRecordingCouldNotHaveShownSaysSo) {
+  const Improvement gain = improvement(pair(with_wave(noise(1), 1.0), noise(2)),
+                                       pair(noise(1), with_wave(noise(2), 0.03)));
+  EXPECT_LT(gain.expected_z, 4.4);
+  const auto rejection = rejection_of(candidate(), gain, determined(), 100);
+  EXPECT_EQ(rejection, (Rejection{.test = Rejection::Test::power, .found = gain.p_value}));
+}
+
+// At twice the variance of the noise no model lowers the error by more than 29 %.
+TEST(ImprovementTest, CountsWhatIsMissingBeyondTheNoise) {
+  const Improvement gain =
+      improvement(pair(noise(1), with_wave(noise(2), std::sqrt(2.0))), pair(noise(1), noise(2)));
+  EXPECT_LT(gain.validate_percent, 40.0);
+  EXPECT_GT(gain.missing_percent, 80.0);
+}
+
 TEST(RefusalTest, OfWhatHardlyHelps) {
   Improvement gain;
   gain.comparable = true;
@@ -321,6 +338,7 @@ TEST(RefusalTest, OfWhatHelpsByChanceMoreOftenThanOnceInAThousand) {
   gain.fit_gain = 100.0;
   gain.samples = 2000.0;
   gain.validate_percent = 5.0;
+  gain.expected_z = 10.0;
   gain.p_value = 1.1e-3;
   EXPECT_EQ(rejection_of(candidate(), gain, determined(), 100),
             (Rejection{.test = Rejection::Test::validation, .found = 1.1e-3}));

@@ -10,31 +10,46 @@
 namespace axisfit {
 namespace {
 
-// Below a gain of six it is chance; what gains more, and little, is heard where there is room.
-TEST(Shortlist, HasAllThatGainMoreThanSix) {
+std::set<std::string> names_in(const Shortlist& list) {
+  std::set<std::string> names;
+  for (const ShortlistEntry& entry : list.entries) names.insert(entry.candidate.name);
+  return names;
+}
+
+Job with_friction(double level) {
   Model<double> truth = slide();
-  add_effect<CoulombFriction>(truth).F_c = 0.12;
-  const Job job = two_recordings(truth, slide(), {"M", "B_a"});
-  const std::vector<double> values{20.0, 30.0};
-  std::set<std::string> expected;
-  int little = 0;
-  for (const double rate : score_gains(job)) {
-    const ScoreTest test = score_test(job, values, rate);
-    ASSERT_TRUE(test.usable);
-    for (const Score& score : test.scores) {
-      if (score.gain < 6.0) continue;
-      expected.insert(test.candidates[score.candidate].name);
-      little += score.gain < 15.0 ? 1 : 0;
-    }
-  }
-  EXPECT_GT(little, 0);
-  std::set<std::string> found;
-  for (const ShortlistEntry& promise :
-       shortlist(job, values, score_gains(job), false, 1000).entries) {
-    found.insert(promise.candidate.name);
-    EXPECT_GE(promise.score.gain, 6.0) << promise.candidate.name;
-  }
-  EXPECT_EQ(found, expected);
+  add_effect<CoulombFriction>(truth).F_c = level;
+  return two_recordings(truth, slide(), {"M", "B_a"});
+}
+
+const std::vector<double> kValues{20.0, 30.0};
+
+TEST(Shortlist, HasTheBestOfEachGainAndNothingThatIsChance) {
+  const Job job = with_friction(0.5);
+  const auto gains = score_gains(job);
+  const Shortlist list = shortlist(job, kValues, gains, false, 6);
+  const std::set<std::string> names = names_in(list);
+  EXPECT_TRUE(names.contains("coulomb_friction"));
+  for (const ShortlistEntry& entry : list.entries) EXPECT_GE(entry.score.gain, 6.0);
+}
+
+// Stribeck and Dahl friction have Coulomb friction as a limit, and a parameter more.
+TEST(Shortlist, LeavesOutWhatASimplerEffectGainsAsWell) {
+  const Job job = with_friction(3.0);
+  const std::set<std::string> names = names_in(shortlist(job, kValues, score_gains(job), false, 6));
+  EXPECT_TRUE(names.contains("coulomb_friction"));
+  EXPECT_FALSE(names.contains("dahl_friction"));
+  EXPECT_FALSE(names.contains("stribeck_friction"));
+}
+
+// Beyond the first three, and but for delays.
+TEST(Shortlist, LeavesOutWhatGainsLessThanHalfOfTheBest) {
+  const Job job = with_friction(3.0);
+  const Shortlist list = shortlist(job, kValues, {score_gains(job).front()}, false, 1000);
+  const double best = list.entries.front().gain;
+  for (std::size_t i = 3; i < list.entries.size(); ++i)
+    EXPECT_TRUE(list.entries[i].gain >= 0.5 * best || list.entries[i].candidate.is_timing)
+        << list.entries[i].candidate.name;
 }
 
 }  // namespace
