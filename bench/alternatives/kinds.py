@@ -88,7 +88,8 @@ KINDS = {
         lambda m, s, u, f: {"ripple": s, "ripple_period": between(0.015, 0.08, u[0]),
                             "ripple_phase": 6.28 * u[1]}, setups=("servo",)),
     "payload": Kind(
-        "more mass than declared and not to be fitted", frozenset({"added_mass", "M"}), frozenset(),
+        "more mass than declared and not to be fitted", frozenset({"added_mass", "M"}),
+        frozenset({"position.gain", "velocity.gain"}),  # the same where one signal is recorded
         lambda m, s, u, f: {"mass": m.mass * (1.0 + s)}, is_force=False, secret="M", most=2.0),
     "elastic": Kind(
         "a part of the mass on a spring", frozenset({"elastic_mode"}),
