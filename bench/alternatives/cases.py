@@ -158,7 +158,7 @@ def calibrate(cases):
         logs = simulate_all([(c.machine(p), c.motions["fit"]) for c, p, _ in wanted])
         for (c, p, aim), log in zip(wanted, logs):
             now = visible(c, log)
-            step = np.sqrt((aim - 1.0) / max(now - 1.0, 1e-12))
+            step = ((aim - 1.0) / max(now - 1.0, 1e-12)) ** (0.5 / KINDS[p].power)
             c.strengths[p] = min(c.strengths[p] * float(np.clip(step, 0.1, 10.0)),
                                  KINDS[p].most * (c.force if KINDS[p].is_force else 1.0))
 

@@ -32,6 +32,7 @@ class Kind:
     setups: tuple = ("servo", "levels")
     secret: str = ""
     most: float = 0.2  # strength, in `force` where it is one
+    power: float = 1.0  # of the strength, to which the missing force is proportional
 
     @property
     def counts(self):
@@ -110,7 +111,7 @@ KINDS = {
     "saturation": Kind(
         "a force that saturates smoothly: not in the catalogue",
         frozenset({"torque_droop", "force_droop", "saturation"}), frozenset(),
-        lambda m, s, u, f: {"saturation": s / f}, 0.5, is_force=False, most=2.0),
+        lambda m, s, u, f: {"saturation": s / f}, 0.5, is_force=False, most=2.0, power=2.0),
     "fade": Kind(
         "a motor that loses force as it warms up", frozenset({"torque_fade"}), frozenset(),
         lambda m, s, u, f: {"fade": s, "fade_time": between(2.0, 10.0, u[0])}, 0.1, is_force=False,
