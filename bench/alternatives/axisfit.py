@@ -1,0 +1,159 @@
+"""fit-params --close-loop on a case: what it claims, and the force that its model lacks in a recording
+that it has not seen, from the same filtered signals as the alternatives.
+
+Inverse dynamics of the final model: the laws of docs/effects.md with the estimates of result.json. A
+sensor effect changes the signals first, timing shifts them, and a part on a spring is a filter of the
+acceleration.
+"""
+import dataclasses
+import json
+import os
+import subprocess
+
+import numpy as np
+from scipy import signal
+
+from regression import compared, hysteresis, kinematics
+
+
+class Unknown(Exception):
+    """A name that no law here stands for."""
+
+
+@dataclasses.dataclass
+class Outcome:
+    grade: str
+    accepted: list
+    undecided: list
+    trials: list  # of every effect refitted: name, decision, reason and so on
+    values: dict  # of the final model, by name
+    chi_square: float  # of the declared model
+    seconds: float  # processor time
+    verdict: str
+
+
+def run(program, job, folder, arguments=(), limit=900):
+    """Runs a job and leaves result.json and errors.txt in the folder; none where it fails."""
+    command = [program, job, "--close-loop", "--threads", "1", "--json", "--time-limit", str(limit)]
+    with open(folder / "result.json", "w") as out, open(folder / "errors.txt", "w") as errors:
+        child = subprocess.Popen([*command, *arguments], stdout=out, stderr=errors)
+        _, status, used = os.wait4(child.pid, 0)  # the time of this child alone
+    child.returncode = os.waitstatus_to_exitcode(status)
+    text = (folder / "result.json").read_text()
+    if child.returncode not in (0, 3, 124) or not text.strip():
+        return None
+    result = json.loads(text)
+    effects = result.get("effects", [])
+    named = lambda decision: [e["name"] for e in effects if e["decision"] == decision]
+    grade = result["grade"] + (" (time)" if child.returncode == 124 else "")
+    return Outcome(grade, named("accepted"), named("undecided"), effects,
+                   {p["name"]: p["value"] for p in result["parameters"]},
+                   result.get("before", {}).get("reduced_chi_square", np.nan),
+                   used.ru_utime + used.ru_stime,
+                   result.get("selection", {}).get("verdict", result["verdict"]))  # fmt: skip
+
+
+def shifted(values, time, by):
+    """The value at t + by, held at the ends."""
+    return np.interp(time + by, time, values)
+
+
+def spline(values, x, low, high):
+    """A force curve: cubic B-splines with 16 coefficients, constant beyond the ends."""
+    s = np.clip((x - low) / (high - low) * 13.0, 0.0, 13.0)
+    first = np.minimum(s.astype(int), 12)
+    t, c = s - first, np.asarray(values)
+    return (c[first] * (1 - t) ** 3 + c[first + 1] * (4 - 6 * t**2 + 3 * t**3)
+            + c[first + 2] * (1 + 3 * t + 3 * t**2 - 3 * t**3) + c[first + 3] * t**3) / 6.0  # fmt: skip
+
+
+def elastic(k, p):
+    """m_e q'' where q'' + 2 zeta w q' + w^2 q = -a."""
+    w = 2 * np.pi * p["f_e"]
+    transfer = signal.cont2discrete(([-1.0, 0, 0], [1.0, 2 * p.get("zeta_e", 0.02) * w, w * w]),
+                                    1.0 / k.rate, "bilinear")  # fmt: skip
+    return p["m_e"] * signal.lfilter(transfer[0][0], transfer[1], k.a)
+
+
+def curve(of):
+    return lambda k, p: -spline([p.get(f"c{i}", 0.0) for i in range(1, 17)], of(k), p["from"], p["to"])
+
+
+# Force in N that the drive needs for the effect.
+LAWS = {
+    "coulomb_friction": lambda k, p: p["F_c"] * k.direction,
+    "constant_force": lambda k, p: -p["F_0"] * np.ones_like(k.v),
+    "quadratic_drag": lambda k, p: p["c"] * k.v * np.abs(k.v),
+    "directional_friction": lambda k, p: p.get("dB_a", 0.0) * np.abs(k.v)
+    + p.get("dF_c", 0.0) * np.abs(k.direction),
+    "stribeck_friction": lambda k, p: p["F_st"] * k.direction
+    * np.exp(-(np.abs(k.v) / p["v_st"]) ** p.get("n_st", 1.0)),
+    "position_friction": lambda k, p: (p.get("G_c", 0.0) * k.y + p.get("G_q", 0.0) * k.y**2)
+    * k.direction + p.get("G_b", 0.0) * k.y * k.v,
+    "friction_bump": lambda k, p: p["F_b"] * k.direction * np.exp(-(((k.y - p["y_b"]) / p["w_b"]) ** 2)),
+    "load_friction": lambda k, p: p["mu"] * np.abs(k.force) * k.direction,
+    "dahl_friction": lambda k, p: p["F_d"] * hysteresis(k, p["l_d"]),
+    "stroke_spring": lambda k, p: p["k_s"] * k.y,
+    "periodic_force": lambda k, p: -sum(
+        p.get(f"F_{part}{n}", 0.0) * of(2 * np.pi * n * k.y / p["period"])
+        for part, of in (("s", np.sin), ("c", np.cos)) for n in (1, 2)),
+    "added_mass": lambda k, p: p["dM"] * k.a,
+    "elastic_mode": elastic,
+    "force_over_velocity": curve(lambda k: k.v),
+    "force_over_position": curve(lambda k: k.y),
+    "force_over_time": curve(lambda k: k.time),
+}  # fmt: skip
+ELSEWHERE = ("torque_fade", "drive_lag")  # they change the force that arrives
+
+
+def grouped(values):
+    """Parameters by effect: {"": base, "coulomb_friction": {"F_c": ...}, ...}."""
+    groups = {}
+    for name, value in values.items():
+        group, _, symbol = name.rpartition(".")
+        groups.setdefault(group, {})[symbol] = value
+    return groups
+
+
+def corrected(recording, groups):
+    """The recording with the effects of its instruments taken back."""
+    changed = {}
+    for signal_name in ("position", "velocity"):
+        values = getattr(recording, signal_name)
+        instrument = groups.get(signal_name, {})
+        if values is None:
+            continue
+        values = (values - instrument.get("bias", 0.0)) / instrument.get("gain", 1.0)
+        late = instrument.get("delay", 0.0) + instrument.get("lag", 0.0)
+        changed[signal_name] = shifted(values, recording.time, late) if late else values
+    return dataclasses.replace(recording, **changed)
+
+
+def lacking(values, recording):
+    """The force in N that a model with these values lacks, in the band in which forces are compared."""
+    groups = grouped(values)
+    base = groups.get("", {})
+    k = kinematics(corrected(recording, groups))
+    force = shifted(k.force, k.time, -base.get("T_d", 0.0))
+    if "torque_fade" in groups:
+        force = force / (1.0 + groups["torque_fade"]["c_t"] * k.time)
+    if "drive_lag" in groups and groups["drive_lag"]["T_l"] > 0.0:
+        follow = signal.cont2discrete(([1.0], [groups["drive_lag"]["T_l"], 1.0]), 1.0 / k.rate,
+                                      "bilinear")  # fmt: skip
+        force = signal.lfilter(follow[0][0], follow[1], force)
+    k = dataclasses.replace(k, force=force)
+    needed = base["M"] * k.a + base["B_a"] * k.v
+    for effect, parameters in groups.items():
+        if effect in LAWS:
+            needed = needed + LAWS[effect](k, parameters)
+        elif effect not in ("", "position", "velocity", "initial", *ELSEWHERE):
+            raise Unknown(effect)
+    return compared(force - needed, k.rate)
+
+
+def held_out(values, recording):
+    """rms of `lacking`; not a number for an effect that is not known here."""
+    try:
+        return float(np.sqrt(np.mean(lacking(values, recording) ** 2)))
+    except (Unknown, KeyError):
+        return np.nan
