@@ -119,7 +119,10 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   result.interrupted = result.first.interrupted;
   result.checks = check_recordings(result.baseline);
   try {
-    if (!result.interrupted) run_requested_analyses(result, context);
+    if (!result.interrupted) {
+      result.inverse_start = try_inverse_start(result.baseline, result.first, context);
+      run_requested_analyses(result, context);
+    }
   } catch (const Interrupted&) {
     result.interrupted = true;
   }
@@ -139,6 +142,7 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   if (result.grade.grade == Grade::model_wrong)
     for (ParameterResult& p : last.parameters)
       p.uncertainty = {.of_wrong_model = true, .inflation = p.uncertainty.inflation};
+  result.second_opinion = second_opinion(result.job(), last);
   find_guess_influences(result.baseline, result.first);
   if (result.selection) {
     for (SelectionStep& model : result.selection->models)

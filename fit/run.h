@@ -14,6 +14,7 @@
 #include "fit/estimation/profile.h"
 #include "fit/selection/diagnosis.h"
 #include "fit/selection/grade.h"
+#include "fit/selection/second_opinion.h"
 #include "fit/selection/select_effects.h"
 
 namespace axisfit {
@@ -51,13 +52,15 @@ struct RunOptions {
 struct RunResult {
   Job baseline;  ///< the job as given, with the noise if that was estimated
   RunOptions options;
-  FitResult first;                     ///< fit of the baseline model
-  std::vector<RecordingCheck> checks;  ///< of each recording
+  FitResult first;                                       ///< fit of the baseline model
+  InverseStart inverse_start = InverseStart::not_tried;  ///< what the first fit owes to it
+  std::vector<RecordingCheck> checks;                    ///< of each recording
   /// None unless it was asked for and the first fit is usable.
   std::optional<EffectSelection> selection;
   std::vector<ModelScore> scores;               ///< of the loop's models
   std::optional<Diagnosis> diagnosis;           ///< of the final model; none unless that is usable
   FitGrade grade;                               ///< of the final model
+  std::optional<SecondOpinion> second_opinion;  ///< of the final model, where there can be one
   std::vector<Profile> profiles;                ///< of the final model, those asked for
   std::vector<Discrimination> discriminations;  ///< of the loop's undecided effects, pair by pair
   std::optional<Suggestion> suggestion;         ///< of the next experiment, where it was asked for

@@ -1,5 +1,6 @@
 #include "report/result_json.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/version.h"
@@ -22,6 +23,18 @@ const char* text(Status status) {
       return "not_converged";
     case Status::failed:
       return "failed";
+  }
+  return "";
+}
+
+const char* text(InverseStart start) {
+  switch (start) {
+    case InverseStart::not_tried:
+      return "not_tried";
+    case InverseStart::no_better:
+      return "no_better";
+    case InverseStart::better:
+      return "better";
   }
   return "";
 }
@@ -153,6 +166,20 @@ Json assumptions_json(const FitResult& fit) {
           {"input_noise_fraction", fit.input_part},
           {"autocorrelation_time", fit.autocorrelation_time},
           {"degrees_of_freedom", fit.degrees_of_freedom}};
+}
+
+/// What a balance of forces tells without a simulation.
+Json inverse_dynamics_json(const SecondOpinion& opinion, InverseStart start) {
+  const auto& [estimate, contradictions] = opinion;
+  Json parameters = list(estimate.parameters, estimate_json);
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    parameters[i]["contradicts_fit"] = std::ranges::find(contradictions, i) != contradictions.end();
+  return {{"start", text(start)},
+          {"exact", estimate.exact},
+          {"cutoff_hz", estimate.cutoff},
+          {"residual_n", estimate.residual},
+          {"drive_rms_n", estimate.drive_rms},
+          {"parameters", std::move(parameters)}};
 }
 
 Json profile_json(const Profile& profile, const FitResult& fit) {
@@ -415,6 +442,9 @@ Json result_json(const RunResult& run_result) {
              run_result.diagnosis ? residual_json(job, *run_result.diagnosis) : Json(nullptr)}};
   json.update(identifiability_json(ParameterSpace(job), fit.correlation, fit.identifiability));
   json["assumptions"] = assumptions_json(fit);
+  if (run_result.second_opinion)
+    json["inverse_dynamics"] =
+        inverse_dynamics_json(*run_result.second_opinion, run_result.inverse_start);
   if (!run_result.profiles.empty())
     json["profile"] =
         list(run_result.profiles, [&](const Profile& p) { return profile_json(p, fit); });

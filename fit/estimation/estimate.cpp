@@ -32,9 +32,10 @@ Progress progress_of(const Stage& stage) {
           .best = stage.reduced_cost};
 }
 
-/// All starts, spread over threads; every one is independent of the others.
+/// All starts, spread over threads; every one is independent of the others. The first is at `from`,
+/// or if that is empty as draw_start() says.
 std::vector<StartRun> run_starts(const Job& job, const ParameterSpace& space,
-                                 const RunContext& context) {
+                                 const RunContext& context, std::span<const double> from) {
   const int starts = std::max(1, job.options.starts);
   std::vector<StartRun> trials(static_cast<std::size_t>(starts));
   std::mutex mutex;
@@ -45,7 +46,8 @@ std::vector<StartRun> run_starts(const Job& job, const ParameterSpace& space,
     StartRun& trial = trials[i];
     trial.interrupted = is_set(context.stop);
     if (trial.interrupted) return;  // a million starts would take their time to throw
-    trial.from = draw_start(job, static_cast<int>(i));
+    trial.from = i == 0 && !from.empty() ? std::vector(from.begin(), from.end())
+                                         : draw_start(job, static_cast<int>(i));
     try {
       trial.result = run_continuation(
           job, space, space.internal(trial.from),
@@ -167,10 +169,10 @@ std::vector<double> draw_start(const Job& job, int start) {
   return values;
 }
 
-FitResult estimate(const Job& job, const RunContext& context) {
+FitResult estimate(const Job& job, const RunContext& context, std::span<const double> from) {
   const ThreadPool pool(job.options.threads);
   const ParameterSpace space(job);
-  std::vector<StartRun> trials = run_starts(job, space, context);
+  std::vector<StartRun> trials = run_starts(job, space, context, from);
   const bool interrupted =
       std::erase_if(trials, [](const StartRun& t) { return t.interrupted; }) > 0;
   if (trials.empty()) throw Interrupted();
@@ -221,8 +223,8 @@ FitResult estimate(const Job& job, const RunContext& context) {
   return result;
 }
 
-FitResult estimate_with_noise(Job& job, const RunContext& context) {
-  FitResult result = estimate(job, context);
+FitResult estimate_with_noise(Job& job, const RunContext& context, std::span<const double> from) {
+  FitResult result = estimate(job, context, from);
   Job again = job;
   again.options.starts = 1;
   // It is at the minimum already, and follows it.

@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -127,15 +128,19 @@ std::vector<double> draw_start(const Job& job, int start);
 std::vector<double> values_of(const FitResult& result);
 
 /// Fits a job. The result depends on the job alone, not on the number of threads. When the stop
-/// flag is set, it is that of the starts that were finished; Interrupted where there is none.
-FitResult estimate(const Job& job, const RunContext& context = {});
+/// flag is set, it is that of the starts that were finished; Interrupted where there is none. The
+/// first start is at `from` (a value for each free parameter), or if that is empty at the initial
+/// values.
+FitResult estimate(const Job& job, const RunContext& context = {},
+                   std::span<const double> from = {});
 
 /// Fits a job, and where the noise of a measurement is to be estimated together with the
 /// parameters, goes on in turn: sigma in the job becomes the size of the residual, degrees of
 /// freedom counted, and the job is fitted again with it, until both stay. That is the maximum of
 /// the likelihood of independent normal noise. A signal has one sigma in all recordings in which it
 /// is to be estimated.
-FitResult estimate_with_noise(Job& job, const RunContext& context = {});
+FitResult estimate_with_noise(Job& job, const RunContext& context = {},
+                              std::span<const double> from = {});
 
 /// The model with the estimates in place of the free quantities that all recordings share.
 Model<double> fitted_model(const Job& job, const FitResult& result);

@@ -127,14 +127,13 @@ RecordingCost::RecordingCost(const Job& job, const ParameterSpace& space, std::s
 template <class T>
 bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobian,
                              std::span<const std::size_t> columns) const {
-  Model<T> model = convert<T>(model_at(job_, space_, u, recording_));
-  if constexpr (!std::is_same_v<T, double>) {
-    const std::vector<T*> member = members(model);
-    for (std::size_t k = 0; k < columns.size(); ++k)
-      member[space_[columns[k]].quantity]->v[static_cast<Eigen::Index>(k)] =
-          space_.slope(columns[k], u[columns[k]]);
-  }
-  return evaluate_model<T>(model, {}, residuals, {jacobian, space_.size(), columns});
+  const Model<double> values = model_at(job_, space_, u, recording_);
+  const Derivatives derivatives{jacobian, space_.size(), columns};
+  if constexpr (std::is_same_v<T, double>)
+    return evaluate_model<T>(values, {}, residuals, derivatives);
+  else
+    return evaluate_model<T>(with_derivatives<T>(values, space_, u, columns), {}, residuals,
+                             derivatives);
 }
 
 template <class T>
@@ -184,24 +183,9 @@ bool RecordingCost::Evaluate(double const* const* parameters, double* residuals,
 bool RecordingCost::evaluate_with_jacobian(const double* u, double* residuals,
                                            double* jacobian) const {
   std::fill_n(jacobian, static_cast<std::size_t>(num_residuals()) * space_.size(), 0.0);
-  // One pass for all parameters, in the narrowest dual number that holds them; more than the widest
-  // holds take several passes.
-  constexpr std::size_t kWidest = 24;
-  std::span<const std::size_t> remaining = applicable_;
-  do {
-    const auto columns = remaining.first(std::min(remaining.size(), kWidest));
-    remaining = remaining.subspan(columns.size());
-    const std::size_t n = columns.size();
-    const bool finished =
-        n <= 2    ? evaluate<ceres::Jet<double, 2>>(u, residuals, jacobian, columns)
-        : n <= 4  ? evaluate<ceres::Jet<double, 4>>(u, residuals, jacobian, columns)
-        : n <= 6  ? evaluate<ceres::Jet<double, 6>>(u, residuals, jacobian, columns)
-        : n <= 8  ? evaluate<ceres::Jet<double, 8>>(u, residuals, jacobian, columns)
-        : n <= 12 ? evaluate<ceres::Jet<double, 12>>(u, residuals, jacobian, columns)
-                  : evaluate<ceres::Jet<double, 24>>(u, residuals, jacobian, columns);
-    if (!finished) return false;
-  } while (!remaining.empty());
-  return true;
+  return evaluate_columns(applicable_, [&]<class Jet>(std::span<const std::size_t> columns) {
+    return evaluate<Jet>(u, residuals, jacobian, columns);
+  });
 }
 
 std::vector<AxisInstant> RecordingCost::trajectory(const double* u) const {

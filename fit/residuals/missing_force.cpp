@@ -48,25 +48,6 @@ double noise_floor(const Recording& recording, const Observer& observer, double 
 
 }  // namespace
 
-std::vector<double> low_pass(std::vector<double> values, double interval, double cutoff) {
-  if (values.size() < 2 || cutoff >= 0.49 / interval) return values;
-  // Mirrored at both ends, or else the noise of the first and of the last value would count as if
-  // it had been there for ever.
-  const auto edge = static_cast<std::ptrdiff_t>(
-      std::min(static_cast<double>(values.size() - 1), std::ceil(2.0 / (cutoff * interval))));
-  std::vector<double> extended(values.rend() - edge - 1, values.rend() - 1);
-  extended.insert(extended.end(), values.begin(), values.end());
-  extended.insert(extended.end(), values.rbegin() + 1, values.rbegin() + 1 + edge);
-  extended = filtered({.kind = Filter::Kind::butterworth,
-                       .length = 1,
-                       .order = 4,
-                       .cutoff = cutoff * interval,
-                       .zero_phase = true},
-                      std::move(extended));
-  std::copy_n(extended.begin() + edge, values.size(), values.begin());
-  return values;
-}
-
 double percent_of_drive(const MissingForce& force) {
   if (!force.found || force.rms < 2.0 * force.noise) return 0.0;
   return 100.0 * std::sqrt(force.rms * force.rms - force.noise * force.noise) / force.drive_rms;

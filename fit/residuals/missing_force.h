@@ -29,8 +29,4 @@ double percent_of_drive(const MissingForce& force);
 /// more than 1 % of the largest drive force, down to 5 Hz.
 MissingForce missing_force(const Job& job, const FitResult& result, std::size_t recording);
 
-/// Butterworth low-pass of the fourth order, run forwards and backwards: no delay, and half power
-/// at 0.8 times the cutoff of each run. `interval` in s.
-std::vector<double> low_pass(std::vector<double> values, double interval, double cutoff);
-
 }  // namespace axisfit

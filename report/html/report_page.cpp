@@ -281,7 +281,8 @@ class Page {
     Html all = table({"Parameter", "#value", "#standard error", "#95 % interval", "Unit",
                       "#initial", "Within its bounds", "Verdict"},
                      rows) +
-               paragraph_of(uncertainty_text(job_, fit_)) + correlation();
+               paragraph_of(uncertainty_text(job_, fit_) + second_opinion_text(run_result_)) +
+               correlation();
     if (!run_result_.profiles.empty())
       all += html("<h3>Likelihood profiles</h3>{}",
                   figures(each(run_result_.profiles,

@@ -168,7 +168,8 @@ std::string report_text(const RunResult& run_result, bool colour) {
   const FitResult& result = run_result.fit();
   std::string text = fmt::format(
       "{}\n{}{}\n{}\n{}\n", recordings_text(run_result), parameters_text(run_result),
-      uncertainty_text(job, result) + starts_text(run_result.first),
+      uncertainty_text(job, result) + second_opinion_text(run_result) +
+          starts_text(run_result.first),
       legend_text(job, result, colour),
       run_result.selection ? selection_text(run_result, colour) : errors_text(job, result));
   if (const std::string profiles = profiles_text(run_result); !profiles.empty())

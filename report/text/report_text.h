@@ -41,6 +41,10 @@ std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty
 /// What the intervals rest on, and what is known instead of parameters that are not determined.
 std::string uncertainty_text(const Job& job, const FitResult& result);
 
+/// What the inverse-dynamics estimate did for the fit, and where it contradicts it or stands in for
+/// it; empty where there is nothing to say.
+std::string second_opinion_text(const RunResult& run_result);
+
 /// What is known of the parameters together: weak directions, and the combinations that are
 /// determined.
 std::string identifiability_text(const Identifiability& known);

@@ -87,6 +87,45 @@ std::string uncertainty_text(const Job& job, const FitResult& result) {
          identifiability_text(result.identifiability);
 }
 
+std::string second_opinion_text(const RunResult& run_result) {
+  const auto number = [](const ParameterResult& p, std::string_view unit) {
+    const double error = p.uncertainty.standard_error;
+    return with_unit(with_digits_of(p.value, error) + fmt::format(" +- {:.2g}", error), unit);
+  };
+  std::string text;
+  if (run_result.inverse_start == InverseStart::better)
+    text += paragraph(
+        "The fit began from an inverse-dynamics estimate, the balance of forces without a "
+        "simulation: from the initial values it ended worse, or nowhere.",
+        2);
+  if (!run_result.second_opinion) return text;
+  const auto& [estimate, contradictions] = *run_result.second_opinion;
+  std::vector<std::string> values;
+  if (!run_result.grade.is_usable())
+    for (const InverseEstimate& e : estimate.parameters)
+      values.push_back(
+          fmt::format("{} = {}", e.name, number(e, unit_of(run_result.job(), e.parameter))));
+  if (!values.empty())
+    text += paragraph(
+        fmt::format("Inverse dynamics, without a simulation: {}. Of the drive force {:.2g} % "
+                    "remain unexplained.",
+                    fmt::join(values, ", "), 100.0 * estimate.residual / estimate.drive_rms),
+        2);
+  if (contradictions.empty()) return text;
+  std::vector<std::string> differ;
+  for (const std::size_t i : contradictions) {
+    const InverseEstimate& e = estimate.parameters[i];
+    const std::string_view unit = unit_of(run_result.job(), e.parameter);
+    differ.push_back(fmt::format("{} = {} (fit: {})", e.name, number(e, unit),
+                                 number(run_result.fit().parameters[e.parameter], unit)));
+  }
+  return text + paragraph(fmt::format("Second opinion: inverse dynamics, without a simulation, "
+                                      "says {}. They differ by far more than their errors: what "
+                                      "the model lacks acts on the two in different ways.",
+                                      fmt::join(differ, ", ")),
+                          2);
+}
+
 std::string identifiability_text(const Identifiability& known) {
   std::string text;
   for (const WeakDirection& weak : known.weak) text += paragraph(weak_direction_text(weak), 2);

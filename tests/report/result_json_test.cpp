@@ -526,6 +526,29 @@ TEST(ResultTest, StrongCorrelationsOfEitherSignAreNamed) {
       << uncertainty_text({}, fit);
 }
 
+TEST(ResultTest, ASecondOpinionIsToldWhereItContradicts) {
+  Found found(rubbing_job());
+  ASSERT_TRUE(found.run_result.second_opinion);
+  const Json inverse = found.json.at("inverse_dynamics");
+  EXPECT_EQ(keys(inverse), (std::vector<std::string>{"start", "exact", "cutoff_hz", "residual_n",
+                                                     "drive_rms_n", "parameters"}));
+  EXPECT_EQ(inverse.at("start"), "not_tried");
+  found.run_result.second_opinion->contradictions = {0};
+  EXPECT_EQ(result_json(found.run_result)
+                .at("inverse_dynamics")
+                .at("parameters")[0]
+                .at("contradicts_fit"),
+            true);
+  EXPECT_NE(on_one_line(report_text(found.run_result))
+                .find("Second opinion: inverse dynamics, without a simulation, says M = "),
+            std::string::npos);
+  found.run_result.inverse_start = InverseStart::better;
+  EXPECT_EQ(result_json(found.run_result).at("inverse_dynamics").at("start"), "better");
+  for (const std::string& text : {report_text(found.run_result), report_page(found.run_result, {})})
+    EXPECT_NE(on_one_line(text).find("The fit began from an inverse-dynamics estimate"),
+              std::string::npos);
+}
+
 TEST(ResultTest, WhatRestsOnAGuessIsSaid) {
   Found found(rubbing_job());
   EXPECT_FALSE(found.json.at("parameters")[0].contains("rests_on"));
@@ -652,6 +675,7 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
                                                   "weak_directions",
                                                   "combinations",
                                                   "assumptions",
+                                                  "inverse_dynamics",
                                                   "effects",
                                                   "before",
                                                   "after",
