@@ -172,9 +172,10 @@ std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvem
   constexpr double kMinPercent = 0.5;
   // An effect that is there passes with nine in ten of such recordings.
   constexpr double kPower = 4.4;
-  if (!replicates && gain.p_value > chance)
-    return Rejection{.test = gain.expected_z < kPower ? power : validation, .found = gain.p_value};
-  if (!replicates && gain.validate_percent < kMinPercent)
+  const bool fails = !replicates && gain.p_value > chance;
+  const bool is_unseen = fails && gain.expected_z < kPower;
+  if (fails && !is_unseen) return Rejection{.test = validation, .found = gain.p_value};
+  if (!replicates && !is_unseen && gain.validate_percent < kMinPercent)
     return Rejection{.test = validation_size, .found = gain.validate_percent};
   if (!determined.at_bound.empty())
     return Rejection{.test = bound, .parameter = determined.at_bound};
@@ -184,6 +185,7 @@ std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvem
   if (determined.distinct < kAlias) return Rejection{.test = distinct};
   if (determined.wald < determined.required)
     return Rejection{.test = strength, .found = std::sqrt(determined.wald)};
+  if (is_unseen) return Rejection{.test = power, .found = gain.p_value};
   return std::nullopt;
 }
 

@@ -277,8 +277,10 @@ class EffectSelector {
       else if (is_preferred(e, **other))
         *other = &e;
     }
-    if (std::ranges::all_of(contenders,
-                            [](const ExtendedModel* e) { return e->rejection.has_value(); }))
+    // Where nothing but noise is left, what lowers no error elsewhere is chance.
+    if (!is_complete && std::ranges::all_of(contenders, [](const ExtendedModel* e) {
+          return e->rejection.has_value();
+        }))
       for (ExtendedModel* e : contenders) {
         try_to_replicate(*e);
         try_on_stretches(*e);
@@ -660,7 +662,9 @@ class EffectSelector {
         if (present) continue;
         if (only_record) {
           const bool simpler = e.candidate.parameters() <= accepted.candidate.parameters();
-          if (is_clearly_worse(loss) || !simpler) continue;
+          // A clock that is off has precedence: no part of the machine is its equal.
+          const bool is_behind = accepted.candidate.is_timing && !e.candidate.is_timing;
+          if (is_clearly_worse(loss) || !simpler || is_behind) continue;
           if (trial_of(e.candidate) == nullptr) record_trial(e, &e);
           rival_pairs_.push_back({a, e.candidate, fitted_model(e.job, e.fit)});
           continue;

@@ -45,10 +45,9 @@ std::string rejection_text(const Rejection& rejection) {
       return "the declared model does not fit, with it or without";
     case share:
       return fmt::format(
-          "lowers what of the validation error is not noise by no more than {:.2g} %, and most of "
-          "it "
-          "remains: "
-          "it may imitate what is missing",
+          "lowers the validation error beyond the noise by no more than {:.2g} %, where most "
+          "remains "
+          "unexplained: it may imitate what is missing",
           rejection.found);
   }
   return "";

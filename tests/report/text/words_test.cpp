@@ -143,9 +143,12 @@ TEST(WordsTest, OfTheDecisionOnAnEffect) {
             "it cannot be distinguished from a change of the other parameters");
   EXPECT_EQ(rejected({.test = strength, .found = 3.0}),
             "its strength is not determined: 3 standard errors from zero");
-  EXPECT_EQ(rejected({.test = share, .found = 7.56}),
-            "lowers the validation error by no more than 7.6 %, where most remains unexplained: it "
-            "may imitate what is missing");
+  EXPECT_EQ(
+      rejected({.test = share, .found = 7.56}),
+      "lowers the validation error beyond the noise by no more than 7.6 %, where most remains "
+      "unexplained: it may imitate what is missing");
+  EXPECT_EQ(rejected({.test = power, .found = 0.2}),
+            "cannot be judged: the recordings to validate hardly show it (p = 0.2)");
 
   trial.other = "drive_lag";
   trial.improvement.validate_percent = 12.345;
