@@ -52,6 +52,13 @@ Eigen::MatrixXd per_unit(Eigen::MatrixXd columns, const ParameterSpace& space,
   return columns;
 }
 
+/// u at the initial values of a job.
+Eigen::VectorXd initial_point(const Job& job, const ParameterSpace& space) {
+  std::vector<double> values;
+  for (const FreeParameter& p : job.free) values.push_back(p.initial);
+  return space.internal(values);
+}
+
 Job with_setting(const Job& job, const EffectSetting& setting) {
   Candidate candidate = *setting.candidate;
   candidate.shapes_are_free = setting.with_shapes;
@@ -177,9 +184,7 @@ std::vector<Eigen::MatrixXd> EffectColumns::derivatives(
 Eigen::MatrixXd EffectColumns::exact(const EffectSetting& setting) const {
   const Job job = with_setting(job_, setting);
   const ParameterSpace space(job);
-  std::vector<double> values;
-  for (const FreeParameter& p : job.free) values.push_back(p.initial);
-  const Eigen::VectorXd u = space.internal(values);
+  const Eigen::VectorXd u = initial_point(job, space);
   Linearization at = linearize(job, space, u, observer_gain_);
   return at.finite ? per_unit(std::move(at.jacobian), space, u) : Eigen::MatrixXd();
 }
@@ -199,9 +204,7 @@ void EffectColumns::add_batch(const std::vector<EffectSetting>& settings,
     job = with_candidate(job, one, {}, one.neutral, {});
   }
   const ParameterSpace space(job);
-  std::vector<double> values;
-  for (const FreeParameter& p : job.free) values.push_back(p.initial);
-  const Eigen::VectorXd u = space.internal(values);
+  const Eigen::VectorXd u = initial_point(job, space);
   Linearization at = linearize(job, space, u, observer_gain_);
   if (at.finite) at.jacobian = per_unit(std::move(at.jacobian), space, u);
   for (const Column& c : columns) {
@@ -243,10 +246,8 @@ Disturbances EffectColumns::disturbances(std::size_t place,
       scales.push_back(p->logarithmic ? p->initial : 1.0);
     }
     const ParameterSpace space(job);
-    std::vector<double> values;
-    for (const FreeParameter& p : job.free) values.push_back(p.initial);
     const Model<double> model =
-        model_at(job, space, space.internal(values).data(), recordings_[place]);
+        model_at(job, space, initial_point(job, space).data(), recordings_[place]);
     SmoothForce(model, quantities, sticks)
         .along(trajectory, [&](std::size_t i, const State<SmoothForce::T>& rates) {
           for (std::size_t k = 0; k < quantities.size(); ++k) {

@@ -46,8 +46,7 @@ std::string rejection_text(const Rejection& rejection) {
     case share:
       return fmt::format(
           "lowers the validation error beyond the noise by no more than {:.2g} %, where most "
-          "remains "
-          "unexplained: it may imitate what is missing",
+          "remains unexplained: it may imitate what is missing",
           rejection.found);
   }
   return "";
