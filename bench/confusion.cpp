@@ -143,7 +143,8 @@ void put(const Secret& secret, double strength, Model<double>& model) {
   if (const auto effect = effect_named(secret.name)) {
     model.structure.effects.set(*effect);
     for (const QuantityEntry& entry : quantity_list())
-      if (entry.group == secret.name) *member[entry.index] = 0.0;
+      if (const double value = entry.quantity.default_value; entry.group == secret.name)
+        *member[entry.index] = std::isnan(value) ? 0.0 : value;
   }
   for (const auto& [symbol, value] : secret.shapes) *member[quantity(secret, symbol)] = value;
   for (const auto& [symbol, value] : secret.strengths)

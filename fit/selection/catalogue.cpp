@@ -130,7 +130,7 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
       if (kEffectTable[e].acts_on != place) continue;
       for (SearchEntry& entry : kEffectTable[e].search(scales))
         if (entry.is_curve == curves && is_used(entry.used_by, structure) &&
-            (structure.effects[e] || !entry.extends))
+            (entry.extends.empty() || structure.effects[*effect_named(entry.extends)]))
           add_if_absent(candidate_of(kEffectTable[e], std::move(entry)));
     }
   };

@@ -71,8 +71,8 @@ struct SearchEntry {
   /// Strengths at which the score test looks instead of at zero; see Candidate.
   std::vector<double> probes = {};
   UsedBy used_by = UsedBy::every_axis;  ///< the axes for which it is offered
-  bool extends = false;   ///< whether it is offered only to an axis that has the effect
-  bool is_curve = false;  ///< a curve, whose ends are not estimated
+  std::string_view extends = {};  ///< the effect beside which alone it is offered; none: always
+  bool is_curve = false;          ///< a curve, whose ends are not estimated
   /// Whether the two strengths are sine and cosine of a phase, which homing may shift.
   bool has_phase = false;
 };

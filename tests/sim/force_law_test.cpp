@@ -246,24 +246,42 @@ bool moves(const Model<double>& model, double force) {
 }
 
 TEST(ForceLaw, OfStribeckFrictionHoldsAndSlides) {
-  for (const double F_st : {12.0, -12.0}) {
+  for (const auto& [F_st, n] : {std::pair{12.0, 1.0}, {-12.0, 1.0}, {12.0, 0.5}, {12.0, 2.0}}) {
+    SCOPED_TRACE(n);
     constexpr double F_c = 20.0, v_st = 0.05, F = 40.0;
     Model<double> model = rubbing_mass(F_c);
-    add_effect<StribeckFriction>(model) = {F_st, v_st};
+    add_effect<StribeckFriction>(model) = {F_st, v_st, n};
+    const auto left = [&, F_st = F_st, n = n](double v) {
+      const double x = v / v_st;
+      return n == 1.0 ? F_st * std::exp(-x)
+                      : F_st * std::exp(-x * std::pow(x * x + 1e-4, 0.5 * (n - 1.0)));
+    };
     for (const double way : {1.0, -1.0}) {
       EXPECT_FALSE(moves(model, way * (F_c + F_st - 1e-6)));
       EXPECT_TRUE(moves(model, way * (F_c + F_st + 1e-6)));
       const auto times = instants(50, 0.01);
       const auto r = run(model, {{0.0}, {way * F}}, times);
       const auto path =
-          integrated([&](double, double, double v) { return F - F_c - F_st * std::exp(-v / v_st); },
-                     kMass, times);
+          integrated([&](double, double, double v) { return F - F_c - left(v); }, kMass, times);
       for (std::size_t k = 0; k < times.size(); ++k) {
-        ASSERT_NEAR(way * r.states[k][0], path[k][0], 1e-9) << k;
-        ASSERT_NEAR(way * r.states[k][1], path[k][1], 1e-9) << k;
+        ASSERT_NEAR(way * r.states[k][0], path[k][0], n < 1.0 ? 1e-7 : 1e-9) << k;
+        ASSERT_NEAR(way * r.states[k][1], path[k][1], n < 1.0 ? 1e-6 : 1e-9) << k;
       }
     }
   }
+}
+
+TEST(ForceLaw, OfStribeckFrictionHasAnExponent) {
+  Instant<double> at{};
+  at.direction = -1;
+  for (const double n : {0.5, 0.8, 1.0, 1.6, 2.0})
+    for (const double x : {0.1, 0.3, 1.0, 3.0}) {
+      at.velocity = -0.05 * x;
+      const double power = std::pow(x, n);
+      EXPECT_NEAR(StribeckFriction<double>({12.0, 0.05, n}).friction_curve(at),
+                  12.0 * std::exp(-power), 12.0 * 0.005 * power * std::exp(-power))
+          << n << ' ' << x;
+    }
 }
 
 TEST(ForceLaw, OfPositionFrictionIsAHarmonicStop) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "tests/fit/example.h"
@@ -93,8 +94,9 @@ TEST(Catalogue, EntriesAreComplete) {
     }
     for (const std::size_t q : c.strengths) EXPECT_FALSE(quantities[q].quantity.shape);
     for (const std::size_t q : c.shapes) EXPECT_TRUE(quantities[q].quantity.shape);
-    // Every shape of an effect that is offered is set: it has no other value.
+    // Every shape of an effect that is offered is set, if it has no other value.
     for (const QuantityEntry& entry : quantities) {
+      if (!std::isnan(entry.quantity.default_value)) continue;
       if (!entry.quantity.shape || entry.group != quantities[c.strengths[0]].group) continue;
       EXPECT_NE(std::ranges::find(c.shapes, entry.index), c.shapes.end()) << entry.name;
     }
@@ -191,6 +193,25 @@ TEST(Catalogue, OffersASecondHarmonicOnlyBesideTheFirst) {
   EXPECT_FALSE(offers(list, "periodic_force.F_s1"));
 }
 
+TEST(Catalogue, OffersAnExponentOnlyBesideStribeckFriction) {
+  Job job = job_with({Signal::velocity});
+  const auto exponent_in = [&] {
+    const auto list = catalogue(job, scales());
+    const auto found = std::ranges::find_if(list, [](const Candidate& c) {
+      return c.strengths == std::vector{find_quantity("stribeck_friction.n")->index};
+    });
+    return found == list.end() ? std::optional<Candidate>() : *found;
+  };
+  EXPECT_FALSE(exponent_in());
+  add_effect<StribeckFriction>(job.model) = {12.0, 0.05};
+  const std::optional<Candidate> exponent = exponent_in();
+  ASSERT_TRUE(exponent);
+  EXPECT_EQ(exponent->neutral, std::vector{1.0});
+  EXPECT_EQ(exponent->parameters(), 1u);
+  std::get<StribeckFriction<double>>(job.model.effects).n = 2.0;  // declared: nothing is missing
+  EXPECT_FALSE(exponent_in());
+}
+
 TEST(Catalogue, OffersEveryConstantOfTheAxisFile) {
   Job job = job_with({Signal::velocity});
   job.free = {free_parameter("B_a", 100.0)};
@@ -246,6 +267,31 @@ class WithCandidate : public testing::Test {
                           {Signal::velocity, Signal::acceleration});
     candidates_ = catalogue(job_, scales());
   }
+  /// That a job with any of the candidates at neutral strength predicts what it does without.
+  void expect_the_same(const std::vector<Candidate>& candidates) const {
+    const std::vector<double> values{200.0, 2.7};
+    const FitResult without = result_at_start(job_);
+    for (const Candidate& c : candidates) {
+      SCOPED_TRACE(c.name);
+      for (const auto& setting : c.settings) {
+        const FitResult with = result_at_start(with_candidate(job_, c, values, c.neutral, setting));
+        for (std::size_t r = 0; r < 2; ++r) {
+          const auto& simulated = with.recordings[r].free_running.simulated;
+          const auto& expected = without.recordings[r].free_running.simulated;
+          if (!c.is_constant) {
+            ASSERT_EQ(simulated, expected);
+            continue;
+          }
+          // A constant is fitted by its logarithm, which does not give back every bit.
+          ASSERT_EQ(simulated.size(), expected.size());
+          for (std::size_t m = 0; m < simulated.size(); ++m)
+            for (std::size_t n = 0; n < simulated[m].size(); ++n)
+              ASSERT_NEAR(simulated[m][n], expected[m][n], 1e-9);
+        }
+      }
+    }
+  }
+
   Job job_;
   std::vector<Candidate> candidates_;
 };
@@ -343,28 +389,21 @@ TEST_F(WithCandidate, KeepsWithinTheBounds) {
   EXPECT_EQ(job.free[2].initial, 0.0);
 }
 
-TEST_F(WithCandidate, OfNeutralStrengthPredictsTheSameBitForBit) {
-  const std::vector<double> values{200.0, 2.7};
-  const FitResult without = result_at_start(job_);
-  for (const Candidate& c : candidates_) {
-    SCOPED_TRACE(c.name);
-    for (const auto& setting : c.settings) {
-      const FitResult with = result_at_start(with_candidate(job_, c, values, c.neutral, setting));
-      for (std::size_t r = 0; r < 2; ++r) {
-        const auto& simulated = with.recordings[r].free_running.simulated;
-        const auto& expected = without.recordings[r].free_running.simulated;
-        if (!c.is_constant) {
-          ASSERT_EQ(simulated, expected);
-          continue;
-        }
-        // A constant is fitted by its logarithm, which does not give back every bit.
-        ASSERT_EQ(simulated.size(), expected.size());
-        for (std::size_t m = 0; m < simulated.size(); ++m)
-          for (std::size_t n = 0; n < simulated[m].size(); ++n)
-            ASSERT_NEAR(simulated[m][n], expected[m][n], 1e-9);
-      }
-    }
-  }
+TEST_F(WithCandidate, OfNeutralStrengthPredictsTheSameBitForBit) { expect_the_same(candidates_); }
+
+TEST_F(WithCandidate, ThatExtendsAnEffectPredictsTheSameAtNeutralStrength) {
+  add_effect<StribeckFriction>(job_.model) = {12.0, 0.05};
+  auto& force = add_effect<PeriodicForce>(job_.model);
+  force.F_s1 = 5.0;
+  force.period = 0.05;
+  std::vector<Candidate> extensions = catalogue(job_, scales());
+  std::erase_if(extensions, [&](const Candidate& c) {
+    return c.is_constant || std::ranges::any_of(candidates_, [&](const Candidate& old) {
+             return old.strengths == c.strengths;
+           });
+  });
+  EXPECT_EQ(extensions.size(), 2u);  // exponent, second harmonic
+  expect_the_same(extensions);
 }
 
 }  // namespace
