@@ -56,6 +56,8 @@ struct Secret {
   double most = INFINITY;
 };
 
+bool is_curve(std::string_view name) { return name.find("_over_") != name.npos; }
+
 /// All effects but the curves, dead time and instruments, and at last a curve, which stands for an
 /// effect outside of the catalogue.
 const std::vector<std::string>& secret_names() {
@@ -63,8 +65,7 @@ const std::vector<std::string>& secret_names() {
     std::vector<std::string> list;
     for (const ActsOn place : kPlacesToAct)
       for (const EffectInfo& effect : kEffectTable)
-        if (effect.acts_on == place && !effect.name.starts_with("force_over_"))
-          list.emplace_back(effect.name);
+        if (effect.acts_on == place && !is_curve(effect.name)) list.emplace_back(effect.name);
     for (const char* other : {"dead_time", "acceleration.bias", "acceleration.gain",
                               "acceleration.lag", "velocity.gain", "velocity.lag", "velocity.delay",
                               "tachometer.gain", "force_over_position"})
@@ -380,7 +381,6 @@ int main(int argc, char** argv) {
     const std::set<std::string> truth(cases[i].in.begin(), cases[i].in.end());
     ++count.cases;
     // An effect outside the catalogue is rightly drawn as a curve, over whatever variable.
-    const auto is_curve = [](const std::string& name) { return name.starts_with("force_over_"); };
     const bool outside = std::ranges::any_of(truth, is_curve);
     std::set<std::string> wrong, accepted;
     for (const std::string& name : o.accepted)

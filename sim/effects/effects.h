@@ -20,7 +20,7 @@
 #include "sim/effects/command_offset.h"
 #include "sim/effects/constant_force.h"
 #include "sim/effects/coulomb_friction.h"
-#include "sim/effects/curve_force.h"
+#include "sim/effects/curve.h"
 #include "sim/effects/dahl_friction.h"
 #include "sim/effects/directional_friction.h"
 #include "sim/effects/drive_lag.h"
@@ -46,7 +46,7 @@ using Effects =
                DahlFriction<T>, StrokeSpring<T>, PeriodicForce<T>, AddedMass<T>, ElasticMode<T>,
                CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>, TorqueFade<T>, DriveLag<T>,
                CommandOffset<T>, ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>,
-               ForceOverTime<T>>;
+               ForceOverTime<T>, FrictionOverVelocity<T>, FrictionOverPosition<T>>;
 
 inline constexpr std::size_t kEffects = std::tuple_size_v<Effects<double>>;
 

@@ -169,6 +169,21 @@ std::vector<LawCase> laws() {
         add_effect<ForceOverTime>(m) = {c, 0.2, 0.8};
       },
       [=](double t, double, double) { return curve(c, (t - 0.2) / 0.6); });
+  auto level = c;
+  for (double& x : level) x = 8.0 + 0.3 * x;
+  add(
+      "friction_over_velocity",
+      [=](auto& m) {
+        add_effect<FrictionOverVelocity>(m) = {level, -0.1, 1.2};
+      },
+      [=](double, double, double v) { return -sign(v) * curve(level, (std::abs(v) + 0.1) / 1.3); },
+      kJumps);
+  add(
+      "friction_over_position",
+      [=](auto& m) {
+        add_effect<FrictionOverPosition>(m) = {level, -0.2, 0.3};
+      },
+      [=](double, double y, double v) { return -sign(v) * curve(level, (y + 0.2) / 0.5); }, kJumps);
   add(
       "command_offset", [](auto& m) { add_effect<CommandOffset>(m).U_0 = 6.0; },
       [](double, double, double) { return 6.0; });

@@ -100,7 +100,7 @@ TEST(Catalogue, EntriesAreComplete) {
       if (!entry.quantity.shape || entry.group != quantities[c.strengths[0]].group) continue;
       EXPECT_NE(std::ranges::find(c.shapes, entry.index), c.shapes.end()) << entry.name;
     }
-    EXPECT_EQ(c.is_curve, c.name.starts_with("force_over_"));
+    EXPECT_EQ(c.is_curve, c.name.find("_over_") != std::string::npos);
   }
 }
 
@@ -134,6 +134,10 @@ TEST(Catalogue, CurvesSpanTheMotion) {
   EXPECT_EQ(find(list, "force_over_time")->settings,
             (std::vector<std::vector<double>>{{0.0, 1.2}}));
   EXPECT_TRUE(find(list, "force_over_motor_angle")->shapes.empty());
+  EXPECT_EQ(find(list, "friction_over_velocity")->settings,
+            (std::vector<std::vector<double>>{{0.0, 1.2}}));
+  EXPECT_EQ(find(list, "friction_over_position")->settings,
+            (std::vector<std::vector<double>>{{-0.1, 0.5}}));
 }
 
 TEST(Catalogue, OffersNothingThatIsFree) {
