@@ -381,7 +381,7 @@ class Equations {
     is.spring = is_active(slots.stiffness);
     is.asymmetric = is_active(slots.viscous_asymmetry);
     is.slope = is_active(slots.friction_slope);
-    is.load = is_active(slots.load_friction);
+    is.load = is_active(slots.load_friction) || is_active(slots.load_curve);
     is.driven_load = is.load && !is.has.has_backlash;
     is.directions = is.static_friction || is.asymmetric || is.slope || is.load ||
                     is_active(slots.friction_level) || is_active(slots.friction_asymmetry) ||
@@ -406,13 +406,15 @@ class Equations {
   }
 
   Instant<T> instant(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    const T force = current_force(mode, y, input);
     return {input.time,
             y[0],
             y[1],
             mode.sliding,
             y[2],
             current(mode, y, input),
-            m_.axis.r_g * current_force(mode, y, input)};
+            m_.axis.r_g * force,
+            load(mode, y, force)};
   }
 
   T motor_torque(const Mode& mode, const State<T>& y, const Input<T>& input) const {
@@ -421,9 +423,9 @@ class Equations {
 
   /// Force that the transmission carries, N: of the teeth on the side of their contact, or of the
   /// motor where there are none.
-  T load(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+  T load(const Mode& mode, const State<T>& y, const T& drive) const {
     return is_.has.has_backlash ? double(mode.contact) * gear_force(mode, y)
-                                : double(mode.load) * current_force(mode, y, input);
+                                : double(mode.load) * drive;
   }
 
   std::int8_t sign_of_load(const Mode& mode, const State<T>& y, const Input<T>& input) const {
@@ -437,7 +439,7 @@ class Equations {
     if (in_doublet) level += m_.axis.F_s;
     if (is_.directions) level += double(direction) * slots_.friction_asymmetry;
     if (is_.slope) level += slots_.friction_slope * y[0];
-    if (is_.load) level += slots_.load_friction * load(mode, y, input);
+    if (is_.load) level += slots_.load_friction * load(mode, y, current_force(mode, y, input));
     if (is_.needs.friction_curve && terms == Terms::all)
       level +=
           slots::friction_curve(m_.effects, is_.effects, instant(mode, y, input), input.memory);

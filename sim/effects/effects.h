@@ -30,7 +30,9 @@
 #include "sim/effects/periodic_force.h"
 #include "sim/effects/position_friction.h"
 #include "sim/effects/quadratic_drag.h"
+#include "sim/effects/quadratic_load_friction.h"
 #include "sim/effects/stribeck_friction.h"
+#include "sim/effects/stribeck_load_friction.h"
 #include "sim/effects/stroke_spring.h"
 #include "sim/effects/torque_droop.h"
 #include "sim/effects/torque_fade.h"
@@ -43,10 +45,11 @@ template <class T>
 using Effects =
     std::tuple<CoulombFriction<T>, ConstantForce<T>, QuadraticDrag<T>, DirectionalFriction<T>,
                StribeckFriction<T>, PositionFriction<T>, FrictionBump<T>, LoadFriction<T>,
-               DahlFriction<T>, StrokeSpring<T>, PeriodicForce<T>, AddedMass<T>, ElasticMode<T>,
-               CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>, TorqueFade<T>, DriveLag<T>,
-               CommandOffset<T>, ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>,
-               ForceOverTime<T>, FrictionOverVelocity<T>, FrictionOverPosition<T>>;
+               QuadraticLoadFriction<T>, StribeckLoadFriction<T>, DahlFriction<T>, StrokeSpring<T>,
+               PeriodicForce<T>, AddedMass<T>, ElasticMode<T>, CoggingTorque<T>, TorqueRipple<T>,
+               TorqueDroop<T>, TorqueFade<T>, DriveLag<T>, CommandOffset<T>, ForceOverVelocity<T>,
+               ForceOverPosition<T>, ForceOverMotorAngle<T>, ForceOverTime<T>,
+               FrictionOverVelocity<T>, FrictionOverPosition<T>>;
 
 inline constexpr std::size_t kEffects = std::tuple_size_v<Effects<double>>;
 

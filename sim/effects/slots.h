@@ -31,6 +31,7 @@ struct Slots {
   T friction_asymmetry{0.0};  ///< N, added to it in the positive direction, taken off in the other
   T friction_slope{0.0};      ///< N/m, added to it per metre of the arm's position
   T load_friction{0.0};       ///< 1, added to it per newton of transmitted force
+  T load_curve{0.0};          ///< 1, the same by a friction curve: the force's sign needs a guard
   T viscous_asymmetry{0.0};   ///< N s/m, added to B_a in the positive direction, taken off else
   T added_mass{0.0};          ///< kg, on the arm
   T command_offset{0.0};      ///< V, added to U
@@ -58,6 +59,7 @@ struct Instant {
   T motor_angle;   ///< rad, y2
   T current;       ///< A; zero for a force source
   T drive_torque;  ///< N m, of the motor by its current
+  T load;          ///< N, that the transmission carries; >= 0 where its sign has a guard
   Memory<T> memory = {};
 };
 

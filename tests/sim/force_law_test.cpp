@@ -209,6 +209,21 @@ std::vector<LawCase> laws() {
         return -0.2 * sign(v) * std::abs(pushing(three_pushes(), t));
       },
       kJumps);
+  add(
+      "quadratic_load_friction", [](auto& m) { add_effect<QuadraticLoadFriction>(m).mu_q = 4e-3; },
+      [](double t, double, double v) {
+        return -4e-3 * sign(v) * std::pow(pushing(three_pushes(), t), 2);
+      },
+      kJumps);
+  add(
+      "stribeck_load_friction",
+      [](auto& m) {
+        add_effect<StribeckLoadFriction>(m) = {0.2, 0.3};
+      },
+      [](double t, double, double v) {
+        return -0.2 * sign(v) * std::abs(pushing(three_pushes(), t)) * std::exp(-std::abs(v) / 0.3);
+      },
+      kJumps);
   // The force passes zero between two switches.
   add(
       "load_friction with drive_lag",
@@ -221,6 +236,18 @@ std::vector<LawCase> laws() {
         return force - pushing(three_pushes(), t) - 0.2 * sign(v) * std::abs(force);
       },
       kJumps);
+  add(
+      "stribeck_load_friction with drive_lag",
+      [](auto& m) {
+        add_effect<StribeckLoadFriction>(m) = {0.2, 0.3};
+        add_effect<DriveLag>(m).T_l = 0.03;
+      },
+      [=](double t, double, double v) {
+        const double force = lagging(t);
+        return force - pushing(three_pushes(), t) -
+               0.2 * sign(v) * std::abs(force) * std::exp(-std::abs(v) / 0.3);
+      },
+      3.0 * kJumps);
   return cases;
 }
 
@@ -384,14 +411,45 @@ TEST(ForceLaw, OfLoadFrictionTakesItsShareOfTheToothForce) {
 }
 
 TEST(ForceLaw, OfLoadFrictionHoldsARigidAxis) {
+  Model<double> plain = driven_mass(kMass);
+  add_effect<ConstantForce>(plain).F_0 = -30.0;
+  Model<double> at_low_speed = plain;
+  add_effect<LoadFriction>(plain).mu = 0.3;
+  add_effect<StribeckLoadFriction>(at_low_speed) = {0.3, 0.05};
+  for (const Model<double>& model : {plain, at_low_speed}) {
+    EXPECT_TRUE(moves(model, 0.0));  // nothing holds without a load
+    EXPECT_FALSE(moves(model, 25.0));
+    EXPECT_FALSE(moves(model, 40.0));  // 10 N against 12 N
+    EXPECT_TRUE(moves(model, 43.0));   // 13 N against 12.9 N
+    EXPECT_TRUE(moves(model, 23.0));   // -7 N against 6.9 N
+  }
+}
+
+TEST(ForceLaw, OfQuadraticLoadFrictionTakesItsShareOfTheToothForce) {
+  // As that of load friction: F - f_g = m a, f_g - mu_q f_g^2 = M a.
+  constexpr double mu_q = 1e-3, F = 300.0;
+  for (const double way : {1.0, -1.0}) {
+    Model<double> model = free_gear();
+    model.axis.b_g = 2e4;
+    add_effect<QuadraticLoadFriction>(model).mu_q = mu_q;
+    const auto r = run(model, {{0.0}, {way * F}}, instants(100, 0.01));
+    const double m = motor_mass(model.axis), share = 1.0 + model.axis.M / m;
+    const double f_g =
+        (share - std::sqrt(share * share - 4.0 * mu_q * F * model.axis.M / m)) / (2.0 * mu_q);
+    EXPECT_NEAR(r.acceleration.back(), way * (F - f_g) / m, 1e-7);
+    EXPECT_NEAR(std::abs(r.acceleration.back()) * model.axis.M, f_g - mu_q * f_g * f_g, 1e-6);
+  }
+}
+
+TEST(ForceLaw, OfQuadraticLoadFrictionHoldsARigidAxis) {
   Model<double> model = driven_mass(kMass);
-  add_effect<LoadFriction>(model).mu = 0.3;
+  add_effect<QuadraticLoadFriction>(model).mu_q = 0.01;
   add_effect<ConstantForce>(model).F_0 = -30.0;
-  EXPECT_TRUE(moves(model, 0.0));  // nothing holds without a load
-  EXPECT_FALSE(moves(model, 25.0));
-  EXPECT_FALSE(moves(model, 40.0));  // 10 N against 12 N
-  EXPECT_TRUE(moves(model, 43.0));   // 13 N against 12.9 N
-  EXPECT_TRUE(moves(model, 23.0));   // -7 N against 6.9 N
+  EXPECT_TRUE(moves(model, 0.0));
+  EXPECT_FALSE(moves(model, 25.0));  // -5 N against 6.25 N
+  EXPECT_TRUE(moves(model, 23.0));   // -7 N against 5.29 N
+  EXPECT_FALSE(moves(model, 43.0));  // 13 N against 18.49 N
+  EXPECT_FALSE(moves(model, 60.0));  // it locks itself: 30 N against 36 N
 }
 
 TEST(ForceLaw, OfDahlFrictionIsTheHysteresisOfItsEquation) {
