@@ -27,6 +27,7 @@
 #include "sim/effects/elastic_mode.h"
 #include "sim/effects/friction_bump.h"
 #include "sim/effects/load_friction.h"
+#include "sim/effects/pendulum_gravity.h"
 #include "sim/effects/periodic_force.h"
 #include "sim/effects/position_friction.h"
 #include "sim/effects/quadratic_drag.h"
@@ -46,9 +47,9 @@ using Effects =
     std::tuple<CoulombFriction<T>, ConstantForce<T>, QuadraticDrag<T>, DirectionalFriction<T>,
                StribeckFriction<T>, PositionFriction<T>, FrictionBump<T>, LoadFriction<T>,
                QuadraticLoadFriction<T>, StribeckLoadFriction<T>, DahlFriction<T>, StrokeSpring<T>,
-               PeriodicForce<T>, AddedMass<T>, ElasticMode<T>, CoggingTorque<T>, TorqueRipple<T>,
-               TorqueDroop<T>, TorqueFade<T>, DriveLag<T>, CommandOffset<T>, ForceOverVelocity<T>,
-               ForceOverPosition<T>, ForceOverMotorAngle<T>, ForceOverTime<T>,
+               PendulumGravity<T>, PeriodicForce<T>, AddedMass<T>, ElasticMode<T>, CoggingTorque<T>,
+               TorqueRipple<T>, TorqueDroop<T>, TorqueFade<T>, DriveLag<T>, CommandOffset<T>,
+               ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>, ForceOverTime<T>,
                FrictionOverVelocity<T>, FrictionOverPosition<T>>;
 
 inline constexpr std::size_t kEffects = std::tuple_size_v<Effects<double>>;

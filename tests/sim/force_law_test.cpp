@@ -125,6 +125,12 @@ std::vector<LawCase> laws() {
       "stroke_spring", [](auto& m) { add_effect<StrokeSpring>(m).k_s = 150.0; },
       [](double, double y, double) { return -150.0 * y; });
   add(
+      "pendulum_gravity",
+      [](auto& m) {
+        add_effect<PendulumGravity>(m) = {25.0, -9.0};
+      },
+      [](double, double y, double) { return -25.0 * std::sin(y) + 9.0 * std::cos(y); });
+  add(
       "periodic_force",
       [](auto& m) {
         add_effect<PeriodicForce>(m) = {12.0, -7.0, 4.0, 3.0, 0.05};

@@ -140,6 +140,14 @@ TEST(Catalogue, CurvesSpanTheMotion) {
             (std::vector<std::vector<double>>{{-0.1, 0.5}}));
 }
 
+TEST(Catalogue, OffersGravityOfAPendulumOnlyWhereItTurns) {
+  const Job job = job_with({Signal::velocity});
+  EXPECT_NE(find(catalogue(job, scales()), "pendulum_gravity"), nullptr);
+  SearchScales s = scales();
+  s.position_high = 0.3;
+  EXPECT_EQ(find(catalogue(job, s), "pendulum_gravity"), nullptr);
+}
+
 TEST(Catalogue, OffersNothingThatIsFree) {
   Job job = job_with({Signal::velocity});
   ASSERT_TRUE(offers(catalogue(job, scales()), "T_d"));
