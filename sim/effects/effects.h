@@ -32,12 +32,15 @@
 #include "sim/effects/position_friction.h"
 #include "sim/effects/quadratic_drag.h"
 #include "sim/effects/quadratic_load_friction.h"
+#include "sim/effects/running_in_friction.h"
 #include "sim/effects/stribeck_friction.h"
 #include "sim/effects/stribeck_load_friction.h"
 #include "sim/effects/stroke_spring.h"
 #include "sim/effects/torque_droop.h"
 #include "sim/effects/torque_fade.h"
 #include "sim/effects/torque_ripple.h"
+#include "sim/effects/warming_friction.h"
+#include "sim/effects/warming_grease.h"
 #include "sim/scalar.h"
 
 namespace axisfit {
@@ -46,7 +49,8 @@ template <class T>
 using Effects =
     std::tuple<CoulombFriction<T>, ConstantForce<T>, QuadraticDrag<T>, DirectionalFriction<T>,
                StribeckFriction<T>, PositionFriction<T>, FrictionBump<T>, LoadFriction<T>,
-               QuadraticLoadFriction<T>, StribeckLoadFriction<T>, DahlFriction<T>, StrokeSpring<T>,
+               QuadraticLoadFriction<T>, StribeckLoadFriction<T>, DahlFriction<T>,
+               WarmingFriction<T>, WarmingGrease<T>, RunningInFriction<T>, StrokeSpring<T>,
                PendulumGravity<T>, PeriodicForce<T>, AddedMass<T>, ElasticMode<T>, CoggingTorque<T>,
                TorqueRipple<T>, TorqueDroop<T>, TorqueFade<T>, DriveLag<T>, CommandOffset<T>,
                ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>, ForceOverTime<T>,

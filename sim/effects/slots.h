@@ -13,7 +13,7 @@
 // and goes through the Runge-Kutta part of the integrator. Such a force may depend on a hysteresis,
 // the state of which is known in closed form since the arm last came to rest,
 //
-//   T hysteresis(const Instant<T>&) const;      1, and at.memory holds what it was there
+//   T hysteresis(const Instant<T>&) const;      and at.memory holds what it was there
 //
 // A force that jumps needs a guard (equations.h), as dry friction has.
 #pragma once
@@ -46,7 +46,7 @@ struct Slots {
 template <class T>
 struct Memory {
   T position{0.0};    ///< m
-  T hysteresis{0.0};  ///< 1, from -1 to 1
+  T hysteresis{0.0};  ///< from -1 to 1, or what the effect says
 };
 
 /// What an effect sees of the axis. Forces and speeds on the arm side.

@@ -230,6 +230,16 @@ std::vector<LawCase> laws() {
         return -0.2 * sign(v) * std::abs(pushing(three_pushes(), t)) * std::exp(-std::abs(v) / 0.3);
       },
       kJumps);
+  add(
+      "warming_friction and warming_grease",
+      [](auto& m) {
+        add_effect<WarmingFriction>(m) = {8.0, 0.4};
+        add_effect<WarmingGrease>(m) = {25.0, 0.7};
+      },
+      [](double t, double, double v) {
+        return -8.0 * sign(v) * std::exp(-t / 0.4) - 25.0 * v * std::exp(-t / 0.7);
+      },
+      kJumps);
   // The force passes zero between two switches.
   add(
       "load_friction with drive_lag",
@@ -456,6 +466,34 @@ TEST(ForceLaw, OfQuadraticLoadFrictionHoldsARigidAxis) {
   EXPECT_TRUE(moves(model, 23.0));   // -7 N against 5.29 N
   EXPECT_FALSE(moves(model, 43.0));  // 13 N against 18.49 N
   EXPECT_FALSE(moves(model, 60.0));  // it locks itself: 30 N against 36 N
+}
+
+TEST(ForceLaw, OfRunningInFrictionCountsTheWayForthAndBack) {
+  // M v^2 / 2 falls by F_c s + F_r l_r (1 - exp(-s / l_r)) over the travel s, until it rests; then
+  // it is pushed back and goes on from there.
+  constexpr double F_c = 5.0, F_r = 15.0, l_r = 0.1, v = 0.7, F = 40.0;
+  const auto work = [](double s) { return F_c * s + F_r * l_r * (1.0 - std::exp(-s / l_r)); };
+  Model<double> model = rubbing_mass(F_c);
+  add_effect<RunningInFriction>(model) = {F_r, l_r};
+  model.initial[1] = v;
+  const auto times = instants(200, 0.01);
+  const auto r = run(model, {{1.4}, {-F}}, times);
+  const auto at = [&](std::size_t k) { return r.states[k]; };
+  double stop = 0.0;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (times[k] > 1.4) {
+      const double back = stop - at(k)[0];
+      const double energy = F * back - (work(stop + back) - work(stop));
+      ASSERT_NEAR(at(k)[1], -std::sqrt(2.0 * energy / kMass), 1e-9) << k;
+    } else if (at(k)[1] != 0.0) {
+      ASSERT_NEAR(at(k)[1], std::sqrt(v * v - 2.0 * work(at(k)[0]) / kMass), 1e-9) << k;
+    } else {
+      stop = at(k)[0];
+      ASSERT_NEAR(work(stop), 0.5 * kMass * v * v, 1e-9);
+    }
+  }
+  ASSERT_GT(stop, 0.0);
+  EXPECT_LT(at(200)[0], 0.0);
 }
 
 TEST(ForceLaw, OfDahlFrictionIsTheHysteresisOfItsEquation) {
