@@ -58,6 +58,13 @@ struct Secret {
 
 bool is_curve(std::string_view name) { return name.find("_over_") != name.npos; }
 
+/// Whether an axis of the paper can have an effect, without another one that it extends.
+bool stands_alone(const EffectInfo& effect) {
+  return std::ranges::any_of(effect.search({}), [](const SearchEntry& entry) {
+    return entry.extends.empty() && is_used(entry.used_by, Structure{});
+  });
+}
+
 /// All effects but the curves, dead time and instruments, and at last a curve, which stands for an
 /// effect outside of the catalogue.
 const std::vector<std::string>& secret_names() {
@@ -65,7 +72,8 @@ const std::vector<std::string>& secret_names() {
     std::vector<std::string> list;
     for (const ActsOn place : kPlacesToAct)
       for (const EffectInfo& effect : kEffectTable)
-        if (effect.acts_on == place && !is_curve(effect.name)) list.emplace_back(effect.name);
+        if (effect.acts_on == place && !is_curve(effect.name) && stands_alone(effect))
+          list.emplace_back(effect.name);
     for (const char* other : {"dead_time", "acceleration.bias", "acceleration.gain",
                               "acceleration.lag", "velocity.gain", "velocity.lag", "velocity.delay",
                               "tachometer.gain", "force_over_position"})

@@ -50,11 +50,11 @@ using Effects =
     std::tuple<CoulombFriction<T>, ConstantForce<T>, QuadraticDrag<T>, DirectionalFriction<T>,
                StribeckFriction<T>, PositionFriction<T>, FrictionBump<T>, LoadFriction<T>,
                QuadraticLoadFriction<T>, StribeckLoadFriction<T>, DahlFriction<T>,
-               WarmingFriction<T>, WarmingGrease<T>, RunningInFriction<T>, StrokeSpring<T>,
-               PendulumGravity<T>, PeriodicForce<T>, AddedMass<T>, ElasticMode<T>, CoggingTorque<T>,
-               TorqueRipple<T>, TorqueDroop<T>, TorqueFade<T>, DriveLag<T>, CommandOffset<T>,
-               ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>, ForceOverTime<T>,
-               FrictionOverVelocity<T>, FrictionOverPosition<T>>;
+               SecondDahlFriction<T>, WarmingFriction<T>, WarmingGrease<T>, RunningInFriction<T>,
+               StrokeSpring<T>, PendulumGravity<T>, PeriodicForce<T>, AddedMass<T>, ElasticMode<T>,
+               CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>, TorqueFade<T>, DriveLag<T>,
+               CommandOffset<T>, ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>,
+               ForceOverTime<T>, FrictionOverVelocity<T>, FrictionOverPosition<T>>;
 
 inline constexpr std::size_t kEffects = std::tuple_size_v<Effects<double>>;
 

@@ -498,7 +498,7 @@ TEST(ForceLaw, OfRunningInFrictionCountsTheWayForthAndBack) {
 
 TEST(ForceLaw, OfDahlFrictionIsTheHysteresisOfItsEquation) {
   // dz/dy = (direction - z) / l_d over a travel forth and back, from any state.
-  const DahlFriction<double> dahl{10.0, 2e-4};
+  const DahlFriction<double> dahl{10.0, 2e-4, 30.0};
   for (const double start : {0.0, 0.4, -1.0})
     for (const int way : {1, -1}) {
       constexpr int kSteps = 1000;
@@ -506,6 +506,7 @@ TEST(ForceLaw, OfDahlFrictionIsTheHysteresisOfItsEquation) {
       double z = start;
       Instant<double> at{};
       at.direction = way;
+      at.velocity = 0.2 * way;
       at.memory = {0.01, start};
       const double h = kTravel / kSteps;
       for (int i = 1; i <= kSteps; ++i) {
@@ -515,27 +516,31 @@ TEST(ForceLaw, OfDahlFrictionIsTheHysteresisOfItsEquation) {
         z += way * h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4);
         at.position = 0.01 + way * i * h;
         ASSERT_NEAR(dahl.hysteresis(at), z, 1e-9);
-        ASSERT_NEAR(dahl.arm_force(at), -10.0 * z, 1e-8);
+        const double bending = 0.2 * way * dahl.l_d * rate(z);  // l_d z', m/s
+        ASSERT_NEAR(dahl.arm_force(at), -10.0 * z - 30.0 * bending, 1e-8);
       }
     }
 }
 
 TEST(ForceLaw, OfDahlFrictionFollowsTheMotion) {
-  // Together with Coulomb friction, through reversals and rests, with z integrated as a state.
-  constexpr double F_c = 3.0, F_d = 10.0, l_d = 2e-3;
+  // Two elements together with Coulomb friction, through reversals and rests, with each z
+  // integrated as a state.
+  constexpr double F_c = 3.0, F_d = 7.0, l_d = 2e-3, B_d = 40.0, F_d2 = 3.0, l_d2 = 8e-3;
   Model<double> model = rubbing_mass(F_c);
-  add_effect<DahlFriction>(model) = {F_d, l_d};
+  add_effect<DahlFriction>(model) = {F_d, l_d, B_d};
+  add_effect<SecondDahlFriction>(model) = {F_d2, l_d2};
   const Schedule command{{0.0, 0.2, 0.5, 0.6, 0.8}, {20.0, -15.0, -5.0, 9.0, 0.0}};
   const auto times = instants(120, 0.01);
   const auto r = run(model, command, times);
   ASSERT_TRUE(r.finished);
   constexpr double h = 1e-6;
-  double y = 0.0, v = 0.0, z = 0.0;
+  double y = 0.0, v = 0.0, z = 0.0, z2 = 0.0;
   int rests = 0;
   for (std::size_t k = 1; k < times.size(); ++k) {
     for (int i = 0; i < 10000; ++i) {  // symplectic steps: first order, but tiny
       const double t = times[k - 1] + (i + 0.5) * h;
-      const double rest = pushing(command, t) - F_d * z;
+      const double bending = v * (1.0 - sign(v) * z);
+      const double rest = pushing(command, t) - F_d * z - B_d * bending - F_d2 * z2;
       if (v == 0.0 && std::abs(rest) <= F_c) continue;
       const double s = v != 0.0 ? sign(v) : sign(rest);
       const double after = v + h * (rest - s * F_c) / kMass;
@@ -547,6 +552,7 @@ TEST(ForceLaw, OfDahlFrictionFollowsTheMotion) {
       v = after;
       y += h * v;
       z += h * v / l_d * (s - z) * s;
+      z2 += h * v / l_d2 * (s - z2) * s;
     }
     ASSERT_NEAR(r.states[k][0], y, 2e-5) << times[k];
     ASSERT_NEAR(r.states[k][1], v, 5e-5) << times[k];

@@ -61,7 +61,10 @@ TEST(Catalogue, HasEveryEffectOfTheList) {
   const auto list = catalogue(job_with({Signal::velocity}), scales());
   const Effects<double> effects{};
   visit_effects(effects, [&](std::size_t, const auto& effect) {
-    EXPECT_NE(find(list, effect.name), nullptr) << effect.name << " offers nothing to this axis";
+    const bool extends = std::ranges::all_of(
+        effect.search(scales()), [](const SearchEntry& entry) { return !entry.extends.empty(); });
+    const bool offered = find(list, effect.name) != nullptr;
+    EXPECT_NE(offered, extends) << effect.name << " offers nothing, or what it should not";
   });
 }
 
@@ -222,6 +225,17 @@ TEST(Catalogue, OffersAnExponentOnlyBesideStribeckFriction) {
   EXPECT_EQ(exponent->parameters(), 1u);
   std::get<StribeckFriction<double>>(job.model.effects).n = 2.0;  // declared: nothing is missing
   EXPECT_FALSE(exponent_in());
+}
+
+TEST(Catalogue, OffersASecondDahlElementOnlyBesideTheFirst) {
+  Job job = job_with({Signal::velocity});
+  EXPECT_FALSE(offers(catalogue(job, scales()), "second_dahl_friction.F_d"));
+  EXPECT_FALSE(offers(catalogue(job, scales()), "dahl_friction.B_d"));
+  add_effect<DahlFriction>(job.model) = {12.0, 1e-3};
+  const auto list = catalogue(job, scales());
+  EXPECT_TRUE(offers(list, "second_dahl_friction.F_d"));
+  EXPECT_TRUE(offers(list, "dahl_friction.B_d"));
+  EXPECT_FALSE(offers(list, "second_dahl_friction.B_d"));
 }
 
 TEST(Catalogue, OffersEveryConstantOfTheAxisFile) {
@@ -405,6 +419,7 @@ TEST_F(WithCandidate, OfNeutralStrengthPredictsTheSameBitForBit) { expect_the_sa
 
 TEST_F(WithCandidate, ThatExtendsAnEffectPredictsTheSameAtNeutralStrength) {
   add_effect<StribeckFriction>(job_.model) = {12.0, 0.05};
+  add_effect<DahlFriction>(job_.model) = {5.0, 1e-3};
   auto& force = add_effect<PeriodicForce>(job_.model);
   force.F_s1 = 5.0;
   force.period = 0.05;
@@ -414,7 +429,7 @@ TEST_F(WithCandidate, ThatExtendsAnEffectPredictsTheSameAtNeutralStrength) {
              return old.strengths == c.strengths;
            });
   });
-  EXPECT_EQ(extensions.size(), 2u);  // exponent, second harmonic
+  EXPECT_EQ(extensions.size(), 4u);  // exponent, damping, second element, second harmonic
   expect_the_same(extensions);
 }
 
