@@ -34,7 +34,7 @@ struct ActiveTerms {
   EffectSet effects;
   slots::Needs needs;
   bool static_friction, directions, spring, asymmetric, slope, load, driven_load, elastic, lagging,
-      lag_active;
+      lag_active, soft_supply;
 };
 
 template <class T>
@@ -94,7 +94,10 @@ class Equations {
 
   /// V_m, behind the limit, V; (3).
   T motor_voltage(const Mode& mode, const State<T>& y, const Input<T>& input) const {
-    return mode.v_m == 0 ? motor_demand(mode, y, input) : double(mode.v_m) * m_.axis.V_s;
+    if (mode.v_m == 0) return motor_demand(mode, y, input);
+    T v = double(mode.v_m) * m_.axis.V_s;
+    if (is_.soft_supply) v -= slots_.supply_resistance * y[6];
+    return v;
   }
 
   /// Motor current, A.
@@ -250,7 +253,7 @@ class Equations {
     if (is_.has.is_electric)
       between(v_c_positive, v_c_negative, mode.v_c, preamplifier(y), p.V_L, value_of(p.V_L));
     if (is_.has.has_voltage_loop)
-      between(v_m_positive, v_m_negative, mode.v_m, motor_demand(mode, y, input), p.V_s,
+      between(v_m_positive, v_m_negative, mode.v_m, supply_demand(mode, y, input), p.V_s,
               value_of(p.V_s) + value_of(p.K_v) * value_of(p.V_L) * 1e-3);
     if (is_.driven_load) {
       const T force = current_force(mode, y, input);
@@ -347,7 +350,7 @@ class Equations {
     if (is_.has.has_backlash) mode.contact = side(value_of(gear_position(y)), value_of(p.H));
     if (is_.has.is_electric) mode.v_c = side(value_of(preamplifier(y)), value_of(p.V_L));
     if (is_.has.has_voltage_loop)
-      mode.v_m = side(value_of(motor_demand(mode, y, input)), value_of(p.V_s));
+      mode.v_m = side(value_of(supply_demand(mode, y, input)), value_of(p.V_s));
     if (is_.driven_load) mode.load = sign_of_load(mode, y, input);
     const double speed = value_of(y[1]);
     if (!is_.directions) {
@@ -387,9 +390,17 @@ class Equations {
                     is_active(slots.friction_level) || is_active(slots.friction_asymmetry) ||
                     is.needs.friction_curve || is.needs.hysteresis;
     is.elastic = is_active(slots.elastic_mass);
+    is.soft_supply = is_active(slots.supply_resistance);
     is.lagging = value_of(slots.drive_lag) > 0.0;
     is.lag_active = !is.lagging && is_active(slots.drive_lag);
     return is;
+  }
+
+  /// What the motor's demand takes of the supply that is limited to V_s, V: more by its drop.
+  T supply_demand(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    T v = motor_demand(mode, y, input);
+    if (is_.soft_supply) v += slots_.supply_resistance * y[6];
+    return v;
   }
 
   /// y5', V/s^2; (1).
@@ -413,6 +424,7 @@ class Equations {
             mode.sliding,
             y[2],
             current(mode, y, input),
+            force,
             m_.axis.r_g * force,
             load(mode, y, force)};
   }

@@ -25,6 +25,7 @@
 #include "sim/effects/directional_friction.h"
 #include "sim/effects/drive_lag.h"
 #include "sim/effects/elastic_mode.h"
+#include "sim/effects/force_droop.h"
 #include "sim/effects/friction_bump.h"
 #include "sim/effects/load_friction.h"
 #include "sim/effects/pendulum_gravity.h"
@@ -36,6 +37,7 @@
 #include "sim/effects/stribeck_friction.h"
 #include "sim/effects/stribeck_load_friction.h"
 #include "sim/effects/stroke_spring.h"
+#include "sim/effects/supply_resistance.h"
 #include "sim/effects/torque_droop.h"
 #include "sim/effects/torque_fade.h"
 #include "sim/effects/torque_ripple.h"
@@ -52,9 +54,10 @@ using Effects =
                QuadraticLoadFriction<T>, StribeckLoadFriction<T>, DahlFriction<T>,
                SecondDahlFriction<T>, WarmingFriction<T>, WarmingGrease<T>, RunningInFriction<T>,
                StrokeSpring<T>, PendulumGravity<T>, PeriodicForce<T>, AddedMass<T>, ElasticMode<T>,
-               CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>, TorqueFade<T>, DriveLag<T>,
-               CommandOffset<T>, ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>,
-               ForceOverTime<T>, FrictionOverVelocity<T>, FrictionOverPosition<T>>;
+               CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>, ForceDroop<T>, TorqueFade<T>,
+               DriveLag<T>, CommandOffset<T>, SupplyResistance<T>, ForceOverVelocity<T>,
+               ForceOverPosition<T>, ForceOverMotorAngle<T>, ForceOverTime<T>,
+               FrictionOverVelocity<T>, FrictionOverPosition<T>>;
 
 inline constexpr std::size_t kEffects = std::tuple_size_v<Effects<double>>;
 

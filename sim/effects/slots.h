@@ -36,6 +36,7 @@ struct Slots {
   T added_mass{0.0};          ///< kg, on the arm
   T command_offset{0.0};      ///< V, added to U
   T drive_lag{0.0};           ///< s, time constant with which the power stage follows its input
+  T supply_resistance{0.0};   ///< ohm, in series with the motor at the limit V_s
   T elastic_mass{0.0};        ///< kg, the part of the arm that a spring carries, and of that mode
   T elastic_frequency{0.0};   ///< rad/s, with the arm held, and
   T elastic_damping{0.0};     ///< 1, damping ratio
@@ -58,7 +59,8 @@ struct Instant {
   int direction;   ///< sign of the velocity; 0 while the arm sticks
   T motor_angle;   ///< rad, y2
   T current;       ///< A; zero for a force source
-  T drive_torque;  ///< N m, of the motor by its current
+  T drive_force;   ///< N, of the motor by its current
+  T drive_torque;  ///< N m, the same at the motor
   T load;          ///< N, that the transmission carries; >= 0 where its sign has a guard
   Memory<T> memory = {};
 };

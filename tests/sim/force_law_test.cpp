@@ -154,6 +154,12 @@ std::vector<LawCase> laws() {
         return pushing(three_pushes(), t) * (1.0 / (1.0 + 0.4 * t) - 1.0);
       });
   add(
+      "force_droop", [](auto& m) { add_effect<ForceDroop>(m).c_f = 4e-3; },
+      [](double t, double, double) {
+        const double force = pushing(three_pushes(), t);
+        return -4e-3 * force * std::abs(force);
+      });
+  add(
       "force_over_velocity",
       [=](auto& m) {
         add_effect<ForceOverVelocity>(m) = {c, -2.0, 2.0};
@@ -598,6 +604,33 @@ TEST(ForceLaw, OfAddedMassIsThatOfTheArmBitForBit) {
   const auto a = run(heavier, level_command(), times), b = run(loaded, level_command(), times);
   EXPECT_EQ(a.states, b.states);
   EXPECT_EQ(a.events, b.events);
+}
+
+TEST(ForceLaw, OfASupplyResistanceIsThatOfTheMotorAtItsLimit) {
+  // A command beyond what V_s can drive: the motor hangs on the supply throughout.
+  constexpr double R_v = 0.8;
+  for (const double way : {1.0, -1.0}) {
+    Model<double> soft = paper_axis(), weak = paper_axis();
+    soft.axis.V_s = weak.axis.V_s = 4.0;
+    add_effect<SupplyResistance>(soft).R_v = R_v;
+    weak.axis.R += R_v;
+    const auto times = instants(500, 1e-3);
+    const auto a = run(soft, {{0.0}, {way * 10.0}}, times),
+               b = run(weak, {{0.0}, {way * 10.0}}, times);
+    EXPECT_EQ(a.modes.back().v_m, way);
+    EXPECT_LT(largest_difference(a.states, b.states), 1e-5);
+    EXPECT_GT(std::abs(a.states.back()[1]), 0.01);
+  }
+}
+
+TEST(ForceLaw, OfASupplyResistanceIsNothingBelowTheLimit) {
+  Model<double> soft = paper_axis();
+  soft.axis.K_v = 10.0;
+  soft.axis.V_s = 1e4;
+  const auto times = instants(500, 1e-3);
+  const auto without = run(soft, level_command(), times);
+  add_effect<SupplyResistance>(soft).R_v = 2.0;
+  EXPECT_LT(largest_difference(run(soft, level_command(), times).states, without.states), 1e-12);
 }
 
 TEST(ForceLaw, OfADriveLagIsAThirdPole) {

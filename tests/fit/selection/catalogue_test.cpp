@@ -58,12 +58,15 @@ bool offers_constant(const std::vector<Candidate>& list, const char* quantity) {
 }
 
 TEST(Catalogue, HasEveryEffectOfTheList) {
-  const auto list = catalogue(job_with({Signal::velocity}), scales());
+  Job job = job_with({Signal::velocity});
+  const auto list = catalogue(job, scales());
+  job.model = slide();
+  const auto of_slide = catalogue(job, scales());
   const Effects<double> effects{};
   visit_effects(effects, [&](std::size_t, const auto& effect) {
     const bool extends = std::ranges::all_of(
         effect.search(scales()), [](const SearchEntry& entry) { return !entry.extends.empty(); });
-    const bool offered = find(list, effect.name) != nullptr;
+    const bool offered = find(list, effect.name) || find(of_slide, effect.name);
     EXPECT_NE(offered, extends) << effect.name << " offers nothing, or what it should not";
   });
 }
@@ -258,10 +261,10 @@ TEST(Catalogue, OffersNothingThatTheStructureDoesNotUse) {
   Job job = job_with({Signal::velocity});
   job.model = slide();
   const auto list = catalogue(job, scales());
-  for (const char* name :
-       {"cogging_torque", "torque_ripple", "torque_droop", "force_over_motor_angle"})
+  for (const char* name : {"cogging_torque", "torque_ripple", "torque_droop", "supply_resistance",
+                           "force_over_motor_angle"})
     EXPECT_EQ(find(list, name), nullptr) << name;
-  for (const char* name : {"torque_fade", "drive_lag", "dead_time"})
+  for (const char* name : {"torque_fade", "force_droop", "drive_lag", "dead_time"})
     EXPECT_NE(find(list, name), nullptr) << name;
   for (const Candidate& c : list) {
     Structure structure = job.model.structure;
