@@ -76,7 +76,7 @@ const std::vector<std::string>& secret_names() {
           list.emplace_back(effect.name);
     for (const char* other : {"dead_time", "acceleration.bias", "acceleration.gain",
                               "acceleration.lag", "velocity.gain", "velocity.lag", "velocity.delay",
-                              "tachometer.gain", "force_over_position"})
+                              "velocity.drift", "tachometer.gain", "force_over_position"})
       list.emplace_back(other);
     return list;
   }();
@@ -138,6 +138,7 @@ Secret draw_secret(const std::string& name, double low, double high, Draw& draw)
   // Instruments: "signal.part".
   if (name.ends_with(".bias")) return {name, {{name, s}}, {}, 0.02};
   if (name.ends_with(".gain")) return {name, {{name, s}}, {}, 0.01, 0.5};
+  if (name.ends_with(".drift")) return {name, {{name, s}}, {}, 0.001, 0.05};
   if (name.ends_with(".lag")) return {name, {{name, 1}}, {}, 0.001, 0.05};
   return {name, {{name, s}}, {}, 0.001, 0.05};
 }

@@ -59,19 +59,22 @@ class Recorder {
     const Instrument<T>& instrument = instruments_[index_of(signals_[s])];
     std::vector<T> fine = std::move(raw_[s]);
     if (is_active(instrument.lag)) fine = lagging(fine, instrument.lag);
-    const bool delayed = is_active(instrument.delay);
+    const bool delayed = is_active(instrument.delay) || is_active(instrument.drift);
     if (substeps_ == 1 && !delayed) return fine;
     std::vector<T> shown;
     shown.reserve(fine.size() / substeps_ + 1);
     for (std::size_t k = 0; k < fine.size(); k += substeps_)
-      shown.push_back(delayed ? at(fine, k, instrument.delay) : fine[k]);
+      shown.push_back(delayed ? at(fine, k, delay_at(k, instrument)) : fine[k]);
     return shown;
   }
 
  private:
   bool has_lag_or_delay(Signal signal) const {
     const Instrument<T>& instrument = instruments_[index_of(signal)];
-    return is_active(instrument.lag) || is_active(instrument.delay);
+    return is_active(instrument.lag) || is_active(instrument.delay) || is_active(instrument.drift);
+  }
+  T delay_at(std::size_t instant, const Instrument<T>& instrument) const {
+    return instrument.delay + instrument.drift * (instants_[instant] - instants_.front());
   }
 
   /// lag s' = u - s with u linear between the instants and s = u at the first.

@@ -143,7 +143,7 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
   add_if_absent(std::move(dead_time));
   for (const SignalInfo& signal : kSignalTable) {
     if (!is_recorded(job, signal.signal)) continue;
-    for (const std::string_view part : {"bias", "gain", "lag", "delay"}) {
+    for (const std::string_view part : {"bias", "gain", "lag", "delay", "drift"}) {
       const std::string name = std::string(signal.name) + "." + std::string(part);
       const QuantityEntry* entry = find_quantity(name);
       if (is_ignored(*entry, job.options.observer)) continue;
@@ -151,6 +151,9 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
       if (part == "lag") candidate.probes = later(scales);
       candidate.is_timing = part == "delay";
       if (candidate.is_timing) candidate.probes = both_signs;
+      if (part == "drift")
+        for (const double delay : both_signs)
+          candidate.probes.push_back(delay / (scales.end - scales.start));
       add_if_absent(std::move(candidate));
     }
   }

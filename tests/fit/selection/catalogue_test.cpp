@@ -281,7 +281,7 @@ TEST(Catalogue, OffersOnlyInstrumentsThatTheFitReads) {
   validate.role = Role::validate;
   job.recordings.push_back(validate);
   const auto list = catalogue(job, scales());
-  for (const char* part : {"bias", "gain", "lag", "delay"}) {
+  for (const char* part : {"bias", "gain", "lag", "delay", "drift"}) {
     const auto of = [&](const char* signal) { return std::string(signal) + "." + part; };
     EXPECT_NE(find(list, of("velocity")), nullptr);
     for (const char* signal : {"motor_current", "tachometer", "acceleration", "position"})
