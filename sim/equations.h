@@ -34,7 +34,7 @@ struct ActiveTerms {
   EffectSet effects;
   slots::Needs needs;
   bool static_friction, directions, spring, asymmetric, slope, load, driven_load, elastic, lagging,
-      lag_active, soft_supply;
+      lag_active, soft_supply, soft_encoder;
 };
 
 template <class T>
@@ -133,6 +133,18 @@ class Equations {
     if (mode.contact == 0) return T(0.0);
     return (gear_position(y) - double(mode.contact) * m_.axis.H) * m_.axis.k_g +
            (m_.axis.r_g * y[3] - y[1]) * m_.axis.b_g;
+  }
+
+  /// What the encoder on the motor reads, m at the rack: ahead of a rigid arm by what the
+  /// transmission gives way under the force that it carries.
+  T encoder_position(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    const Axis<T>& p = m_.axis;
+    const T position = p.r_g * y[2];
+    if (!is_.soft_encoder) return position;
+    const T of_motor = (p.J_m * acceleration(mode, y, input) + p.B_m * y[1]) / (p.r_g * p.r_g);
+    const T force = drive_force(mode, y, input) - of_motor;
+    const double side = value_of(force) > 0.0 ? 1.0 : value_of(force) < 0.0 ? -1.0 : 0.0;
+    return position + slots_.compliance * force + side * slots_.play;
   }
 
   /// All forces on the moving mass but dry friction and observer, N on the arm side.
@@ -391,6 +403,8 @@ class Equations {
                     is.needs.friction_curve || is.needs.hysteresis;
     is.elastic = is_active(slots.elastic_mass);
     is.soft_supply = is_active(slots.supply_resistance);
+    is.soft_encoder =
+        !is.has.has_backlash && (is_active(slots.compliance) || is_active(slots.play));
     is.lagging = value_of(slots.drive_lag) > 0.0;
     is.lag_active = !is.lagging && is_active(slots.drive_lag);
     return is;
@@ -505,7 +519,7 @@ T reading(const Equations<T>& equations, Signal signal, const Mode& mode, const 
   const auto truth = [&]() -> T {
     switch (signal) {
       case Signal::position:
-        return p.r_g * y[2];
+        return equations.encoder_position(mode, y, input);
       case Signal::velocity:
         return y[1];
       case Signal::acceleration:

@@ -34,6 +34,7 @@
 #include "sim/effects/quadratic_drag.h"
 #include "sim/effects/quadratic_load_friction.h"
 #include "sim/effects/running_in_friction.h"
+#include "sim/effects/soft_transmission.h"
 #include "sim/effects/stribeck_friction.h"
 #include "sim/effects/stribeck_load_friction.h"
 #include "sim/effects/stroke_spring.h"
@@ -54,9 +55,9 @@ using Effects =
                QuadraticLoadFriction<T>, StribeckLoadFriction<T>, DahlFriction<T>,
                SecondDahlFriction<T>, WarmingFriction<T>, WarmingGrease<T>, RunningInFriction<T>,
                StrokeSpring<T>, PendulumGravity<T>, PeriodicForce<T>, AddedMass<T>, ElasticMode<T>,
-               CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>, ForceDroop<T>, TorqueFade<T>,
-               DriveLag<T>, CommandOffset<T>, SupplyResistance<T>, ForceOverVelocity<T>,
-               ForceOverPosition<T>, ForceOverMotorAngle<T>, ForceOverTime<T>,
+               SoftTransmission<T>, CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>,
+               ForceDroop<T>, TorqueFade<T>, DriveLag<T>, CommandOffset<T>, SupplyResistance<T>,
+               ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>, ForceOverTime<T>,
                FrictionOverVelocity<T>, FrictionOverPosition<T>>;
 
 inline constexpr std::size_t kEffects = std::tuple_size_v<Effects<double>>;

@@ -16,10 +16,10 @@
 namespace axisfit {
 
 /// Where an effect acts. The search lists candidates in this order.
-enum class ActsOn { friction, arm_force, inertia, motor_torque, drive };
+enum class ActsOn { friction, arm_force, inertia, transmission, motor_torque, drive };
 
-inline constexpr ActsOn kPlacesToAct[]{ActsOn::friction, ActsOn::arm_force, ActsOn::inertia,
-                                       ActsOn::motor_torque, ActsOn::drive};
+inline constexpr ActsOn kPlacesToAct[]{ActsOn::friction,     ActsOn::arm_force,    ActsOn::inertia,
+                                       ActsOn::transmission, ActsOn::motor_torque, ActsOn::drive};
 
 constexpr std::string_view name_of(ActsOn place) {
   switch (place) {
@@ -29,6 +29,8 @@ constexpr std::string_view name_of(ActsOn place) {
       return "arm force";
     case ActsOn::inertia:
       return "inertia";
+    case ActsOn::transmission:
+      return "transmission";
     case ActsOn::motor_torque:
       return "motor torque";
     case ActsOn::drive:

@@ -37,6 +37,8 @@ struct Slots {
   T command_offset{0.0};      ///< V, added to U
   T drive_lag{0.0};           ///< s, time constant with which the power stage follows its input
   T supply_resistance{0.0};   ///< ohm, in series with the motor at the limit V_s
+  T compliance{0.0};          ///< m/N, by which the motor's encoder is ahead of a rigid arm
+  T play{0.0};                ///< m, the same in the sense of the force
   T elastic_mass{0.0};        ///< kg, the part of the arm that a spring carries, and of that mode
   T elastic_frequency{0.0};   ///< rad/s, with the arm held, and
   T elastic_damping{0.0};     ///< 1, damping ratio

@@ -633,6 +633,35 @@ TEST(ForceLaw, OfASupplyResistanceIsNothingBelowTheLimit) {
   EXPECT_LT(largest_difference(run(soft, level_command(), times).states, without.states), 1e-12);
 }
 
+TEST(ForceLaw, OfASoftTransmissionIsThatOfASlowGear) {
+  // A motor pushes an arm against viscous friction, so slowly that the gear is at its equilibrium:
+  // the encoder is ahead by H + f_g / k_g.
+  constexpr double H = 2e-4, k_g = 1e5, F = 120.0;
+  Model<double> gear = free_gear();
+  gear.axis.H = H;
+  gear.axis.k_g = k_g;
+  gear.axis.B_a = 400.0;
+  gear.axis.b_g = 6e3;
+  Model<double> rigid = gear;
+  rigid.structure.transmission = Transmission::rigid;
+  rigid.axis.J_m = gear.axis.J_m;
+  add_effect<SoftTransmission>(rigid) = {1.0 / k_g, H};
+  rigid.axis.r_g = gear.axis.r_g;
+  for (const double way : {1.0, -1.0}) {
+    const auto times = instants(150, 0.01);
+    const Schedule push{{0.0}, {way * F}};
+    const auto a = run(gear, push, times), b = run(rigid, push, times);
+    ASSERT_TRUE(a.finished && b.finished);
+    const double m = motor_mass(gear.axis), r_g = gear.axis.r_g;
+    for (std::size_t k = 50; k < times.size(); ++k) {
+      // The force at the arm, from each run's own acceleration.
+      const double f = way * F - m * b.acceleration[k];
+      ASSERT_NEAR(b.encoder[k], b.states[k][0] + f / k_g + way * H, 1e-12) << k;
+      ASSERT_NEAR(r_g * a.states[k][2] - a.states[k][0], b.encoder[k] - b.states[k][0], 2e-5) << k;
+    }
+  }
+}
+
 TEST(ForceLaw, OfADriveLagIsAThirdPole) {
   // Current source without feedback, its zero out of the way: three lags in a row.
   constexpr double T_l = 0.013, U = 1e-3;
