@@ -56,6 +56,15 @@ struct Secret {
   double most = INFINITY;
 };
 
+bool is_curve(std::string_view name) { return name.find("_over_") != name.npos; }
+
+/// Whether an axis of the paper can have an effect, without another one that it extends.
+bool stands_alone(const EffectInfo& effect) {
+  return std::ranges::any_of(effect.search({}), [](const SearchEntry& entry) {
+    return entry.extends.empty() && is_used(entry.used_by, Structure{});
+  });
+}
+
 /// All effects but the curves, dead time and instruments, and at last a curve, which stands for an
 /// effect outside of the catalogue.
 const std::vector<std::string>& secret_names() {
@@ -63,11 +72,11 @@ const std::vector<std::string>& secret_names() {
     std::vector<std::string> list;
     for (const ActsOn place : kPlacesToAct)
       for (const EffectInfo& effect : kEffectTable)
-        if (effect.acts_on == place && !effect.name.starts_with("force_over_"))
+        if (effect.acts_on == place && !is_curve(effect.name) && stands_alone(effect))
           list.emplace_back(effect.name);
     for (const char* other : {"dead_time", "acceleration.bias", "acceleration.gain",
                               "acceleration.lag", "velocity.gain", "velocity.lag", "velocity.delay",
-                              "tachometer.gain", "force_over_position"})
+                              "velocity.drift", "tachometer.gain", "force_over_position"})
       list.emplace_back(other);
     return list;
   }();
@@ -129,6 +138,7 @@ Secret draw_secret(const std::string& name, double low, double high, Draw& draw)
   // Instruments: "signal.part".
   if (name.ends_with(".bias")) return {name, {{name, s}}, {}, 0.02};
   if (name.ends_with(".gain")) return {name, {{name, s}}, {}, 0.01, 0.5};
+  if (name.ends_with(".drift")) return {name, {{name, s}}, {}, 0.001, 0.05};
   if (name.ends_with(".lag")) return {name, {{name, 1}}, {}, 0.001, 0.05};
   return {name, {{name, s}}, {}, 0.001, 0.05};
 }
@@ -143,7 +153,8 @@ void put(const Secret& secret, double strength, Model<double>& model) {
   if (const auto effect = effect_named(secret.name)) {
     model.structure.effects.set(*effect);
     for (const QuantityEntry& entry : quantity_list())
-      if (entry.group == secret.name) *member[entry.index] = 0.0;
+      if (const double value = entry.quantity.default_value; entry.group == secret.name)
+        *member[entry.index] = std::isnan(value) ? 0.0 : value;
   }
   for (const auto& [symbol, value] : secret.shapes) *member[quantity(secret, symbol)] = value;
   for (const auto& [symbol, value] : secret.strengths)
@@ -379,7 +390,6 @@ int main(int argc, char** argv) {
     const std::set<std::string> truth(cases[i].in.begin(), cases[i].in.end());
     ++count.cases;
     // An effect outside the catalogue is rightly drawn as a curve, over whatever variable.
-    const auto is_curve = [](const std::string& name) { return name.starts_with("force_over_"); };
     const bool outside = std::ranges::any_of(truth, is_curve);
     std::set<std::string> wrong, accepted;
     for (const std::string& name : o.accepted)

@@ -43,7 +43,7 @@ struct ActiveTerms {
   EffectSet effects;
   slots::Needs needs;
   bool static_friction, directions, spring, asymmetric, slope, load, driven_load, elastic, lagging,
-      lag_active;
+      lag_active, soft_supply, soft_encoder;
 };
 
 template <class T>
@@ -103,7 +103,10 @@ class Equations {
 
   /// V_m, behind the limit, V; (3).
   T motor_voltage(const Mode& mode, const State<T>& y, const Input<T>& input) const {
-    return mode.v_m == 0 ? motor_demand(mode, y, input) : double(mode.v_m) * m_.axis.V_s;
+    if (mode.v_m == 0) return motor_demand(mode, y, input);
+    T v = double(mode.v_m) * m_.axis.V_s;
+    if (is_.soft_supply) v -= slots_.supply_resistance * y[6];
+    return v;
   }
 
   /// Motor current, A.
@@ -139,6 +142,18 @@ class Equations {
     if (mode.contact == 0) return T(0.0);
     return (gear_position(y) - double(mode.contact) * m_.axis.H) * m_.axis.k_g +
            (m_.axis.r_g * y[3] - y[1]) * m_.axis.b_g;
+  }
+
+  /// What the encoder on the motor reads, m at the rack: ahead of a rigid arm by what the
+  /// transmission gives way under the force that it carries.
+  T encoder_position(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    const Axis<T>& p = m_.axis;
+    const T position = p.r_g * y[2];
+    if (!is_.soft_encoder) return position;
+    const T of_motor = (p.J_m * acceleration(mode, y, input) + p.B_m * y[1]) / (p.r_g * p.r_g);
+    const T force = drive_force(mode, y, input) - of_motor;
+    const double side = value_of(force) > 0.0 ? 1.0 : value_of(force) < 0.0 ? -1.0 : 0.0;
+    return position + slots_.compliance * force + side * slots_.play;
   }
 
   /// All forces on the moving mass but dry friction and observer, N on the arm side.
@@ -268,7 +283,7 @@ class Equations {
     if (is_.has.is_electric)
       between(v_c_positive, v_c_negative, mode.v_c, preamplifier(y), p.V_L, value_of(p.V_L));
     if (is_.has.has_voltage_loop)
-      between(v_m_positive, v_m_negative, mode.v_m, motor_demand(mode, y, input), p.V_s,
+      between(v_m_positive, v_m_negative, mode.v_m, supply_demand(mode, y, input), p.V_s,
               value_of(p.V_s) + value_of(p.K_v) * value_of(p.V_L) * 1e-3);
     if (is_.driven_load) {
       const T force = current_force(mode, y, input);
@@ -365,7 +380,7 @@ class Equations {
     if (is_.has.has_backlash) mode.contact = side(value_of(gear_position(y)), value_of(p.H));
     if (is_.has.is_electric) mode.v_c = side(value_of(preamplifier(y)), value_of(p.V_L));
     if (is_.has.has_voltage_loop)
-      mode.v_m = side(value_of(motor_demand(mode, y, input)), value_of(p.V_s));
+      mode.v_m = side(value_of(supply_demand(mode, y, input)), value_of(p.V_s));
     if (is_.driven_load) mode.load = sign_of_load(mode, y, input);
     const double speed = value_of(y[1]);
     if (!is_.directions) {
@@ -399,15 +414,25 @@ class Equations {
     is.spring = is_active(slots.stiffness);
     is.asymmetric = is_active(slots.viscous_asymmetry);
     is.slope = is_active(slots.friction_slope);
-    is.load = is_active(slots.load_friction);
+    is.load = is_active(slots.load_friction) || is_active(slots.load_curve);
     is.driven_load = is.load && !is.has.has_backlash;
     is.directions = is.static_friction || is.asymmetric || is.slope || is.load ||
                     is_active(slots.friction_level) || is_active(slots.friction_asymmetry) ||
                     is.needs.friction_curve || is.needs.hysteresis;
     is.elastic = is_active(slots.elastic_mass);
+    is.soft_supply = is_active(slots.supply_resistance);
+    is.soft_encoder =
+        !is.has.has_backlash && (is_active(slots.compliance) || is_active(slots.play));
     is.lagging = value_of(slots.drive_lag) > 0.0;
     is.lag_active = !is.lagging && is_active(slots.drive_lag);
     return is;
+  }
+
+  /// What the motor's demand takes of the supply that is limited to V_s, V: more by its drop.
+  T supply_demand(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    T v = motor_demand(mode, y, input);
+    if (is_.soft_supply) v += slots_.supply_resistance * y[6];
+    return v;
   }
 
   /// y5', V/s^2; (1).
@@ -424,13 +449,16 @@ class Equations {
   }
 
   Instant<T> instant(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    const T force = current_force(mode, y, input);
     return {input.time,
             y[0],
             y[1],
             mode.sliding,
             y[2],
             current(mode, y, input),
-            m_.axis.r_g * current_force(mode, y, input)};
+            force,
+            m_.axis.r_g * force,
+            load(mode, y, force)};
   }
 
   T motor_torque(const Mode& mode, const State<T>& y, const Input<T>& input) const {
@@ -439,9 +467,9 @@ class Equations {
 
   /// Force that the transmission carries, N: of the teeth on the side of their contact, or of the
   /// motor where there are none.
-  T load(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+  T load(const Mode& mode, const State<T>& y, const T& drive) const {
     return is_.has.has_backlash ? double(mode.contact) * gear_force(mode, y)
-                                : double(mode.load) * current_force(mode, y, input);
+                                : double(mode.load) * drive;
   }
 
   std::int8_t sign_of_load(const Mode& mode, const State<T>& y, const Input<T>& input) const {
@@ -455,7 +483,7 @@ class Equations {
     if (in_doublet) level += m_.axis.F_s;
     if (is_.directions) level += double(direction) * slots_.friction_asymmetry;
     if (is_.slope) level += slots_.friction_slope * y[0];
-    if (is_.load) level += slots_.load_friction * load(mode, y, input);
+    if (is_.load) level += slots_.load_friction * load(mode, y, current_force(mode, y, input));
     if (is_.needs.friction_curve && terms == Terms::all)
       level +=
           slots::friction_curve(m_.effects, is_.effects, instant(mode, y, input), input.memory);
@@ -509,7 +537,7 @@ T reading(const Equations<T>& equations, Signal signal, const Mode& mode, const 
   const auto truth = [&]() -> T {
     switch (signal) {
       case Signal::position:
-        return p.r_g * y[2];
+        return equations.encoder_position(mode, y, input);
       case Signal::velocity:
         return y[1];
       case Signal::acceleration:

@@ -35,6 +35,8 @@ bool is_used(UsedBy used_by, const Structure& structure) {
       return has.is_force_driven;
     case UsedBy::backlash:
       return has.has_backlash;
+    case UsedBy::rigid:
+      return !has.has_backlash;
     case UsedBy::motor:
       return has.has_motor;
   }

@@ -86,6 +86,8 @@ void visit_quantities(ModelOfT& model, Visitor&& visit) {
           instrument.lag);
     visit(entry.name, Quantity{"delay", "s", "delay of the instrument", -1, 1, 0.0},
           instrument.delay);
+    visit(entry.name, Quantity{"drift", "1", "growth of the delay per time", -0.1, 0.1, 0.0},
+          instrument.drift);
   }
   using enum UsedBy;
   constexpr Quantity kInitial[kPaperStates] = {

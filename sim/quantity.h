@@ -18,6 +18,7 @@ enum class UsedBy {
   electric_drive,  ///< drive: velocity_loop or current_source
   force_source,    ///< drive: force_source
   backlash,        ///< transmission: backlash
+  rigid,           ///< transmission: rigid
   motor,           ///< needed unless a force source drives a rigid transmission
 };
 

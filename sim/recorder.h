@@ -49,9 +49,10 @@ class Recorder {
   /// To be called at every instant.
   void read(const Integrator<T>& axis) {
     for (std::size_t s = 0; s < signals_.size(); ++s)
-      raw_[s].push_back(
-          reading(axis.equations(), signals_[s], axis.mode(), axis.state(), axis.input()));
+      note(s, reading(axis.equations(), signals_[s], axis.mode(), axis.state(), axis.input()));
   }
+  /// Instead, for each signal: what an instrument without lag or delay shows.
+  void note(std::size_t s, const T& shown) { raw_[s].push_back(shown); }
 
   /// What the instrument for signals[s] shows at the samples that were reached.
   /// In the signal's unit, one value per sample. To be called once: it takes what was read.
@@ -59,19 +60,22 @@ class Recorder {
     const Instrument<T>& instrument = instruments_[index_of(signals_[s])];
     std::vector<T> fine = std::move(raw_[s]);
     if (is_active(instrument.lag)) fine = lagging(fine, instrument.lag);
-    const bool delayed = is_active(instrument.delay);
+    const bool delayed = is_active(instrument.delay) || is_active(instrument.drift);
     if (substeps_ == 1 && !delayed) return fine;
     std::vector<T> shown;
     shown.reserve(fine.size() / substeps_ + 1);
     for (std::size_t k = 0; k < fine.size(); k += substeps_)
-      shown.push_back(delayed ? at(fine, k, instrument.delay) : fine[k]);
+      shown.push_back(delayed ? at(fine, k, delay_at(k, instrument)) : fine[k]);
     return shown;
   }
 
  private:
   bool has_lag_or_delay(Signal signal) const {
     const Instrument<T>& instrument = instruments_[index_of(signal)];
-    return is_active(instrument.lag) || is_active(instrument.delay);
+    return is_active(instrument.lag) || is_active(instrument.delay) || is_active(instrument.drift);
+  }
+  T delay_at(std::size_t instant, const Instrument<T>& instrument) const {
+    return instrument.delay + instrument.drift * (instants_[instant] - instants_.front());
   }
 
   /// lag s' = u - s with u linear between the instants and s = u at the first.

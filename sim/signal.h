@@ -53,13 +53,15 @@ inline std::optional<Signal> signal_by_name(std::string_view name) {
 }
 
 /// A linear instrument: reading = gain * true value + bias, the bias in the signal's unit; the
-/// reading follows the truth with the time constant `lag` and comes `delay` later, both in seconds.
+/// reading follows the truth with the time constant `lag` and comes `delay` later, both in seconds,
+/// and by `drift` more for every second since the first sample: its clock is slow.
 template <class T>
 struct Instrument {
   T gain{1.0};
   T bias{0.0};
   T lag{0.0};
   T delay{0.0};
+  T drift{0.0};
 };
 
 template <class T>

@@ -159,7 +159,8 @@ bool is_ignored(const QuantityEntry& entry, ObserverMode observer) {
   const auto signal = signal_by_name(entry.group);
   return observer == ObserverMode::fixed &&
          (signal == Signal::position || signal == Signal::velocity) &&
-         (entry.quantity.symbol == "lag" || entry.quantity.symbol == "delay");
+         (entry.quantity.symbol == "lag" || entry.quantity.symbol == "delay" ||
+          entry.quantity.symbol == "drift");
 }
 
 ContinuationResult run_continuation(const Job& job, const ParameterSpace& space,

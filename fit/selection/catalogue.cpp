@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "fit/estimation/continuation.h"
+#include "sim/equations.h"
 
 namespace axisfit {
 namespace {
@@ -125,12 +126,14 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
       candidate.neutral.push_back(neutral(quantity_list()[q].quantity));
     list.push_back(std::move(candidate));
   };
+  const bool rubs = Equations<double>(job.model).parts().directions;
   const auto add_effects = [&](ActsOn place, bool curves) {
     for (std::size_t e = 0; e < kEffects; ++e) {
       if (kEffectTable[e].acts_on != place) continue;
       for (SearchEntry& entry : kEffectTable[e].search(scales))
         if (entry.is_curve == curves && is_used(entry.used_by, structure) &&
-            (structure.effects[e] || !entry.extends))
+            (entry.extends.empty() || structure.effects[*effect_named(entry.extends)]) &&
+            (!entry.changes_dry_friction || rubs))
           add_if_absent(candidate_of(kEffectTable[e], std::move(entry)));
     }
   };
@@ -143,7 +146,7 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
   add_if_absent(std::move(dead_time));
   for (const SignalInfo& signal : kSignalTable) {
     if (!is_recorded(job, signal.signal)) continue;
-    for (const std::string_view part : {"bias", "gain", "lag", "delay"}) {
+    for (const std::string_view part : {"bias", "gain", "lag", "delay", "drift"}) {
       const std::string name = std::string(signal.name) + "." + std::string(part);
       const QuantityEntry* entry = find_quantity(name);
       if (is_ignored(*entry, job.options.observer)) continue;
@@ -151,6 +154,9 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
       if (part == "lag") candidate.probes = later(scales);
       candidate.is_timing = part == "delay";
       if (candidate.is_timing) candidate.probes = both_signs;
+      if (part == "drift")
+        for (const double delay : both_signs)
+          candidate.probes.push_back(delay / (scales.end - scales.start));
       add_if_absent(std::move(candidate));
     }
   }

@@ -151,7 +151,7 @@ const Section& axis_keys() {
       Key::optional("initial", Map{quantity_keys("initial")}, DefaultText{"all 0"},
                     "initial state"),
       Key::optional("instruments", Map{instrument_keys()}, DefaultText{"ideal"},
-                    "gain, bias, lag, delay and noise of each signal"),
+                    "gain, bias, lag, delay, drift and noise of each signal"),
       Key::optional("controller", Map{controller_keys()}, DefaultText{"those of its keys"},
                     "the slave control unit: limits, moves and the encoder; a fit uses it only to "
                     "compute the command from a `position_reference`")};
@@ -191,11 +191,12 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
   for (const QuantityEntry& e : quantity_list())
     if (is_used(e, structure)) names.push_back(e.name);
   const std::string suggestion = closest_match(name, names);
-  key.error(fmt::format("unknown quantity '{}'; {}", name,
-                        suggestion.empty()
-                            ? "valid names are parameters of the axis, EFFECT.PARAMETER, "
-                              "SIGNAL.gain, .bias, .lag and .delay, and initial.y0 ... initial.y6"
-                            : fmt::format("did you mean '{}'?", suggestion)));
+  key.error(
+      fmt::format("unknown quantity '{}'; {}", name,
+                  suggestion.empty()
+                      ? "valid names are parameters of the axis, EFFECT.PARAMETER, "
+                        "SIGNAL.gain, .bias, .lag, .delay and .drift, and initial.y0 ... initial.y6"
+                      : fmt::format("did you mean '{}'?", suggestion)));
   return nullptr;
 }
 

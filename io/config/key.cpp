@@ -56,6 +56,8 @@ std::string used_by_text(UsedBy used_by) {
       return "`force_source`";
     case UsedBy::backlash:
       return "`backlash`";
+    case UsedBy::rigid:
+      return "`rigid`";
     case UsedBy::motor:
       return "all but `force_source` with `rigid`";
   }

@@ -20,21 +20,30 @@
 #include "sim/effects/command_offset.h"
 #include "sim/effects/constant_force.h"
 #include "sim/effects/coulomb_friction.h"
-#include "sim/effects/curve_force.h"
+#include "sim/effects/curve.h"
 #include "sim/effects/dahl_friction.h"
 #include "sim/effects/directional_friction.h"
 #include "sim/effects/drive_lag.h"
 #include "sim/effects/elastic_mode.h"
+#include "sim/effects/force_droop.h"
 #include "sim/effects/friction_bump.h"
 #include "sim/effects/load_friction.h"
+#include "sim/effects/pendulum_gravity.h"
 #include "sim/effects/periodic_force.h"
 #include "sim/effects/position_friction.h"
 #include "sim/effects/quadratic_drag.h"
+#include "sim/effects/quadratic_load_friction.h"
+#include "sim/effects/running_in_friction.h"
+#include "sim/effects/soft_transmission.h"
 #include "sim/effects/stribeck_friction.h"
+#include "sim/effects/stribeck_load_friction.h"
 #include "sim/effects/stroke_spring.h"
+#include "sim/effects/supply_resistance.h"
 #include "sim/effects/torque_droop.h"
 #include "sim/effects/torque_fade.h"
 #include "sim/effects/torque_ripple.h"
+#include "sim/effects/warming_friction.h"
+#include "sim/effects/warming_grease.h"
 #include "sim/scalar.h"
 
 namespace axisfit {
@@ -43,10 +52,13 @@ template <class T>
 using Effects =
     std::tuple<CoulombFriction<T>, ConstantForce<T>, QuadraticDrag<T>, DirectionalFriction<T>,
                StribeckFriction<T>, PositionFriction<T>, FrictionBump<T>, LoadFriction<T>,
-               DahlFriction<T>, StrokeSpring<T>, PeriodicForce<T>, AddedMass<T>, ElasticMode<T>,
-               CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>, TorqueFade<T>, DriveLag<T>,
-               CommandOffset<T>, ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>,
-               ForceOverTime<T>>;
+               QuadraticLoadFriction<T>, StribeckLoadFriction<T>, DahlFriction<T>,
+               SecondDahlFriction<T>, WarmingFriction<T>, WarmingGrease<T>, RunningInFriction<T>,
+               StrokeSpring<T>, PendulumGravity<T>, PeriodicForce<T>, AddedMass<T>, ElasticMode<T>,
+               SoftTransmission<T>, CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>,
+               ForceDroop<T>, TorqueFade<T>, DriveLag<T>, CommandOffset<T>, SupplyResistance<T>,
+               ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>, ForceOverTime<T>,
+               FrictionOverVelocity<T>, FrictionOverPosition<T>>;
 
 inline constexpr std::size_t kEffects = std::tuple_size_v<Effects<double>>;
 

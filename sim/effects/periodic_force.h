@@ -41,7 +41,7 @@ struct PeriodicForce {
              .shapes = {"period"},
              .settings = one_by_one(scales.periods),
              .has_phase = true},
-            {.strengths = {"F_s2", "F_c2"}, .extends = true, .has_phase = true}};
+            {.strengths = {"F_s2", "F_c2"}, .extends = name, .has_phase = true}};
   }
 
   T arm_force(const Instant<T>& at) const {

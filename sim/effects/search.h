@@ -16,10 +16,10 @@
 namespace axisfit {
 
 /// Where an effect acts. The search lists candidates in this order.
-enum class ActsOn { friction, arm_force, inertia, motor_torque, drive };
+enum class ActsOn { friction, arm_force, inertia, transmission, motor_torque, drive };
 
-inline constexpr ActsOn kPlacesToAct[]{ActsOn::friction, ActsOn::arm_force, ActsOn::inertia,
-                                       ActsOn::motor_torque, ActsOn::drive};
+inline constexpr ActsOn kPlacesToAct[]{ActsOn::friction,     ActsOn::arm_force,    ActsOn::inertia,
+                                       ActsOn::transmission, ActsOn::motor_torque, ActsOn::drive};
 
 constexpr std::string_view name_of(ActsOn place) {
   switch (place) {
@@ -29,6 +29,8 @@ constexpr std::string_view name_of(ActsOn place) {
       return "arm force";
     case ActsOn::inertia:
       return "inertia";
+    case ActsOn::transmission:
+      return "transmission";
     case ActsOn::motor_torque:
       return "motor torque";
     case ActsOn::drive:
@@ -71,7 +73,9 @@ struct SearchEntry {
   /// Strengths at which the score test looks instead of at zero; see Candidate.
   std::vector<double> probes = {};
   UsedBy used_by = UsedBy::every_axis;  ///< the axes for which it is offered
-  bool extends = false;   ///< whether it is offered only to an axis that has the effect
+  std::string_view extends = {};  ///< the effect beside which alone it is offered; none: always
+  /// Whether it is a change of the dry friction that the axis has, and offered beside such alone.
+  bool changes_dry_friction = false;
   bool is_curve = false;  ///< a curve, whose ends are not estimated
   /// Whether the two strengths are sine and cosine of a phase, which homing may shift.
   bool has_phase = false;

@@ -13,7 +13,7 @@
 // and goes through the Runge-Kutta part of the integrator. Such a force may depend on a hysteresis,
 // the state of which is known in closed form since the arm last came to rest,
 //
-//   T hysteresis(const Instant<T>&) const;      1, and at.memory holds what it was there
+//   T hysteresis(const Instant<T>&) const;      and at.memory holds what it was there
 //
 // A force that jumps needs a guard (equations.h), as dry friction has.
 #pragma once
@@ -31,10 +31,14 @@ struct Slots {
   T friction_asymmetry{0.0};  ///< N, added to it in the positive direction, taken off in the other
   T friction_slope{0.0};      ///< N/m, added to it per metre of the arm's position
   T load_friction{0.0};       ///< 1, added to it per newton of transmitted force
+  T load_curve{0.0};          ///< 1, the same by a friction curve: the force's sign needs a guard
   T viscous_asymmetry{0.0};   ///< N s/m, added to B_a in the positive direction, taken off else
   T added_mass{0.0};          ///< kg, on the arm
   T command_offset{0.0};      ///< V, added to U
   T drive_lag{0.0};           ///< s, time constant with which the power stage follows its input
+  T supply_resistance{0.0};   ///< ohm, in series with the motor at the limit V_s
+  T compliance{0.0};          ///< m/N, by which the motor's encoder is ahead of a rigid arm
+  T play{0.0};                ///< m, the same in the sense of the force
   T elastic_mass{0.0};        ///< kg, the part of the arm that a spring carries, and of that mode
   T elastic_frequency{0.0};   ///< rad/s, with the arm held, and
   T elastic_damping{0.0};     ///< 1, damping ratio
@@ -47,7 +51,7 @@ struct Slots {
 template <class T>
 struct Memory {
   T position{0.0};    ///< m
-  T hysteresis{0.0};  ///< 1, from -1 to 1
+  T hysteresis{0.0};  ///< from -1 to 1, or what the effect says
 };
 
 /// What an effect sees of the axis. Forces and speeds on the arm side.
@@ -59,7 +63,9 @@ struct Instant {
   int direction;   ///< sign of the velocity; 0 while the arm sticks
   T motor_angle;   ///< rad, y2
   T current;       ///< A; zero for a force source
-  T drive_torque;  ///< N m, of the motor by its current
+  T drive_force;   ///< N, of the motor by its current
+  T drive_torque;  ///< N m, the same at the motor
+  T load;          ///< N, that the transmission carries; >= 0 where its sign has a guard
   Memory<T> memory = {};
 };
 

@@ -109,6 +109,7 @@ struct Run {
   std::vector<int> events;      ///< number of events before each instant
   std::vector<double> current;  ///< A; values only
   std::vector<double> acceleration;
+  std::vector<double> encoder;  ///< m
 };
 
 template <class T>
@@ -124,6 +125,8 @@ Run<T> run(const Model<T>& model, const Schedule& command, std::span<const doubl
         result.events.push_back(axis.events());
         result.current.push_back(
             value_of(axis.equations().current(axis.mode(), axis.state(), axis.input())));
+        result.encoder.push_back(
+            value_of(axis.equations().encoder_position(axis.mode(), axis.state(), axis.input())));
         result.acceleration.push_back(
             value_of(axis.equations().acceleration(axis.mode(), axis.state(), axis.input())));
       },

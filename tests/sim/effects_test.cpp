@@ -111,9 +111,10 @@ TEST_P(EveryEffect, OfStrengthZeroIsNoneBitForBit) {
       EXPECT_EQ(with.states, without.states);
       EXPECT_EQ(with.events, without.events);
       EXPECT_EQ(with.acceleration, without.acceleration);
+      EXPECT_EQ(with.encoder, without.encoder);
       // And it is none only then.
       add_to(model, 1.0);
-      EXPECT_NE(run(model, experiment.command, experiment.times).states, without.states);
+      EXPECT_NE(run(model, experiment.command, experiment.times).encoder, without.encoder);
     }
   }
 }

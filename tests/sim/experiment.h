@@ -64,7 +64,9 @@ inline std::vector<QuantityEntry> quantities_in_play(const Model<double>& model)
     if (model.axis.F_s == 0.0 && (entry.name == "F_s" || entry.name == "w")) continue;
     if (const auto signal = signal_by_name(entry.group)) {
       if (std::ranges::find(kRecorded, *signal) == kRecorded.end()) continue;
-      if (entry.quantity.symbol == "lag" || entry.quantity.symbol == "delay") continue;
+      if (entry.quantity.symbol == "lag" || entry.quantity.symbol == "delay" ||
+          entry.quantity.symbol == "drift")
+        continue;
     }
     entries.push_back(entry);
   }

@@ -125,6 +125,12 @@ std::vector<LawCase> laws() {
       "stroke_spring", [](auto& m) { add_effect<StrokeSpring>(m).k_s = 150.0; },
       [](double, double y, double) { return -150.0 * y; });
   add(
+      "pendulum_gravity",
+      [](auto& m) {
+        add_effect<PendulumGravity>(m) = {25.0, -9.0};
+      },
+      [](double, double y, double) { return -25.0 * std::sin(y) + 9.0 * std::cos(y); });
+  add(
       "periodic_force",
       [](auto& m) {
         add_effect<PeriodicForce>(m) = {12.0, -7.0, 4.0, 3.0, 0.05};
@@ -148,6 +154,12 @@ std::vector<LawCase> laws() {
         return pushing(three_pushes(), t) * (1.0 / (1.0 + 0.4 * t) - 1.0);
       });
   add(
+      "force_droop", [](auto& m) { add_effect<ForceDroop>(m).c_f = 4e-3; },
+      [](double t, double, double) {
+        const double force = pushing(three_pushes(), t);
+        return -4e-3 * force * std::abs(force);
+      });
+  add(
       "force_over_velocity",
       [=](auto& m) {
         add_effect<ForceOverVelocity>(m) = {c, -2.0, 2.0};
@@ -169,6 +181,21 @@ std::vector<LawCase> laws() {
         add_effect<ForceOverTime>(m) = {c, 0.2, 0.8};
       },
       [=](double t, double, double) { return curve(c, (t - 0.2) / 0.6); });
+  auto level = c;
+  for (double& x : level) x = 8.0 + 0.3 * x;
+  add(
+      "friction_over_velocity",
+      [=](auto& m) {
+        add_effect<FrictionOverVelocity>(m) = {level, -0.1, 1.2};
+      },
+      [=](double, double, double v) { return -sign(v) * curve(level, (std::abs(v) + 0.1) / 1.3); },
+      kJumps);
+  add(
+      "friction_over_position",
+      [=](auto& m) {
+        add_effect<FrictionOverPosition>(m) = {level, -0.2, 0.3};
+      },
+      [=](double, double y, double v) { return -sign(v) * curve(level, (y + 0.2) / 0.5); }, kJumps);
   add(
       "command_offset", [](auto& m) { add_effect<CommandOffset>(m).U_0 = 6.0; },
       [](double, double, double) { return 6.0; });
@@ -194,6 +221,31 @@ std::vector<LawCase> laws() {
         return -0.2 * sign(v) * std::abs(pushing(three_pushes(), t));
       },
       kJumps);
+  add(
+      "quadratic_load_friction", [](auto& m) { add_effect<QuadraticLoadFriction>(m).mu_q = 4e-3; },
+      [](double t, double, double v) {
+        return -4e-3 * sign(v) * std::pow(pushing(three_pushes(), t), 2);
+      },
+      kJumps);
+  add(
+      "stribeck_load_friction",
+      [](auto& m) {
+        add_effect<StribeckLoadFriction>(m) = {0.2, 0.3};
+      },
+      [](double t, double, double v) {
+        return -0.2 * sign(v) * std::abs(pushing(three_pushes(), t)) * std::exp(-std::abs(v) / 0.3);
+      },
+      kJumps);
+  add(
+      "warming_friction and warming_grease",
+      [](auto& m) {
+        add_effect<WarmingFriction>(m) = {8.0, 0.4};
+        add_effect<WarmingGrease>(m) = {25.0, 0.7};
+      },
+      [](double t, double, double v) {
+        return -8.0 * sign(v) * std::exp(-t / 0.4) - 25.0 * v * std::exp(-t / 0.7);
+      },
+      kJumps);
   // The force passes zero between two switches.
   add(
       "load_friction with drive_lag",
@@ -206,6 +258,18 @@ std::vector<LawCase> laws() {
         return force - pushing(three_pushes(), t) - 0.2 * sign(v) * std::abs(force);
       },
       kJumps);
+  add(
+      "stribeck_load_friction with drive_lag",
+      [](auto& m) {
+        add_effect<StribeckLoadFriction>(m) = {0.2, 0.3};
+        add_effect<DriveLag>(m).T_l = 0.03;
+      },
+      [=](double t, double, double v) {
+        const double force = lagging(t);
+        return force - pushing(three_pushes(), t) -
+               0.2 * sign(v) * std::abs(force) * std::exp(-std::abs(v) / 0.3);
+      },
+      3.0 * kJumps);
   return cases;
 }
 
@@ -246,24 +310,42 @@ bool moves(const Model<double>& model, double force) {
 }
 
 TEST(ForceLaw, OfStribeckFrictionHoldsAndSlides) {
-  for (const double F_st : {12.0, -12.0}) {
+  for (const auto& [F_st, n] : {std::pair{12.0, 1.0}, {-12.0, 1.0}, {12.0, 0.5}, {12.0, 2.0}}) {
+    SCOPED_TRACE(n);
     constexpr double F_c = 20.0, v_st = 0.05, F = 40.0;
     Model<double> model = rubbing_mass(F_c);
-    add_effect<StribeckFriction>(model) = {F_st, v_st};
+    add_effect<StribeckFriction>(model) = {F_st, v_st, n};
+    const auto left = [&, F_st = F_st, n = n](double v) {
+      const double x = v / v_st;
+      return n == 1.0 ? F_st * std::exp(-x)
+                      : F_st * std::exp(-x * std::pow(x * x + 1e-4, 0.5 * (n - 1.0)));
+    };
     for (const double way : {1.0, -1.0}) {
       EXPECT_FALSE(moves(model, way * (F_c + F_st - 1e-6)));
       EXPECT_TRUE(moves(model, way * (F_c + F_st + 1e-6)));
       const auto times = instants(50, 0.01);
       const auto r = run(model, {{0.0}, {way * F}}, times);
       const auto path =
-          integrated([&](double, double, double v) { return F - F_c - F_st * std::exp(-v / v_st); },
-                     kMass, times);
+          integrated([&](double, double, double v) { return F - F_c - left(v); }, kMass, times);
       for (std::size_t k = 0; k < times.size(); ++k) {
-        ASSERT_NEAR(way * r.states[k][0], path[k][0], 1e-9) << k;
-        ASSERT_NEAR(way * r.states[k][1], path[k][1], 1e-9) << k;
+        ASSERT_NEAR(way * r.states[k][0], path[k][0], n < 1.0 ? 1e-7 : 1e-9) << k;
+        ASSERT_NEAR(way * r.states[k][1], path[k][1], n < 1.0 ? 1e-6 : 1e-9) << k;
       }
     }
   }
+}
+
+TEST(ForceLaw, OfStribeckFrictionHasAnExponent) {
+  Instant<double> at{};
+  at.direction = -1;
+  for (const double n : {0.5, 0.8, 1.0, 1.6, 2.0})
+    for (const double x : {0.1, 0.3, 1.0, 3.0}) {
+      at.velocity = -0.05 * x;
+      const double power = std::pow(x, n);
+      EXPECT_NEAR(StribeckFriction<double>({12.0, 0.05, n}).friction_curve(at),
+                  12.0 * std::exp(-power), 12.0 * 0.005 * power * std::exp(-power))
+          << n << ' ' << x;
+    }
 }
 
 TEST(ForceLaw, OfPositionFrictionIsAHarmonicStop) {
@@ -351,19 +433,78 @@ TEST(ForceLaw, OfLoadFrictionTakesItsShareOfTheToothForce) {
 }
 
 TEST(ForceLaw, OfLoadFrictionHoldsARigidAxis) {
+  Model<double> plain = driven_mass(kMass);
+  add_effect<ConstantForce>(plain).F_0 = -30.0;
+  Model<double> at_low_speed = plain;
+  add_effect<LoadFriction>(plain).mu = 0.3;
+  add_effect<StribeckLoadFriction>(at_low_speed) = {0.3, 0.05};
+  for (const Model<double>& model : {plain, at_low_speed}) {
+    EXPECT_TRUE(moves(model, 0.0));  // nothing holds without a load
+    EXPECT_FALSE(moves(model, 25.0));
+    EXPECT_FALSE(moves(model, 40.0));  // 10 N against 12 N
+    EXPECT_TRUE(moves(model, 43.0));   // 13 N against 12.9 N
+    EXPECT_TRUE(moves(model, 23.0));   // -7 N against 6.9 N
+  }
+}
+
+TEST(ForceLaw, OfQuadraticLoadFrictionTakesItsShareOfTheToothForce) {
+  // As that of load friction: F - f_g = m a, f_g - mu_q f_g^2 = M a.
+  constexpr double mu_q = 1e-3, F = 300.0;
+  for (const double way : {1.0, -1.0}) {
+    Model<double> model = free_gear();
+    model.axis.b_g = 2e4;
+    add_effect<QuadraticLoadFriction>(model).mu_q = mu_q;
+    const auto r = run(model, {{0.0}, {way * F}}, instants(100, 0.01));
+    const double m = motor_mass(model.axis), share = 1.0 + model.axis.M / m;
+    const double f_g =
+        (share - std::sqrt(share * share - 4.0 * mu_q * F * model.axis.M / m)) / (2.0 * mu_q);
+    EXPECT_NEAR(r.acceleration.back(), way * (F - f_g) / m, 1e-7);
+    EXPECT_NEAR(std::abs(r.acceleration.back()) * model.axis.M, f_g - mu_q * f_g * f_g, 1e-6);
+  }
+}
+
+TEST(ForceLaw, OfQuadraticLoadFrictionHoldsARigidAxis) {
   Model<double> model = driven_mass(kMass);
-  add_effect<LoadFriction>(model).mu = 0.3;
+  add_effect<QuadraticLoadFriction>(model).mu_q = 0.01;
   add_effect<ConstantForce>(model).F_0 = -30.0;
-  EXPECT_TRUE(moves(model, 0.0));  // nothing holds without a load
-  EXPECT_FALSE(moves(model, 25.0));
-  EXPECT_FALSE(moves(model, 40.0));  // 10 N against 12 N
-  EXPECT_TRUE(moves(model, 43.0));   // 13 N against 12.9 N
-  EXPECT_TRUE(moves(model, 23.0));   // -7 N against 6.9 N
+  EXPECT_TRUE(moves(model, 0.0));
+  EXPECT_FALSE(moves(model, 25.0));  // -5 N against 6.25 N
+  EXPECT_TRUE(moves(model, 23.0));   // -7 N against 5.29 N
+  EXPECT_FALSE(moves(model, 43.0));  // 13 N against 18.49 N
+  EXPECT_FALSE(moves(model, 60.0));  // it locks itself: 30 N against 36 N
+}
+
+TEST(ForceLaw, OfRunningInFrictionCountsTheWayForthAndBack) {
+  // M v^2 / 2 falls by F_c s + F_r l_r (1 - exp(-s / l_r)) over the travel s, until it rests; then
+  // it is pushed back and goes on from there.
+  constexpr double F_c = 5.0, F_r = 15.0, l_r = 0.1, v = 0.7, F = 40.0;
+  const auto work = [](double s) { return F_c * s + F_r * l_r * (1.0 - std::exp(-s / l_r)); };
+  Model<double> model = rubbing_mass(F_c);
+  add_effect<RunningInFriction>(model) = {F_r, l_r};
+  model.initial[1] = v;
+  const auto times = instants(200, 0.01);
+  const auto r = run(model, {{1.4}, {-F}}, times);
+  const auto at = [&](std::size_t k) { return r.states[k]; };
+  double stop = 0.0;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (times[k] > 1.4) {
+      const double back = stop - at(k)[0];
+      const double energy = F * back - (work(stop + back) - work(stop));
+      ASSERT_NEAR(at(k)[1], -std::sqrt(2.0 * energy / kMass), 1e-9) << k;
+    } else if (at(k)[1] != 0.0) {
+      ASSERT_NEAR(at(k)[1], std::sqrt(v * v - 2.0 * work(at(k)[0]) / kMass), 1e-9) << k;
+    } else {
+      stop = at(k)[0];
+      ASSERT_NEAR(work(stop), 0.5 * kMass * v * v, 1e-9);
+    }
+  }
+  ASSERT_GT(stop, 0.0);
+  EXPECT_LT(at(200)[0], 0.0);
 }
 
 TEST(ForceLaw, OfDahlFrictionIsTheHysteresisOfItsEquation) {
   // dz/dy = (direction - z) / l_d over a travel forth and back, from any state.
-  const DahlFriction<double> dahl{10.0, 2e-4};
+  const DahlFriction<double> dahl{10.0, 2e-4, 30.0};
   for (const double start : {0.0, 0.4, -1.0})
     for (const int way : {1, -1}) {
       constexpr int kSteps = 1000;
@@ -371,6 +512,7 @@ TEST(ForceLaw, OfDahlFrictionIsTheHysteresisOfItsEquation) {
       double z = start;
       Instant<double> at{};
       at.direction = way;
+      at.velocity = 0.2 * way;
       at.memory = {0.01, start};
       const double h = kTravel / kSteps;
       for (int i = 1; i <= kSteps; ++i) {
@@ -380,27 +522,31 @@ TEST(ForceLaw, OfDahlFrictionIsTheHysteresisOfItsEquation) {
         z += way * h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4);
         at.position = 0.01 + way * i * h;
         ASSERT_NEAR(dahl.hysteresis(at), z, 1e-9);
-        ASSERT_NEAR(dahl.arm_force(at), -10.0 * z, 1e-8);
+        const double bending = 0.2 * way * dahl.l_d * rate(z);  // l_d z', m/s
+        ASSERT_NEAR(dahl.arm_force(at), -10.0 * z - 30.0 * bending, 1e-8);
       }
     }
 }
 
 TEST(ForceLaw, OfDahlFrictionFollowsTheMotion) {
-  // Together with Coulomb friction, through reversals and rests, with z integrated as a state.
-  constexpr double F_c = 3.0, F_d = 10.0, l_d = 2e-3;
+  // Two elements together with Coulomb friction, through reversals and rests, with each z
+  // integrated as a state.
+  constexpr double F_c = 3.0, F_d = 7.0, l_d = 2e-3, B_d = 40.0, F_d2 = 3.0, l_d2 = 8e-3;
   Model<double> model = rubbing_mass(F_c);
-  add_effect<DahlFriction>(model) = {F_d, l_d};
+  add_effect<DahlFriction>(model) = {F_d, l_d, B_d};
+  add_effect<SecondDahlFriction>(model) = {F_d2, l_d2};
   const Schedule command{{0.0, 0.2, 0.5, 0.6, 0.8}, {20.0, -15.0, -5.0, 9.0, 0.0}};
   const auto times = instants(120, 0.01);
   const auto r = run(model, command, times);
   ASSERT_TRUE(r.finished);
   constexpr double h = 1e-6;
-  double y = 0.0, v = 0.0, z = 0.0;
+  double y = 0.0, v = 0.0, z = 0.0, z2 = 0.0;
   int rests = 0;
   for (std::size_t k = 1; k < times.size(); ++k) {
     for (int i = 0; i < 10000; ++i) {  // symplectic steps: first order, but tiny
       const double t = times[k - 1] + (i + 0.5) * h;
-      const double rest = pushing(command, t) - F_d * z;
+      const double bending = v * (1.0 - sign(v) * z);
+      const double rest = pushing(command, t) - F_d * z - B_d * bending - F_d2 * z2;
       if (v == 0.0 && std::abs(rest) <= F_c) continue;
       const double s = v != 0.0 ? sign(v) : sign(rest);
       const double after = v + h * (rest - s * F_c) / kMass;
@@ -412,6 +558,7 @@ TEST(ForceLaw, OfDahlFrictionFollowsTheMotion) {
       v = after;
       y += h * v;
       z += h * v / l_d * (s - z) * s;
+      z2 += h * v / l_d2 * (s - z2) * s;
     }
     ASSERT_NEAR(r.states[k][0], y, 2e-5) << times[k];
     ASSERT_NEAR(r.states[k][1], v, 5e-5) << times[k];
@@ -457,6 +604,62 @@ TEST(ForceLaw, OfAddedMassIsThatOfTheArmBitForBit) {
   const auto a = run(heavier, level_command(), times), b = run(loaded, level_command(), times);
   EXPECT_EQ(a.states, b.states);
   EXPECT_EQ(a.events, b.events);
+}
+
+TEST(ForceLaw, OfASupplyResistanceIsThatOfTheMotorAtItsLimit) {
+  // A command beyond what V_s can drive: the motor hangs on the supply throughout.
+  constexpr double R_v = 0.8;
+  for (const double way : {1.0, -1.0}) {
+    Model<double> soft = paper_axis(), weak = paper_axis();
+    soft.axis.V_s = weak.axis.V_s = 4.0;
+    add_effect<SupplyResistance>(soft).R_v = R_v;
+    weak.axis.R += R_v;
+    const auto times = instants(500, 1e-3);
+    const auto a = run(soft, {{0.0}, {way * 10.0}}, times),
+               b = run(weak, {{0.0}, {way * 10.0}}, times);
+    EXPECT_EQ(a.modes.back().v_m, way);
+    EXPECT_LT(largest_difference(a.states, b.states), 1e-5);
+    EXPECT_GT(std::abs(a.states.back()[1]), 0.01);
+  }
+}
+
+TEST(ForceLaw, OfASupplyResistanceIsNothingBelowTheLimit) {
+  Model<double> soft = paper_axis();
+  soft.axis.K_v = 10.0;
+  soft.axis.V_s = 1e4;
+  const auto times = instants(500, 1e-3);
+  const auto without = run(soft, level_command(), times);
+  add_effect<SupplyResistance>(soft).R_v = 2.0;
+  EXPECT_LT(largest_difference(run(soft, level_command(), times).states, without.states), 1e-12);
+}
+
+TEST(ForceLaw, OfASoftTransmissionIsThatOfASlowGear) {
+  // A motor pushes an arm against viscous friction, so slowly that the gear is at its equilibrium:
+  // the encoder is ahead by H + f_g / k_g.
+  constexpr double H = 2e-4, k_g = 1e5, F = 120.0;
+  Model<double> gear = free_gear();
+  gear.axis.H = H;
+  gear.axis.k_g = k_g;
+  gear.axis.B_a = 400.0;
+  gear.axis.b_g = 6e3;
+  Model<double> rigid = gear;
+  rigid.structure.transmission = Transmission::rigid;
+  rigid.axis.J_m = gear.axis.J_m;
+  add_effect<SoftTransmission>(rigid) = {1.0 / k_g, H};
+  rigid.axis.r_g = gear.axis.r_g;
+  for (const double way : {1.0, -1.0}) {
+    const auto times = instants(150, 0.01);
+    const Schedule push{{0.0}, {way * F}};
+    const auto a = run(gear, push, times), b = run(rigid, push, times);
+    ASSERT_TRUE(a.finished && b.finished);
+    const double m = motor_mass(gear.axis), r_g = gear.axis.r_g;
+    for (std::size_t k = 50; k < times.size(); ++k) {
+      // The force at the arm, from each run's own acceleration.
+      const double f = way * F - m * b.acceleration[k];
+      ASSERT_NEAR(b.encoder[k], b.states[k][0] + f / k_g + way * H, 1e-12) << k;
+      ASSERT_NEAR(r_g * a.states[k][2] - a.states[k][0], b.encoder[k] - b.states[k][0], 2e-5) << k;
+    }
+  }
 }
 
 TEST(ForceLaw, OfADriveLagIsAThirdPole) {

@@ -141,6 +141,8 @@ Names operator-(Names a, const Names& b) {
 
 TEST(IsUsed, FollowsTheStructure) {
   const Names selection{"R", "L", "K_e", "V_s", "K_v", "initial.y6"};
+  const Names soft{"soft_transmission.c_g", "soft_transmission.H_g"};
+  const Names supply{"supply_resistance.R_v"}, force{"force_droop.c_f"};
   const Names gear{"H", "b_g", "k_g", "initial.x", "initial.dx"};
   const Names electric{"K_m", "K_t", "T_z", "T_p",        "T_r",       "K_1",
                        "K_2", "K_i", "V_L", "initial.y4", "initial.y5"};
@@ -155,13 +157,15 @@ TEST(IsUsed, FollowsTheStructure) {
     Transmission transmission;
     Names of_axis, of_effects;  // left out by this structure
   } variants[] = {
-      {Drive::velocity_loop, Transmission::backlash, {"K_f"}, {}},
-      {Drive::current_source, Transmission::backlash, selection + Names{"K_f"}, {}},
-      {Drive::force_source, Transmission::backlash, selection + electric, of_electric},
-      {Drive::velocity_loop, Transmission::rigid, gear + Names{"K_f"}, {}},
-      {Drive::current_source, Transmission::rigid, gear + selection + Names{"K_f"}, {}},
+      {Drive::velocity_loop, Transmission::backlash, {"K_f"}, force + soft},
+      {Drive::current_source, Transmission::backlash, selection + Names{"K_f"},
+       force + supply + soft},
+      {Drive::force_source, Transmission::backlash, selection + electric,
+       of_electric + supply + soft},
+      {Drive::velocity_loop, Transmission::rigid, gear + Names{"K_f"}, force},
+      {Drive::current_source, Transmission::rigid, gear + selection + Names{"K_f"}, force + supply},
       {Drive::force_source, Transmission::rigid, gear + selection + electric + motor,
-       of_electric + of_motor},
+       of_electric + of_motor + supply},
   };
   for (const auto& [drive, transmission, of_axis, of_effects] : variants) {
     SCOPED_TRACE(testing::Message() << "drive " << static_cast<int>(drive) << ", transmission "

@@ -94,6 +94,26 @@ TEST(Recorder, DelayShiftsAndHoldsTheEnds) {
   }
 }
 
+TEST(Recorder, DriftDelaysMoreAndMore) {
+  // Whatever the recording's time is at its first sample.
+  auto times = instants(200, 1e-3);
+  for (double& t : times) t += 0.05;
+  for (const double drift : {0.07, -0.04}) {
+    Model<double> model = ramp();
+    instrument(model, Signal::velocity).drift = drift;
+    instrument(model, Signal::velocity).delay = 1.3e-3;
+    const auto plain = shown(ramp(), kPush, times), traces = shown(model, kPush, times);
+    const double first = plain.signals[0].front();
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const double since = times[k] - times.front(), late = 1.3e-3 + drift * since;
+      const double t = std::clamp(since - late, 0.0, times.back() - times.front());
+      ASSERT_NEAR(traces.signals[0][k], first + kSlope * t, 1e-12) << drift << " at " << k;
+    }
+    EXPECT_EQ(traces.signals[1].size(), plain.signals[1].size());
+    ASSERT_NEAR(traces.signals[1].back(), plain.signals[1].back(), 1e-12);
+  }
+}
+
 TEST(Recorder, DelayComesAfterTheLag) {
   const auto times = instants(200, 1e-3);
   constexpr double lag = 0.02, delay = 0.0137;
@@ -152,13 +172,14 @@ std::vector<QuantityEntry> entries(std::initializer_list<const char*> names) {
 TEST(Recorder, HasDerivativesByLagDelayAndAllElse) {
   Experiment experiment = late_axis();
   for (const Signal signal : kRecorded)
-    instrument(experiment.model, signal) = {1.1, 0.02, 2.3e-3, 1.71e-3};
+    instrument(experiment.model, signal) = {1.1, 0.02, 2.3e-3, 1.71e-3, 1e-9};
   // A delay moves along the lines between instants: within one of them, so that differences see no
   // corner.
   constexpr double kWithin = 1e-5;
-  const auto of = entries({"velocity.lag", "velocity.delay", "acceleration.lag",
-                           "acceleration.delay", "position.delay", "motor_current.lag",
-                           "motor_current.delay", "velocity.gain", "acceleration.bias", "B_a"});
+  const auto of =
+      entries({"velocity.lag", "velocity.delay", "acceleration.lag", "acceleration.delay",
+               "position.delay", "position.drift", "motor_current.lag", "motor_current.delay",
+               "velocity.gain", "acceleration.bias", "B_a"});
   Worst worst;
   compare(
       experiment, of, {by_jets(experiment, of)},
@@ -168,7 +189,8 @@ TEST(Recorder, HasDerivativesByLagDelayAndAllElse) {
         worst.add(c);
       },
       [&](const QuantityEntry& entry, double value) {
-        return entry.quantity.symbol == "delay" ? kWithin : natural_size(entry, value);
+        const std::string_view symbol = entry.quantity.symbol;
+        return symbol == "delay" || symbol == "drift" ? kWithin : natural_size(entry, value);
       });
   std::cout << worst << "\n";
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "tests/fit/example.h"
@@ -57,11 +58,29 @@ bool offers_constant(const std::vector<Candidate>& list, const char* quantity) {
 }
 
 TEST(Catalogue, HasEveryEffectOfTheList) {
-  const auto list = catalogue(job_with({Signal::velocity}), scales());
+  Job job = job_with({Signal::velocity});
+  const auto list = catalogue(job, scales());
+  job.model = slide();
+  const auto of_slide = catalogue(job, scales());
   const Effects<double> effects{};
   visit_effects(effects, [&](std::size_t, const auto& effect) {
-    EXPECT_NE(find(list, effect.name), nullptr) << effect.name << " offers nothing to this axis";
+    const bool extends = std::ranges::all_of(effect.search(scales()), [](const SearchEntry& entry) {
+      return !entry.extends.empty() || entry.changes_dry_friction;
+    });
+    const bool offered = find(list, effect.name) || find(of_slide, effect.name);
+    EXPECT_NE(offered, extends) << effect.name << " offers nothing, or what it should not";
   });
+}
+
+TEST(Catalogue, HasChangesOfDryFrictionWhereThereIsSome) {
+  Job job = job_with({Signal::velocity});
+  job.model = slide();
+  for (const bool rubs : {false, true}) {
+    if (rubs) add_effect<CoulombFriction>(job.model).F_c = 12.0;
+    const auto list = catalogue(job, scales());
+    EXPECT_EQ(find(list, "warming_friction") != nullptr, rubs);
+    EXPECT_EQ(find(list, "running_in_friction") != nullptr, rubs);
+  }
 }
 
 // Or the loop leaves both undecided, and can accept neither.
@@ -93,12 +112,13 @@ TEST(Catalogue, EntriesAreComplete) {
     }
     for (const std::size_t q : c.strengths) EXPECT_FALSE(quantities[q].quantity.shape);
     for (const std::size_t q : c.shapes) EXPECT_TRUE(quantities[q].quantity.shape);
-    // Every shape of an effect that is offered is set: it has no other value.
+    // Every shape of an effect that is offered is set, if it has no other value.
     for (const QuantityEntry& entry : quantities) {
+      if (!std::isnan(entry.quantity.default_value)) continue;
       if (!entry.quantity.shape || entry.group != quantities[c.strengths[0]].group) continue;
       EXPECT_NE(std::ranges::find(c.shapes, entry.index), c.shapes.end()) << entry.name;
     }
-    EXPECT_EQ(c.is_curve, c.name.starts_with("force_over_"));
+    EXPECT_EQ(c.is_curve, c.name.find("_over_") != std::string::npos);
   }
 }
 
@@ -132,6 +152,18 @@ TEST(Catalogue, CurvesSpanTheMotion) {
   EXPECT_EQ(find(list, "force_over_time")->settings,
             (std::vector<std::vector<double>>{{0.0, 1.2}}));
   EXPECT_TRUE(find(list, "force_over_motor_angle")->shapes.empty());
+  EXPECT_EQ(find(list, "friction_over_velocity")->settings,
+            (std::vector<std::vector<double>>{{0.0, 1.2}}));
+  EXPECT_EQ(find(list, "friction_over_position")->settings,
+            (std::vector<std::vector<double>>{{-0.1, 0.5}}));
+}
+
+TEST(Catalogue, OffersGravityOfAPendulumOnlyWhereItTurns) {
+  const Job job = job_with({Signal::velocity});
+  EXPECT_NE(find(catalogue(job, scales()), "pendulum_gravity"), nullptr);
+  SearchScales s = scales();
+  s.position_high = 0.3;
+  EXPECT_EQ(find(catalogue(job, s), "pendulum_gravity"), nullptr);
 }
 
 TEST(Catalogue, OffersNothingThatIsFree) {
@@ -191,6 +223,36 @@ TEST(Catalogue, OffersASecondHarmonicOnlyBesideTheFirst) {
   EXPECT_FALSE(offers(list, "periodic_force.F_s1"));
 }
 
+TEST(Catalogue, OffersAnExponentOnlyBesideStribeckFriction) {
+  Job job = job_with({Signal::velocity});
+  const auto exponent_in = [&] {
+    const auto list = catalogue(job, scales());
+    const auto found = std::ranges::find_if(list, [](const Candidate& c) {
+      return c.strengths == std::vector{find_quantity("stribeck_friction.n")->index};
+    });
+    return found == list.end() ? std::optional<Candidate>() : *found;
+  };
+  EXPECT_FALSE(exponent_in());
+  add_effect<StribeckFriction>(job.model) = {12.0, 0.05};
+  const std::optional<Candidate> exponent = exponent_in();
+  ASSERT_TRUE(exponent);
+  EXPECT_EQ(exponent->neutral, std::vector{1.0});
+  EXPECT_EQ(exponent->parameters(), 1u);
+  std::get<StribeckFriction<double>>(job.model.effects).n = 2.0;  // declared: nothing is missing
+  EXPECT_FALSE(exponent_in());
+}
+
+TEST(Catalogue, OffersASecondDahlElementOnlyBesideTheFirst) {
+  Job job = job_with({Signal::velocity});
+  EXPECT_FALSE(offers(catalogue(job, scales()), "second_dahl_friction.F_d"));
+  EXPECT_FALSE(offers(catalogue(job, scales()), "dahl_friction.B_d"));
+  add_effect<DahlFriction>(job.model) = {12.0, 1e-3};
+  const auto list = catalogue(job, scales());
+  EXPECT_TRUE(offers(list, "second_dahl_friction.F_d"));
+  EXPECT_TRUE(offers(list, "dahl_friction.B_d"));
+  EXPECT_FALSE(offers(list, "second_dahl_friction.B_d"));
+}
+
 TEST(Catalogue, OffersEveryConstantOfTheAxisFile) {
   Job job = job_with({Signal::velocity});
   job.free = {free_parameter("B_a", 100.0)};
@@ -211,10 +273,10 @@ TEST(Catalogue, OffersNothingThatTheStructureDoesNotUse) {
   Job job = job_with({Signal::velocity});
   job.model = slide();
   const auto list = catalogue(job, scales());
-  for (const char* name :
-       {"cogging_torque", "torque_ripple", "torque_droop", "force_over_motor_angle"})
+  for (const char* name : {"cogging_torque", "torque_ripple", "torque_droop", "supply_resistance",
+                           "force_over_motor_angle"})
     EXPECT_EQ(find(list, name), nullptr) << name;
-  for (const char* name : {"torque_fade", "drive_lag", "dead_time"})
+  for (const char* name : {"torque_fade", "force_droop", "drive_lag", "dead_time"})
     EXPECT_NE(find(list, name), nullptr) << name;
   for (const Candidate& c : list) {
     Structure structure = job.model.structure;
@@ -231,7 +293,7 @@ TEST(Catalogue, OffersOnlyInstrumentsThatTheFitReads) {
   validate.role = Role::validate;
   job.recordings.push_back(validate);
   const auto list = catalogue(job, scales());
-  for (const char* part : {"bias", "gain", "lag", "delay"}) {
+  for (const char* part : {"bias", "gain", "lag", "delay", "drift"}) {
     const auto of = [&](const char* signal) { return std::string(signal) + "." + part; };
     EXPECT_NE(find(list, of("velocity")), nullptr);
     for (const char* signal : {"motor_current", "tachometer", "acceleration", "position"})
@@ -246,6 +308,31 @@ class WithCandidate : public testing::Test {
                           {Signal::velocity, Signal::acceleration});
     candidates_ = catalogue(job_, scales());
   }
+  /// That a job with any of the candidates at neutral strength predicts what it does without.
+  void expect_the_same(const std::vector<Candidate>& candidates) const {
+    const std::vector<double> values{200.0, 2.7};
+    const FitResult without = result_at_start(job_);
+    for (const Candidate& c : candidates) {
+      SCOPED_TRACE(c.name);
+      for (const auto& setting : c.settings) {
+        const FitResult with = result_at_start(with_candidate(job_, c, values, c.neutral, setting));
+        for (std::size_t r = 0; r < 2; ++r) {
+          const auto& simulated = with.recordings[r].free_running.simulated;
+          const auto& expected = without.recordings[r].free_running.simulated;
+          if (!c.is_constant) {
+            ASSERT_EQ(simulated, expected);
+            continue;
+          }
+          // A constant is fitted by its logarithm, which does not give back every bit.
+          ASSERT_EQ(simulated.size(), expected.size());
+          for (std::size_t m = 0; m < simulated.size(); ++m)
+            for (std::size_t n = 0; n < simulated[m].size(); ++n)
+              ASSERT_NEAR(simulated[m][n], expected[m][n], 1e-9);
+        }
+      }
+    }
+  }
+
   Job job_;
   std::vector<Candidate> candidates_;
 };
@@ -343,28 +430,23 @@ TEST_F(WithCandidate, KeepsWithinTheBounds) {
   EXPECT_EQ(job.free[2].initial, 0.0);
 }
 
-TEST_F(WithCandidate, OfNeutralStrengthPredictsTheSameBitForBit) {
-  const std::vector<double> values{200.0, 2.7};
-  const FitResult without = result_at_start(job_);
-  for (const Candidate& c : candidates_) {
-    SCOPED_TRACE(c.name);
-    for (const auto& setting : c.settings) {
-      const FitResult with = result_at_start(with_candidate(job_, c, values, c.neutral, setting));
-      for (std::size_t r = 0; r < 2; ++r) {
-        const auto& simulated = with.recordings[r].free_running.simulated;
-        const auto& expected = without.recordings[r].free_running.simulated;
-        if (!c.is_constant) {
-          ASSERT_EQ(simulated, expected);
-          continue;
-        }
-        // A constant is fitted by its logarithm, which does not give back every bit.
-        ASSERT_EQ(simulated.size(), expected.size());
-        for (std::size_t m = 0; m < simulated.size(); ++m)
-          for (std::size_t n = 0; n < simulated[m].size(); ++n)
-            ASSERT_NEAR(simulated[m][n], expected[m][n], 1e-9);
-      }
-    }
-  }
+TEST_F(WithCandidate, OfNeutralStrengthPredictsTheSameBitForBit) { expect_the_same(candidates_); }
+
+TEST_F(WithCandidate, ThatExtendsAnEffectPredictsTheSameAtNeutralStrength) {
+  add_effect<StribeckFriction>(job_.model) = {12.0, 0.05};
+  add_effect<DahlFriction>(job_.model) = {5.0, 1e-3};
+  auto& force = add_effect<PeriodicForce>(job_.model);
+  force.F_s1 = 5.0;
+  force.period = 0.05;
+  std::vector<Candidate> extensions = catalogue(job_, scales());
+  std::erase_if(extensions, [&](const Candidate& c) {
+    return c.is_constant || std::ranges::any_of(candidates_, [&](const Candidate& old) {
+             return old.strengths == c.strengths;
+           });
+  });
+  // Exponent, damping, second element, second harmonic; and two changes of dry friction.
+  EXPECT_EQ(extensions.size(), 6u);
+  expect_the_same(extensions);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace {
 
 using Names = std::set<std::string>;
 
-bool is_curve(const std::string& name) { return name.starts_with("force_over_"); }
+bool is_curve(const std::string& name) { return name.find("_over_") != std::string::npos; }
 
 /// Expects that what was accepted are curves, at least one.
 void expect_curves_only(const EffectSelection& selection) {

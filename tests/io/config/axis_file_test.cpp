@@ -214,7 +214,9 @@ TEST_F(AxisFileTest, EveryVariantSurvivesWritingDigitForDigit) {
 TEST_F(AxisFileTest, ValuesOnTheirLimitsSurviveWriting) {
   for (const bool upper : {false, true}) {
     Rig rig;
-    rig.model.structure.effects.set();
+    for (const QuantityEntry& entry : quantity_list())
+      if (const auto effect = effect_named(entry.group))
+        if (is_used(entry, rig.model.structure)) rig.model.structure.effects.set(*effect);
     const auto member = members(rig.model);
     for (const QuantityEntry& entry : quantity_list())
       *member[entry.index] = upper ? entry.quantity.upper : entry.quantity.lower;
@@ -317,7 +319,7 @@ TEST_F(AxisFileTest, EveryMistakeIsNamedWithItsPlace) {
            "27:3: unknown key 'speed'; known keys: position, velocity, acceleration, tachometer, "
            "motor_current, V_c, V_m, drive_force"},
           {"gain: 101 %", "scale: 101 %",
-           "27:14: unknown key 'scale'; known keys: gain, bias, lag, delay, noise"},
+           "27:14: unknown key 'scale'; known keys: gain, bias, lag, delay, drift, noise"},
           {"  period: 4 ms", "  perod: 4 ms", "29:3: unknown key 'perod'; did you mean 'period'?"},
           // Kinds of values.
           {"name: test axis", "name:", "1:1: name must be text, not empty"},

@@ -809,7 +809,8 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
             "9:3: unknown quantity 'coulomb_friction'; did you mean 'coulomb_friction.F_c'?"},
            {"M: {}", "friction_of_the_arm: {}",
             "9:3: unknown quantity 'friction_of_the_arm'; valid names are parameters of the axis, "
-            "EFFECT.PARAMETER, SIGNAL.gain, .bias, .lag and .delay, and initial.y0 ... initial.y6"},
+            "EFFECT.PARAMETER, SIGNAL.gain, .bias, .lag, .delay and .drift, and initial.y0 ... "
+            "initial.y6"},
            {"M: {}", "K_m: {}",
             "9:3: K_m is not used by this axis, because of its drive or transmission"},
            {"free:\n  M: {}", "free: {}", "8:7: no free quantity: name at least one to fit"},

@@ -188,6 +188,8 @@ TEST_F(KeyAgreement, JobFile) {
   Json axis = example(axis_keys());
   axis["parameters"].erase("K_f");
   axis.erase("guessed");  // names quantities
+  // Of axes without backlash.
+  for (const char* effect : {"soft_transmission", "force_droop"}) axis["effects"].erase(effect);
   folder_.write("axis.yaml", axis.dump(1));
   folder_.write("data.csv", "data.csv\n1\n2\n");
   Json file = example(job_keys());

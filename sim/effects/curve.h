@@ -10,19 +10,23 @@
 
 namespace axisfit {
 
-/// The variable of a force curve.
+/// The variable of a curve.
 enum class CurveOver { velocity, position, motor_angle, time };
 
-/// A force curve: a force on the arm that is a smooth function of one variable, for what no named
-/// effect explains.
+/// What a curve is: a force on the arm, or dry friction against its motion, with sticking.
+enum class CurveOf { force, friction };
+
+/// A curve: a force or friction that is a smooth function of one variable, for what no named effect
+/// explains. That of friction over the velocity is one over its magnitude.
 ///
 /// A cubic spline with the 16 coefficients c1 ... c16 on equally spaced knots: with u running from
 /// 0 to 1 between `from` and `to`, F is the sum of c_k b(13 u - k + 4), b the uniform cubic
 /// B-spline on 0 ... 4. Beyond the ends it stays constant. Over the motor angle the curve closes
 /// after one turn, F = sum of c_k b(16 u - k + 4), and has no ends.
 /// Source: C. de Boor, A Practical Guide to Splines (1978), chapter IX.
-template <class T, CurveOver kVariable>
-struct CurveForce {
+template <class T, CurveOver kVariable, CurveOf kOf = CurveOf::force>
+struct Curve {
+  static constexpr bool kIsFriction = kOf == CurveOf::friction;
   static constexpr bool kCloses = kVariable == CurveOver::motor_angle;
   static constexpr int kCoefficients = 16;
   static constexpr int kIntervals = kCloses ? kCoefficients : kCoefficients - 3;
@@ -32,9 +36,9 @@ struct CurveForce {
   static constexpr std::string_view name = [] {
     switch (kVariable) {
       case CurveOver::velocity:
-        return "force_over_velocity";
+        return kIsFriction ? "friction_over_velocity" : "force_over_velocity";
       case CurveOver::position:
-        return "force_over_position";
+        return kIsFriction ? "friction_over_position" : "force_over_position";
       case CurveOver::motor_angle:
         return "force_over_motor_angle";
       case CurveOver::time:
@@ -44,9 +48,9 @@ struct CurveForce {
   static constexpr std::string_view meaning = [] {
     switch (kVariable) {
       case CurveOver::velocity:
-        return "force as a curve over velocity";
+        return kIsFriction ? "friction as a curve over velocity" : "force as a curve over velocity";
       case CurveOver::position:
-        return "force as a curve over position";
+        return kIsFriction ? "friction as a curve over position" : "force as a curve over position";
       case CurveOver::motor_angle:
         return "force as a curve over the motor angle";
       case CurveOver::time:
@@ -66,7 +70,7 @@ struct CurveForce {
     }
   }();
 
-  static constexpr ActsOn acts_on = ActsOn::arm_force;
+  static constexpr ActsOn acts_on = kIsFriction ? ActsOn::friction : ActsOn::arm_force;
   static constexpr std::string_view excitation = [] {
     switch (kVariable) {
       case CurveOver::velocity:
@@ -79,11 +83,11 @@ struct CurveForce {
         return std::string_view("motion throughout the recording");
     }
   }();
-  /// The ends in a motion of typical strength: outside of it, because the force has a kink there.
+  /// The ends in a motion of typical strength: outside of it, because a curve has a kink there.
   static constexpr std::array<double, 2> kTypicalEnds = [] {
     switch (kVariable) {
       case CurveOver::velocity:
-        return std::array{-0.7, 0.5};
+        return kIsFriction ? std::array{-0.1, 0.8} : std::array{-0.7, 0.5};
       case CurveOver::position:
         return std::array{-0.11, 0.17};
       case CurveOver::motor_angle:
@@ -119,17 +123,20 @@ struct CurveForce {
     entry.strengths.assign(kNames.begin() + 1, kNames.end() - (kCloses ? 0 : 1));
     if constexpr (!kCloses) entry.shapes = {"from", "to"};
     if constexpr (kVariable == CurveOver::velocity)
-      entry.settings = {{scales.velocity_low, scales.velocity_high}};
+      entry.settings = {{kIsFriction ? 0.0 : scales.velocity_low,
+                         kIsFriction ? scales.speed : scales.velocity_high}};
     if constexpr (kVariable == CurveOver::position)
       entry.settings = {{scales.position_low, scales.position_high}};
     if constexpr (kVariable == CurveOver::time) entry.settings = {{scales.start, scales.end}};
     return {entry};
   }
 
-  T arm_force(const Instant<T>& at) const { return value(variable(at)); }
+  T arm_force(const Instant<T>& at) const requires(!kIsFriction) { return value(variable(at)); }
+  T friction_curve(const Instant<T>& at) const requires kIsFriction { return value(variable(at)); }
 
-  static const T& variable(const Instant<T>& at) {
-    if constexpr (kVariable == CurveOver::velocity) return at.velocity;
+  static T variable(const Instant<T>& at) {
+    if constexpr (kVariable == CurveOver::velocity)
+      return kIsFriction ? double(at.direction) * at.velocity : at.velocity;
     if constexpr (kVariable == CurveOver::position) return at.position;
     if constexpr (kVariable == CurveOver::motor_angle) return at.motor_angle;
     if constexpr (kVariable == CurveOver::time) return at.time;
@@ -158,12 +165,16 @@ struct CurveForce {
 };
 
 template <class T>
-using ForceOverVelocity = CurveForce<T, CurveOver::velocity>;
+using ForceOverVelocity = Curve<T, CurveOver::velocity>;
 template <class T>
-using ForceOverPosition = CurveForce<T, CurveOver::position>;
+using ForceOverPosition = Curve<T, CurveOver::position>;
 template <class T>
-using ForceOverMotorAngle = CurveForce<T, CurveOver::motor_angle>;
+using ForceOverMotorAngle = Curve<T, CurveOver::motor_angle>;
 template <class T>
-using ForceOverTime = CurveForce<T, CurveOver::time>;
+using ForceOverTime = Curve<T, CurveOver::time>;
+template <class T>
+using FrictionOverVelocity = Curve<T, CurveOver::velocity, CurveOf::friction>;
+template <class T>
+using FrictionOverPosition = Curve<T, CurveOver::position, CurveOf::friction>;
 
 }  // namespace axisfit
