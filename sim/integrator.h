@@ -126,6 +126,13 @@ class Integrator {
   /// source's lag at zero, which delays like it.
   T command_delay() const { return model_.axis.T_d + equations_.lag_of_switching(); }
 
+  /// Lets `change(state, memory)` give new derivatives to the state and to what is remembered of
+  /// the motion: with those of the disturbance all that the future depends on. Values must stay.
+  template <class Change>
+  void differentiate(Change&& change) {
+    change(y_, input_.memory);
+  }
+
   const T& time() const { return input_.time; }
   const State<T>& state() const { return y_; }
   const Mode& mode() const { return mode_; }
@@ -261,9 +268,23 @@ class Integrator {
   /// From the state y with the rate f.
   template <class S>
   State<S> step(const View<S>& view, const State<S>& y, const State<S>& f, int level) const;
+  /// The same of any length that is resolved.
+  template <class S>
+  State<S> step_by_series(const View<S>& view, const State<S>& y, const State<S>& f,
+                          double length) const;
+  /// The classical method, or that of the midpoint where the step `is_short`. `middle` and `end`
+  /// are where the affine part leads after h / 2 and h; exponential(v) is exp(A h / 2) v.
+  template <class S, class Exponential>
+  State<S> runge_kutta(const View<S>& view, const State<S>& y, double h, const State<S>& middle,
+                       const State<S>& end, bool is_short, Exponential&& exponential) const;
+  /// Of the affine part, with the smooth forces frozen.
+  template <class S>
+  Series<S> series(const View<S>& view, const State<S>& y, const State<S>& f, double length) const {
+    return view.propagator.series(y, f, slopes(), length);
+  }
   template <class S>
   Series<S> series(const View<S>& view, const State<S>& y, double length) const {
-    return view.propagator.series(y, rate(view, y), slopes(), length);
+    return series(view, y, rate(view, y), length);
   }
 
   /// With tolerances.
@@ -402,9 +423,40 @@ State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, const State
   Propagator<S>& p = view.propagator;
   const State<S> end = p.advance(y, f, slopes(), level);
   if (!view.equations.has_smooth_forces() || level == p.step_levels().last) return end;
-  // Classical Runge-Kutta for n(y) = N(y) - N(y at the start) in the frame that moves with the
-  // affine flow.
-  const double h = p.step_levels().length(level);
+  // Behind an event steps are so short that the midpoint rule is as good.
+  constexpr int kShort = 4;
+  return runge_kutta(view, y, p.step_levels().length(level), p.advance(y, f, slopes(), level + 1),
+                     end, level >= check_level() + kShort,
+                     [&](const State<S>& v) { return p.exponential(v, level + 1); });
+}
+
+template <class T>
+template <class S>
+State<S> Integrator<T>::step_by_series(const View<S>& view, const State<S>& y, const State<S>& f,
+                                       double length) const {
+  Propagator<S>& p = view.propagator;
+  const StepLevels& levels = p.step_levels();
+  if (affine() || length <= levels.length(levels.last))
+    return series(view, y, f, length).at(length);
+  const double half = 0.5 * length;
+  // Where readings and switches of the command are even, pieces of few lengths recur.
+  std::optional<State<S>> end;
+  if (const auto* known = p.repeated(length)) end = p.advance(y, f, slopes(), *known);
+  if (const auto* known = p.repeated(half); known && end)
+    return runge_kutta(view, y, length, p.advance(y, f, slopes(), *known), *end, false,
+                       [&](const State<S>& v) { return p.exponential(v, *known); });
+  const Series<S> path = series(view, y, f, length);
+  return runge_kutta(
+      view, y, length, path.at(half), path.at(length), false,
+      [&](const State<S>& v) { return p.series(v, p.a_times(v), {}, half).at(half); });
+}
+
+template <class T>
+template <class S, class Exponential>
+State<S> Integrator<T>::runge_kutta(const View<S>& view, const State<S>& y, double h,
+                                    const State<S>& middle, const State<S>& end, bool is_short,
+                                    Exponential&& exponential) const {
+  // Of n(y) = N(y) - N(y at the start), in the frame that moves with the affine flow.
   const State<S> start = view.equations.smooth_rate(mode_, y, view.input);
   const auto n = [&](const State<S>& at, double delay) {
     State<S> remainder = view.equations.smooth_rate(mode_, at, moved(view.input, delay));
@@ -415,15 +467,11 @@ State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, const State
     for (std::size_t i = 0; i < kStates; ++i) a[i] += factor * b[i];
     return a;
   };
-  const State<S> middle = p.advance(y, f, slopes(), level + 1);
   const State<S> k2 = n(middle, 0.5 * h);  // k1 = 0
-  // Behind an event steps are so short that the midpoint rule is as good.
-  constexpr int kShort = 4;
-  if (level >= check_level() + kShort) return plus(end, h, p.exponential(k2, level + 1));
+  if (is_short) return plus(end, h, exponential(k2));
   const State<S> k3 = n(plus(middle, 0.5 * h, k2), 0.5 * h);
-  const State<S> k4 = n(plus(end, h, p.exponential(k3, level + 1)), h);
-  const State<S> inner = p.exponential(plus(k2, 1.0, k3), level + 1);
-  return plus(plus(end, h / 3.0, inner), h / 6.0, k4);
+  const State<S> k4 = n(plus(end, h, exponential(k3)), h);
+  return plus(plus(end, h / 3.0, exponential(plus(k2, 1.0, k3))), h / 6.0, k4);
 }
 
 template <class T>
@@ -433,8 +481,7 @@ Crossing Integrator<T>::try_step(const State<double>& from, int level, double le
   const View<double> now = plain();
   const bool by_series = level > step_levels().last;
   const State<double> f = rate(now, from);
-  to = by_series ? now.propagator.series(from, f, slopes(), length).at(length)
-                 : step(now, from, f, level);
+  to = by_series ? step_by_series(now, from, f, length) : step(now, from, f, level);
   for (const double x : to)
     if (!std::isfinite(x)) return Crossing::none;  // to nowhere, which the caller sees
 
@@ -567,7 +614,7 @@ bool Integrator<T>::advance_to(const T& end) {
     const StepLevels& step_levels = this->step_levels();
     int level = std::max({level_, search, step_level()});
     // The last piece of an interval, of whatever length, is for the series, where that holds.
-    const double resolved = affine() ? step_levels.length(step_levels.resolved) : 0.0;
+    const double resolved = step_levels.length(step_levels.resolved);
     const bool piece =
         step_levels.length(level) > remaining + negligible && search == 0 && remaining <= resolved;
     while (level <= step_levels.last && step_levels.length(level) > remaining + negligible) ++level;
@@ -584,7 +631,7 @@ bool Integrator<T>::advance_to(const T& end) {
         (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)))
       return false;
     if (course != Crossing::none) {
-      if (!shortest && !(course == Crossing::passed && length <= resolved)) {
+      if (!shortest && !(affine() && course == Crossing::passed && length <= resolved)) {
         search = piece ? level : level + 1;
         continue;
       }
@@ -603,8 +650,7 @@ bool Integrator<T>::advance_to(const T& end) {
     } else {
       const View<T> view = exact();
       const State<T> f = rate(view, y_);
-      y_ = by_series ? view.propagator.series(y_, f, slopes(), length).at(length)
-                     : step(view, y_, f, level);
+      y_ = by_series ? step_by_series(view, y_, f, length) : step(view, y_, f, level);
     }
     move_time(length);
     level_ = std::max(0, level_ - 1);

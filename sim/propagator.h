@@ -18,6 +18,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "sim/axis.h"
@@ -173,33 +174,20 @@ struct Series {
 template <class T>
 class Propagator {
  public:
+  /// What one length takes.
+  struct Length {
+    double time;  ///< s
+    SparseMatrix<T> psi;
+    std::vector<State<T>> xi;  ///< times each ramp
+  };
+
   /// `a` = df/dy, of which the first n states are in use.
   Propagator(const Matrix<T>& a, const StepLevels& step_levels, std::vector<Ramp<T>> ramps = {},
              std::size_t n = kStates)
-      : states_(n), step_levels_(step_levels), a_(a), ramps_(std::move(ramps)) {
-    const double h = step_levels.length(step_levels.last);
-    // Psi = h (I + hA/2 + (hA)^2/6 + ...)
-    Matrix<T> psi{}, term{};
-    for (std::size_t i = 0; i < n; ++i) psi[i][i] = term[i][i] = T(h);
-    for (int k = 2; k <= kSeriesTerms; ++k) {
-      term = product(a, term, n);
-      for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < n; ++j) psi[i][j] += term[i][j] *= h / k;
-    }
-    e_ = product(a, psi, n);
-    // Xi r = h^2 (I/2 + hA/6 + ...) r
-    std::vector<State<T>> xi;
-    for (const Ramp<T>& ramp : ramps_) {
-      State<T> sum{}, next = ramp.direction;
-      double factor = 0.5 * h * h;
-      for (int k = 3; k <= kSeriesTerms + 2; ++k) {
-        add(sum, factor, next);
-        next = a_times(next);
-        factor *= h / k;
-      }
-      xi.push_back(sum);
-    }
-    push(psi, std::move(xi));
+      : states_(n), step_levels_(step_levels), dense_(a), a_(a), ramps_(std::move(ramps)) {
+    psi_ = psi_by_series(step_levels.length(step_levels.last));
+    e_ = product(a, psi_, n);
+    lengths_.push_back(by_series(step_levels.length(step_levels.last), psi_));
   }
 
   const StepLevels& step_levels() const { return step_levels_; }
@@ -216,22 +204,48 @@ class Propagator {
     for (const Ramp<T>& ramp : ramps_) add(f, t * slopes[ramp.which], ramp.direction);
   }
 
-  /// y(t + h / 2^level), from f = f(y(t)).
-  State<T> advance(const State<T>& y, const State<T>& f, const Slopes& slopes, int level) {
-    const Length& length = at(level);
+  /// h / 2^level
+  const Length& length(int level) {
+    while (step_levels_.last - level >= static_cast<int>(lengths_.size())) double_length();
+    return lengths_[static_cast<std::size_t>(step_levels_.last - level)];
+  }
+
+  /// Any other time (s) of at most h / 2^resolved, within rounding, if it was asked for before: the
+  /// matrices take as long as many series. Else null. The next call may end its life.
+  const Length* repeated(double time) {
+    constexpr std::size_t kKept = 8;
+    constexpr double kSame = 1e-8;
+    const auto known = std::ranges::find_if(
+        repeated_, [&](const Repeated& r) { return std::abs(r.time - time) <= kSame * time; });
+    if (known == repeated_.end()) {
+      if (repeated_.size() == kKept) repeated_.pop_back();
+      repeated_.insert(repeated_.begin(), {time, {}});
+      return nullptr;
+    }
+    if (!known->length) known->length = by_series(known->time, psi_by_series(known->time));
+    return &*known->length;
+  }
+
+  /// y(t + length), from f = f(y(t)).
+  State<T> advance(const State<T>& y, const State<T>& f, const Slopes& slopes,
+                   const Length& length) const {
     State<T> next = y;
     length.psi.add_product(f, next);
     for (std::size_t r = 0; r < ramps_.size(); ++r)
       add(next, slopes[ramps_[r].which], length.xi[r]);
     return next;
   }
+  State<T> advance(const State<T>& y, const State<T>& f, const Slopes& slopes, int level) {
+    return advance(y, f, slopes, length(level));
+  }
 
-  /// exp(A h / 2^level) v
-  State<T> exponential(const State<T>& v, int level) {
+  /// exp(A length) v
+  State<T> exponential(const State<T>& v, const Length& length) const {
     State<T> image = v;
-    at(level).psi.add_product(a_times(v), image);
+    length.psi.add_product(a_times(v), image);
     return image;
   }
+  State<T> exponential(const State<T>& v, int level) { return exponential(v, length(level)); }
 
   /// y(t + ...), exact to rounding up to `length`, which is at most h / 2^resolved.
   Series<T> series(const State<T>& y, const State<T>& f, const Slopes& slopes,
@@ -259,19 +273,42 @@ class Propagator {
   }
 
  private:
-  struct Length {
-    SparseMatrix<T> psi;
-    std::vector<State<T>> xi;  // times each ramp
+  struct Repeated {
+    double time;
+    std::optional<Length> length;  ///< from the second time on
   };
 
-  const Length& at(int level) {
-    while (step_levels_.last - level >= static_cast<int>(lengths_.size())) double_length();
-    return lengths_[static_cast<std::size_t>(step_levels_.last - level)];
+  /// Psi = h (I + hA/2 + (hA)^2/6 + ...)
+  Matrix<T> psi_by_series(double h) const {
+    Matrix<T> psi{}, term{};
+    for (std::size_t i = 0; i < states_; ++i) psi[i][i] = term[i][i] = T(h);
+    for (int k = 2; k <= kSeriesTerms; ++k) {
+      term = product(dense_, term, states_);
+      for (std::size_t i = 0; i < states_; ++i)
+        for (std::size_t j = 0; j < states_; ++j) psi[i][j] += term[i][j] *= h / k;
+    }
+    return psi;
+  }
+
+  /// Xi r = h^2 (I/2 + hA/6 + ...) r
+  Length by_series(double h, const Matrix<T>& psi) const {
+    std::vector<State<T>> xi;
+    for (const Ramp<T>& ramp : ramps_) {
+      State<T> sum{}, next = ramp.direction;
+      double factor = 0.5 * h * h;
+      for (int k = 3; k <= kSeriesTerms + 2; ++k) {
+        add(sum, factor, next);
+        next = a_times(next);
+        factor *= h / k;
+      }
+      xi.push_back(sum);
+    }
+    return {h, SparseMatrix<T>(psi), std::move(xi)};
   }
 
   void double_length() {
     const Length& half = lengths_.back();
-    const double h = step_levels_.length(step_levels_.last - static_cast<int>(lengths_.size()) + 1);
+    const double h = half.time;
     const SparseMatrix<T> e(e_);
     std::vector<State<T>> xi = half.xi;
     for (std::size_t r = 0; r < xi.size(); ++r) {
@@ -281,14 +318,9 @@ class Propagator {
       half.psi.add_product(ramps_[r].direction, psi);
       add(xi[r], h, psi);
     }
-    const Matrix<T> psi = grown(psi_);
+    psi_ = grown(psi_);
     e_ = grown(e_);
-    push(psi, std::move(xi));
-  }
-
-  void push(const Matrix<T>& psi, std::vector<State<T>> xi) {
-    psi_ = psi;
-    lengths_.push_back({SparseMatrix<T>(psi), std::move(xi)});
+    lengths_.push_back({2.0 * h, SparseMatrix<T>(psi_), std::move(xi)});
   }
 
   /// 2 m + E m
@@ -305,10 +337,12 @@ class Propagator {
 
   std::size_t states_;
   StepLevels step_levels_;
-  SparseMatrix<T> a_;
+  Matrix<T> dense_;
+  SparseMatrix<T> a_;  // the same
   std::vector<Ramp<T>> ramps_;
-  Matrix<T> e_, psi_;            // of the longest length so far
-  std::vector<Length> lengths_;  // from the shortest up
+  Matrix<T> e_, psi_;               // of the longest length so far
+  std::vector<Length> lengths_;     // from the shortest up
+  std::vector<Repeated> repeated_;  // the latest first
 };
 
 }  // namespace axisfit

@@ -18,6 +18,9 @@ struct ScalarTraits<ceres::Jet<double, N>> {
   static bool has_derivative(const ceres::Jet<double, N>& x) { return !x.v.isZero(0.0); }
 };
 
+/// The most dual parts that a number has here.
+inline constexpr int kWidestJet = 24;
+
 /// The model with the derivatives with respect to the u of the parameters `columns`, in this order.
 template <class Jet>
 Model<Jet> with_derivatives(const Model<double>& model, const ParameterSpace& space,
@@ -35,9 +38,8 @@ Model<Jet> with_derivatives(const Model<double>& model, const ParameterSpace& sp
 /// true; none follows one that did not. With no columns at all there is one pass.
 template <class Evaluate>
 bool evaluate_columns(std::span<const std::size_t> all, Evaluate&& evaluate) {
-  constexpr std::size_t kWidest = 24;
   do {
-    const auto columns = all.first(std::min(all.size(), kWidest));
+    const auto columns = all.first(std::min<std::size_t>(all.size(), kWidestJet));
     all = all.subspan(columns.size());
     const std::size_t n = columns.size();
     const bool finished = n <= 2    ? evaluate.template operator()<ceres::Jet<double, 2>>(columns)
@@ -45,7 +47,7 @@ bool evaluate_columns(std::span<const std::size_t> all, Evaluate&& evaluate) {
                           : n <= 6  ? evaluate.template operator()<ceres::Jet<double, 6>>(columns)
                           : n <= 8  ? evaluate.template operator()<ceres::Jet<double, 8>>(columns)
                           : n <= 12 ? evaluate.template operator()<ceres::Jet<double, 12>>(columns)
-                                    : evaluate.template operator()<ceres::Jet<double, 24>>(columns);
+                                    : evaluate.template operator()<ceres::Jet<double, kWidestJet>>(columns);
     if (!finished) return false;
   } while (!all.empty());
   return true;

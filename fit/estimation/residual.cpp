@@ -19,11 +19,10 @@ std::vector<double> target_values(const Recording& recording, Signal signal) {
   return delay > 0.0 ? advanced(m->values, delay) : std::vector<double>(m->values);
 }
 
-/// Runs a recording through a model, read by a recorder of these signals; `also` sees the axis at
-/// every instant of the recorder, and whether that is a sample.
-template <class T, class Also>
+/// Runs a recording through a model and calls read(i, axis) at every instant of a recorder.
+template <class T, class Read>
 SimulationResult run(const Job& job, const Recording& recording, const Model<T>& model,
-                     const Observer& observer, Recorder<T>& recorder, Also&& also,
+                     const Observer& observer, const Recorder<T>& recorder, Read&& read,
                      std::vector<ModeChange>* modes = nullptr, const StopFlag* stop = nullptr,
                      std::span<const Disturbance<T>> disturbances = {}) {
   IntegratorOptions options = recording_options(recording.times, job.options.step);
@@ -41,13 +40,37 @@ SimulationResult run(const Job& job, const Recording& recording, const Model<T>&
   };
   const std::vector<double> velocity = series(Signal::velocity),
                             position = series(Signal::position);
-  return simulate<T>(
-      model, recording.command, recorder.instants(),
-      [&](std::size_t i, const Integrator<T>& axis) {
-        recorder.read(axis);
-        also(axis, recorder.is_sample(i));
-      },
-      observer, {velocity, position}, options, disturbances);
+  return simulate<T>(model, recording.command, recorder.instants(), read, observer,
+                     {velocity, position}, options, disturbances);
+}
+
+/// Calls visit(x) for the states in use, and for what is remembered where that counts.
+template <class T, class Visitor>
+void visit_followed(const ActiveTerms& parts, State<T>& y, RestMemory<T>& memory, Visitor&& visit) {
+  const std::array<bool, kStates> is_used{true,
+                                          true,
+                                          true,
+                                          true,
+                                          parts.has.is_electric,
+                                          parts.has.is_electric,
+                                          parts.has.has_voltage_loop,
+                                          parts.lagging,
+                                          parts.elastic,
+                                          parts.elastic};
+  for (std::size_t i = 0; i < kStates; ++i)
+    if (is_used[i]) visit(y[i]);
+  if (!parts.needs.hysteresis) return;
+  visit(memory.position);
+  for (T& hysteresis : memory.hystereses) visit(hysteresis);
+}
+
+/// How many these are.
+Eigen::Index states_to_follow(const ActiveTerms& parts) {
+  State<double> y{};
+  RestMemory<double> memory;
+  Eigen::Index count = 0;
+  visit_followed(parts, y, memory, [&](double&) { ++count; });
+  return count;
 }
 
 /// sign(r) sqrt(rho(r^2)) for Huber's rho of width k, and its derivative.
@@ -84,8 +107,9 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
   const TargetSeries measured{velocity, position};
   const SimulationResult simulation_result = run(
       job, recording, model, observer, recorder,
-      [&](const Integrator<double>& axis, bool is_sample) {
-        if (!is_sample) return;
+      [&](std::size_t i, const Integrator<double>& axis) {
+        recorder.read(axis);
+        if (!recorder.is_sample(i)) return;
         const Equations<double>& equations = axis.equations();
         const State<double>& y = axis.state();
         const double drive = equations.drive_force(axis.mode(), y, axis.input());
@@ -128,25 +152,22 @@ template <class T>
 bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobian,
                              std::span<const std::size_t> columns) const {
   const Model<double> values = model_at(job_, space_, u, recording_);
-  const Derivatives derivatives{jacobian, space_.size(), columns};
+  Model<T> model;
   if constexpr (std::is_same_v<T, double>)
-    return evaluate_model<T>(values, {}, residuals, derivatives);
+    model = values;
   else
-    return evaluate_model<T>(with_derivatives<T>(values, space_, u, columns), {}, residuals,
-                             derivatives);
+    model = with_derivatives<T>(values, space_, u, columns);
+  const Recording& recording = job_.recordings[recording_];
+  Recorder<T> recorder(model.instruments, signals_, recording.times);
+  const auto read = [&](std::size_t, const Integrator<T>& axis) { recorder.read(axis); };
+  return run(job_, recording, model, observer_, recorder, read, nullptr, stop_).finished &&
+         compare(recorder, residuals, {jacobian, space_.size(), columns});
 }
 
 template <class T>
-bool RecordingCost::evaluate_model(const Model<T>& model,
-                                   std::span<const Disturbance<T>> disturbances, double* residuals,
-                                   const Derivatives& derivatives) const {
+bool RecordingCost::compare(Recorder<T>& recorder, double* residuals,
+                            const Derivatives& derivatives) const {
   const Recording& recording = job_.recordings[recording_];
-  Recorder<T> recorder(model.instruments, signals_, recording.times);
-  if (!run(
-           job_, recording, model, observer_, recorder, [](const Integrator<T>&, bool) {}, nullptr,
-           stop_, disturbances)
-           .finished)
-    return false;
   bool finite = true;
   std::size_t row = 0;
   for (std::size_t f = 0; f < fitted_.size(); ++f) {
@@ -191,40 +212,120 @@ bool RecordingCost::evaluate_with_jacobian(const double* u, double* residuals,
 std::vector<AxisInstant> RecordingCost::trajectory(const double* u) const {
   const Recording& recording = job_.recordings[recording_];
   const Model<double> model = model_at(job_, space_, u, recording_);
-  Recorder<double> recorder(model.instruments, signals_, recording.times);
+  const Recorder<double> recorder(model.instruments, signals_, recording.times);
   std::vector<AxisInstant> instants;
-  const auto note = [&](const Integrator<double>& axis, bool) {
+  const auto note = [&](std::size_t, const Integrator<double>& axis) {
     instants.push_back({axis.mode(), axis.state(), axis.input()});
   };
   if (!run(job_, recording, model, observer_, recorder, note, nullptr, stop_).finished) return {};
   return instants;
 }
 
+/// How a simulation hands small changes of its state on, from each instant to the next. With s the
+/// change of the state and of what is remembered, d the disturbance (arm, motor) at an instant and
+/// m its mean since the instant before, s_i = from_state s_(i-1) + from_disturbance m_i, and a
+/// reading changes by of_state s_i + of_disturbance d_i.
+struct RecordingCost::Transitions {
+  static constexpr Eigen::Index kDisturbances = 2;
+  Eigen::Index states = 0;
+  /// Instant by instant one below the other: for each state, and for each signal, a row.
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> states_to, readings_to;
+  std::vector<std::vector<double>> readings;  ///< their values, by signals
+};
+
+template <class T>
+std::optional<RecordingCost::Transitions> RecordingCost::transitions(
+    const Model<double>& values) const {
+  const Recording& recording = job_.recordings[recording_];
+  const Model<T> model = convert<T>(values);
+  const Recorder<T> recorder(model.instruments, signals_, recording.times);
+  const auto instants = static_cast<Eigen::Index>(recorder.instants().size());
+  Transitions result;
+  result.states = states_to_follow(Equations<double>(values).parts());
+  const Eigen::Index n = result.states, wide = n + Transitions::kDisturbances;
+  const auto signals = static_cast<Eigen::Index>(signals_.size());
+  result.states_to.setZero(instants * n, wide);
+  result.readings_to.setZero(instants * signals, wide);
+  result.readings.resize(signals_.size());
+  Disturbance<T> unit;
+  unit.arm.v[n] = 1.0;
+  unit.motor.v[n + 1] = 1.0;
+  const std::vector<Disturbance<T>> disturbances(recorder.instants().size(), unit);
+  const auto read = [&](std::size_t i, Integrator<T>& axis) {
+    const auto at = static_cast<Eigen::Index>(i);
+    axis.differentiate([&](State<T>& y, RestMemory<T>& memory) {
+      Eigen::Index k = 0;
+      visit_followed(axis.equations().parts(), y, memory, [&](T& x) {
+        if (i > 0) result.states_to.row(at * n + k) = x.v.head(wide);
+        x.v.setZero();
+        x.v[k++] = 1.0;
+      });
+    });
+    for (Eigen::Index s = 0; s < signals; ++s) {
+      const auto signal = static_cast<std::size_t>(s);
+      const T shown =
+          reading(axis.equations(), signals_[signal], axis.mode(), axis.state(), axis.input());
+      result.readings[signal].push_back(shown.a);
+      result.readings_to.row(at * signals + s) = shown.v.head(wide);
+    }
+  };
+  if (!run(job_, recording, model, observer_, recorder, read, nullptr, stop_,
+           std::span<const Disturbance<T>>(disturbances))
+           .finished)
+    return std::nullopt;
+  return result;
+}
+
 Eigen::MatrixXd RecordingCost::disturbance_response(const double* u,
                                                     const Disturbances& disturbances) const {
-  constexpr int kWidth = 24;
-  using T = ceres::Jet<double, kWidth>;
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Model<T> model = convert<T>(model_at(job_, space_, u, recording_));
-  const Eigen::Index instants = disturbances.arm.rows(), all = disturbances.arm.cols();
+  const Model<double> values = model_at(job_, space_, u, recording_);
+  constexpr Eigen::Index kNarrow = 12;
+  const bool is_narrow =
+      states_to_follow(Equations<double>(values).parts()) + Transitions::kDisturbances <= kNarrow;
+  const std::optional<Transitions> found =
+      is_narrow ? transitions<ceres::Jet<double, kNarrow>>(values)
+                : transitions<ceres::Jet<double, kWidestJet>>(values);
+  if (!found) return {};
+  const Eigen::Index n = found->states, all = disturbances.arm.cols(),
+                     signals = static_cast<Eigen::Index>(signals_.size());
+  // What lags, filters and sigma make of the readings, in as many dual parts as there are.
+  using T = ceres::Jet<double, kWidestJet>;
+  const Model<T> model = convert<T>(values);
   Eigen::MatrixXd response(num_residuals(), all);
   std::vector<double> residuals(static_cast<std::size_t>(num_residuals()));
-  std::vector<Disturbance<T>> of_pass(static_cast<std::size_t>(instants));
-  std::vector<std::size_t> columns(kWidth);
+  std::vector<std::size_t> columns(kWidestJet);
   std::iota(columns.begin(), columns.end(), 0);
-  RowMajor block(num_residuals(), kWidth);
-  for (Eigen::Index first = 0; first < all; first += kWidth) {
-    const Eigen::Index n = std::min<Eigen::Index>(kWidth, all - first);
-    for (Eigen::Index i = 0; i < instants; ++i) {
-      Disturbance<T>& at = of_pass[static_cast<std::size_t>(i)];
-      at.arm.v.head(n) = disturbances.arm.row(i).segment(first, n).transpose();
-      at.motor.v.head(n) = disturbances.motor.row(i).segment(first, n).transpose();
+  Eigen::Matrix<double, Eigen::Dynamic, kWidestJet, Eigen::RowMajor> block(num_residuals(),
+                                                                           kWidestJet);
+  for (Eigen::Index first = 0; first < all; first += kWidestJet) {
+    const Eigen::Index count = std::min<Eigen::Index>(kWidestJet, all - first);
+    Recorder<T> recorder(model.instruments, signals_, job_.recordings[recording_].times);
+    // The changes of the state, and below them the disturbance.
+    Eigen::Matrix<double, Eigen::Dynamic, kWidestJet> change =
+        Eigen::Matrix<double, Eigen::Dynamic, kWidestJet>::Zero(n + Transitions::kDisturbances,
+                                                                kWidestJet);
+    const auto disturb = [&](Eigen::Index i, double share) {
+      change.row(n).head(count) += share * disturbances.arm.row(i).segment(first, count);
+      change.row(n + 1).head(count) += share * disturbances.motor.row(i).segment(first, count);
+    };
+    for (Eigen::Index i = 0; i < disturbances.arm.rows(); ++i) {
+      if (i > 0) {
+        change.bottomRows(Transitions::kDisturbances) *= 0.5;
+        disturb(i, 0.5);
+        change.topRows(n) = (found->states_to.middleRows(i * n, n) * change).eval();
+        change.bottomRows(Transitions::kDisturbances).setZero();
+      }
+      disturb(i, 1.0);
+      for (Eigen::Index s = 0; s < signals; ++s) {
+        const auto signal = static_cast<std::size_t>(s);
+        T shown(found->readings[signal][static_cast<std::size_t>(i)]);
+        shown.v = (found->readings_to.row(i * signals + s) * change).transpose();
+        recorder.note(signal, shown);
+      }
     }
-    if (!evaluate_model<T>(
-            model, of_pass, residuals.data(),
-            {block.data(), kWidth, std::span(columns).first(static_cast<std::size_t>(n))}))
+    if (!compare<T>(recorder, residuals.data(), {block.data(), kWidestJet, std::span(columns)}))
       return {};
-    response.middleCols(first, n) = block.leftCols(n);
+    response.middleCols(first, count) = block.leftCols(count);
   }
   return response;
 }

@@ -4,6 +4,7 @@
 #include <ceres/cost_function.h>
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "base/interrupt.h"
@@ -71,9 +72,12 @@ class RecordingCost : public ceres::CostFunction {
   template <class T>
   bool evaluate(const double* u, double* residuals, double* jacobian,
                 std::span<const std::size_t> columns) const;
+  /// From what the recorder was shown.
   template <class T>
-  bool evaluate_model(const Model<T>& model, std::span<const Disturbance<T>> disturbances,
-                      double* residuals, const Derivatives& derivatives) const;
+  bool compare(Recorder<T>& recorder, double* residuals, const Derivatives& derivatives) const;
+  struct Transitions;
+  template <class T>
+  std::optional<Transitions> transitions(const Model<double>& model) const;
   bool evaluate_with_jacobian(const double* u, double* residuals, double* jacobian) const;
 
   const Job& job_;

@@ -266,34 +266,24 @@ void EffectColumns::add_forces(const std::vector<EffectSetting>& settings,
                                const std::vector<Column>& columns,
                                std::vector<Eigen::MatrixXd>& result) const {
   if (columns.empty()) return;
-  constexpr std::size_t kTogether = 24;  // as disturbance_response() has in one pass
-  const std::size_t parts = (columns.size() + kTogether - 1) / kTogether;
-  Eigen::Index row = 0;
-  for (std::size_t r = 0; r < costs_.size(); ++r) {
-    const Eigen::Index n = costs_[r].num_residuals();
-    const bool reached = !trajectories_[r].empty();
-    const Disturbances all = reached ? disturbances(r, settings, columns) : Disturbances{};
-    parallel_for(parts, [&](std::size_t part) {
-      context_.check_stop();
-      const std::size_t first = part * kTogether;
-      const std::size_t count = std::min(kTogether, columns.size() - first);
-      const auto cut = [&](const Eigen::MatrixXd& m) {
-        return m.middleCols(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count));
-      };
-      Eigen::MatrixXd response;
-      if (reached)
-        response = costs_[r].disturbance_response(nullptr, {cut(all.arm), cut(all.motor)});
-      for (std::size_t k = 0; k < count; ++k) {
-        const Column& c = columns[first + k];
-        auto own = result[c.setting].col(static_cast<Eigen::Index>(c.index)).segment(row, n);
-        if (response.size() == 0)
-          own.setConstant(NAN);
-        else
-          own = response.col(static_cast<Eigen::Index>(k));
-      }
-    });
-    row += n;
-  }
+  std::vector<Eigen::Index> row(costs_.size());
+  for (std::size_t r = 1; r < costs_.size(); ++r)
+    row[r] = row[r - 1] + costs_[r - 1].num_residuals();
+  parallel_for(costs_.size(), [&](std::size_t r) {
+    Eigen::MatrixXd response;
+    if (!trajectories_[r].empty())
+      response = costs_[r].disturbance_response(nullptr, disturbances(r, settings, columns));
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const Column& c = columns[k];
+      auto own = result[c.setting]
+                     .col(static_cast<Eigen::Index>(c.index))
+                     .segment(row[r], costs_[r].num_residuals());
+      if (response.size() == 0)
+        own.setConstant(NAN);
+      else
+        own = response.col(static_cast<Eigen::Index>(k));
+    }
+  });
   for (const Column& c : columns)
     if (!result[c.setting].allFinite()) result[c.setting].resize(0, 0);
 }

@@ -81,6 +81,7 @@ class EffectSelector {
   };
 
   SelectionStep& current() { return result_.models.back(); }
+  const SelectionStep& current() const { return result_.models.back(); }
 
   /// Adds named effects as long as one passes. If they do not suffice, tries again while the
   /// simulation tracks the data, and then with a curve first: named effects may have imitated part
@@ -228,6 +229,7 @@ class EffectSelector {
   /// are refitted whose score is beyond chance.
   bool round(bool curves, double chance = kChance) {
     ++round_;
+    stretches_before_.reset();
     report_progress("scoring effects");
     const bool is_complete = explained();
     Shortlist list = shortlist(current().job, values_of(current().fit), rates_to_score(is_complete),
@@ -243,29 +245,17 @@ class EffectSelector {
       std::erase_if(entries, [&](const ShortlistEntry& entry) {
         return entry.gain < least_gain(entry.candidate, samples_of(before), tried_);
       });
-    std::vector<ExtendedModel> extended_models(entries.size());
-    // What takes longest first, so that nobody waits for it at the end.
-    std::vector<std::size_t> order(entries.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, std::greater{},
-                             [&](std::size_t i) { return entries[i].candidate.parameters(); });
-    int done = 0;
-    std::mutex mutex;
-    parallel_for(order.size(), [&](std::size_t k) {
-      const std::size_t i = order[k];
-      const ShortlistEntry& p = entries[i];
-      {
-        const std::lock_guard lock(mutex);
-        report_progress("trying " + p.candidate.name, done, static_cast<int>(entries.size()));
-      }
-      ExtendedModel& e = extended_models[i];
-      e = fit_extended_model(current().job, p.candidate, p.score.values, p.score.strengths,
-                             p.score.shapes, context_);
-      e.score = p.score.gain;
-      judge(e, before, chance);
-      const std::lock_guard lock(mutex);
-      report_progress("trying " + p.candidate.name, ++done, static_cast<int>(entries.size()));
-    });
+    // What promises little beside the best is refitted only where that does not pass.
+    constexpr double kRival = 0.6;
+    double promised = 0.0;
+    for (const ShortlistEntry& entry : entries) promised = std::max(promised, entry.gain);
+    const auto others = std::ranges::stable_partition(
+        entries, [&](const ShortlistEntry& entry) { return entry.gain >= kRival * promised; });
+    std::vector<ExtendedModel> extended_models;
+    refit_all({entries.begin(), others.begin()}, before, chance, extended_models);
+    if (std::ranges::all_of(extended_models,
+                            [](const ExtendedModel& e) { return e.rejection.has_value(); }))
+      refit_all(others, before, chance, extended_models);
     // Of several settings of one candidate the best counts.
     std::vector<ExtendedModel*> contenders;
     for (ExtendedModel& e : extended_models) {
@@ -315,6 +305,35 @@ class EffectSelector {
     return true;
   }
 
+  /// Refits with each of these and judges it.
+  void refit_all(std::span<const ShortlistEntry> entries, const std::vector<ResidualSeries>& before,
+                 double chance, std::vector<ExtendedModel>& extended_models) {
+    const std::size_t first = extended_models.size();
+    extended_models.resize(first + entries.size());
+    // What takes longest first, so that nobody waits for it at the end.
+    std::vector<std::size_t> order(entries.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::greater{},
+                             [&](std::size_t i) { return entries[i].candidate.parameters(); });
+    int done = 0;
+    std::mutex mutex;
+    parallel_for(order.size(), [&](std::size_t k) {
+      const ShortlistEntry& p = entries[order[k]];
+      const auto report = [&](int step) {
+        const std::lock_guard lock(mutex);
+        done += step;
+        report_progress("trying " + p.candidate.name, done, static_cast<int>(entries.size()));
+      };
+      report(0);
+      ExtendedModel& e = extended_models[first + order[k]];
+      e = fit_extended_model(current().job, p.candidate, p.score.values, p.score.strengths,
+                             p.score.shapes, context_);
+      e.score = p.score.gain;
+      judge(e, before, chance);
+      report(1);
+    });
+  }
+
   static bool is_of_validation(const Rejection& rejection) {
     return rejection.test == Rejection::Test::validation ||
            rejection.test == Rejection::Test::power;
@@ -351,7 +370,8 @@ class EffectSelector {
       });
       return series;
     };
-    Improvement gain = improvement(held_out(current()), held_out({"", e.job, e.fit}));
+    if (!stretches_before_) stretches_before_ = held_out(current());
+    Improvement gain = improvement(*stretches_before_, held_out({"", e.job, e.fit}));
     gain.fit_gain = e.gain.fit_gain;
     gain.samples = e.gain.samples;
     if (rejection_of(e.candidate, gain, determination(e.job, e.fit, e.candidate, e.residuals),
@@ -411,40 +431,84 @@ class EffectSelector {
     return nullptr;
   }
 
-  /// The model without one accepted effect, refitted.
-  SelectionStep without(std::size_t index) {
-    if (accepted_.size() == 1) return result_.models.front();
-    return with_accepted(declared_job(), index);
+  /// What was fitted beside the present model.
+  struct Neighbours {
+    std::vector<double> of;                             ///< values and gain of that model
+    std::vector<std::optional<SelectionStep>> reduced;  ///< without each of the accepted effects
+    bool has_elsewhere = false;
+    std::optional<FitResult> elsewhere;  ///< to the recordings to validate
+  };
+  Neighbours& neighbours() {
+    std::vector<double> values = values_of(current().fit);
+    values.push_back(current().fit.observer_gain);
+    if (values != neighbours_.of || neighbours_.reduced.size() != accepted_.size())
+      neighbours_ = {std::move(values), {accepted_.size(), std::nullopt}, false, std::nullopt};
+    return neighbours_;
   }
 
-  /// A job with the accepted effects, but for one, refitted from where they are.
-  SelectionStep with_accepted(const Job& declared, std::optional<std::size_t> except = {}) {
-    SelectionStep model{"", declared, {}};
+  /// The model without one accepted effect, refitted.
+  const SelectionStep& without(std::size_t index) {
+    std::optional<SelectionStep>& reduced = neighbours().reduced[index];
+    if (!reduced) reduced = reduce(index);
+    return *reduced;
+  }
+  SelectionStep reduce(std::size_t index) const {
+    return accepted_.size() == 1 ? result_.models.front() : with_accepted(declared_job(), index);
+  }
+  /// Fits without each of these, side by side.
+  void reduce_by(const std::vector<std::size_t>& places) {
+    auto& all = neighbours().reduced;
+    parallel_for(places.size(), [&](std::size_t i) {
+      if (!all[places[i]]) all[places[i]] = reduce(places[i]);
+    });
+  }
+
+  /// A job with the accepted effects, but for one, that starts from where they are.
+  Job job_with_accepted(const Job& declared, std::optional<std::size_t> except = {}) const {
+    Job job = declared;
     std::vector<double> values;
-    const FitResult& fit = current().fit;
-    for (std::size_t i = 0; i < model.job.free.size(); ++i)
-      values.push_back(fit.parameters[i].value);
+    for (std::size_t i = 0; i < job.free.size(); ++i)
+      values.push_back(current().fit.parameters[i].value);
     for (std::size_t a = 0; a < accepted_.size(); ++a) {
       if (a == except) continue;
       const Candidate& candidate = accepted_[a].candidate;
       const CandidateValues own = candidate_values(current().job, current().fit, candidate);
-      model.job = with_candidate(model.job, candidate, values, own.strengths, own.shapes);
-      values.clear();
-      for (const FreeParameter& p : model.job.free) values.push_back(p.initial);
+      job = with_candidate(job, candidate, values, own.strengths, own.shapes);
+      values = initial_values(job);
     }
-    model.fit = refit_from(model.job, values, context_);
-    return model;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      job.free[i].initial = std::clamp(values[i], job.free[i].lower, job.free[i].upper);
+    return job;
+  }
+  static std::vector<double> initial_values(const Job& job) {
+    std::vector<double> values;
+    for (const FreeParameter& p : job.free) values.push_back(p.initial);
+    return values;
+  }
+  SelectionStep with_accepted(const Job& declared, std::optional<std::size_t> except = {}) const {
+    Job job = job_with_accepted(declared, except);
+    FitResult fit = refit(job, context_);
+    return {"", std::move(job), std::move(fit)};
   }
 
   const Job& declared_job() const { return result_.models.front().job; }
 
-  /// Takes away what is not needed any more.
+  /// Takes away what is not needed any more. What the recordings to validate tell alike beside all
+  /// other effects is.
   void eliminate_backward() {
     if (accepted_.size() < 2) return;
     for (std::size_t a = 0; a < accepted_.size() && accepted_.size() > 1;) {
-      report_progress("is " + accepted_[a].candidate.name + " necessary?");
-      SelectionStep reduced = without(a);
       const Candidate& candidate = accepted_[a].candidate;
+      if (is_alike_elsewhere(candidate)) {
+        ++a;
+        continue;
+      }
+      report_progress("is " + candidate.name + " necessary?");
+      std::vector<std::size_t> doubted;
+      for (std::size_t b = a; b < accepted_.size(); ++b)
+        if (!is_alike_elsewhere(accepted_[b].candidate)) doubted.push_back(b);
+      reduce_by(doubted);
+      SelectionStep reduced = without(a);
       const Improvement gain = improvement(residual_series(reduced.job, reduced.fit),
                                            residual_series(current().job, current().fit));
       if (!reduced.fit.usable ||
@@ -468,17 +532,14 @@ class EffectSelector {
   void drop_imitators() {
     constexpr double kLeastPercent = 25.0;
     while (!accepted_.empty() && !explained()) {
-      const std::optional<FitResult> elsewhere = fit_elsewhere_now();
       const auto now = residual_series(current().job, current().fit);
       SelectionStep least;
       std::size_t place = 0;
       double percent = kLeastPercent;
       for (std::size_t a = 0; a < accepted_.size(); ++a) {
         const Candidate& candidate = accepted_[a].candidate;
-        if (elsewhere && replication(current().job, current().fit, *elsewhere, candidate).is_alike)
-          continue;
+        if (candidate.is_curve || is_alike_elsewhere(candidate)) continue;
         report_progress("what does " + candidate.name + " explain?");
-        if (candidate.is_curve) continue;
         SelectionStep reduced = without(a);
         const Improvement gain = improvement(residual_series(reduced.job, reduced.fit), now);
         if (!reduced.fit.usable || gain.missing_percent >= percent) continue;
@@ -493,16 +554,24 @@ class EffectSelector {
     }
   }
 
-  std::optional<FitResult> fit_elsewhere_now() {
-    if (result_.held_out_blocks) return std::nullopt;
-    report_progress("do the recordings to validate tell the same?");
-    return fit_elsewhere(current().job, current().fit, context_);
+  const std::optional<FitResult>& fit_elsewhere_now() {
+    Neighbours& known = neighbours();
+    if (!known.has_elsewhere && !result_.held_out_blocks) {
+      report_progress("do the recordings to validate tell the same?");
+      known.elsewhere = fit_elsewhere(current().job, current().fit, context_);
+      known.has_elsewhere = true;
+    }
+    return known.elsewhere;
+  }
+  bool is_alike_elsewhere(const Candidate& candidate) {
+    const std::optional<FitResult>& elsewhere = fit_elsewhere_now();
+    return elsewhere && replication(current().job, current().fit, *elsewhere, candidate).is_alike;
   }
 
   /// What the recordings to validate, fitted by themselves, say of what was accepted.
   void record_replications() {
     if (accepted_.empty()) return;
-    if (const auto elsewhere = fit_elsewhere_now())
+    if (const auto& elsewhere = fit_elsewhere_now())
       for (const Accepted& a : accepted_)
         if (EffectTrial* trial = trial_of(a.candidate))
           trial->replication = replication(current().job, current().fit, *elsewhere, a.candidate);
@@ -587,16 +656,6 @@ class EffectSelector {
     result_.models = std::move(models);
   }
 
-  /// Replaces the first accepted effect that has a clearly better rival.
-  bool try_swap() {
-    if (accepted_.empty() || swapped_) return false;
-    swapped_ = true;
-    return try_rivals(false);
-  }
-
-  /// Whether a rival explains the data as well as an accepted effect, now that all else is known.
-  void record_rivals() { try_rivals(true); }
-
   /// An effect that has an equal is not accepted: neither silently.
   void drop_undecided() {
     std::set<std::size_t, std::greater<>> places;
@@ -636,42 +695,47 @@ class EffectSelector {
     }
   }
 
-  bool try_rivals(bool only_record) {
+  /// Fits those of an accepted effect's rivals that `counts` in its place, from where all else is.
+  template <class Counts>
+  std::vector<ExtendedModel> fit_rivals(std::size_t place, Counts&& counts) {
+    constexpr std::size_t kMost = 8;
+    std::vector<Rival> rivals = accepted_[place].rivals;
+    std::erase_if(rivals, [&](const Rival& rival) {
+      return !counts(rival.candidate) || std::ranges::any_of(accepted_, [&](const Accepted& other) {
+        return same_effect(other.candidate, rival.candidate);
+      });
+    });
+    std::vector<ExtendedModel> list(std::min(rivals.size(), kMost));
+    if (list.empty()) return list;
+    const Job others = job_with_accepted(declared_job(), place);
+    parallel_for(list.size(), [&](std::size_t i) {
+      const Rival& rival = rivals[i];
+      list[i] = fit_extended_model(others, rival.candidate,
+                                   rival.others.empty() ? initial_values(others) : rival.others,
+                                   rival.values.strengths, rival.values.shapes, context_);
+    });
+    std::erase_if(list, [](const ExtendedModel& e) { return !e.fit.usable; });
+    return list;
+  }
+
+  /// By how much it explains the recordings worse than the present model.
+  double loss_with(const ExtendedModel& e) {
+    return bic_difference(residual_series(current().job, current().fit), current().job.free.size(),
+                          e.residuals, e.job.free.size());
+  }
+
+  /// Replaces the first accepted effect that has a clearly better rival.
+  bool try_swap() {
+    if (accepted_.empty() || swapped_) return false;
+    swapped_ = true;
     for (std::size_t a = 0; a < accepted_.size(); ++a) {
       Accepted& accepted = accepted_[a];
-      if (only_record) add_alternatives(accepted);
       if (accepted.rivals.empty()) continue;
-      const SelectionStep reduced = without(a);
-      const auto best = residual_series(current().job, current().fit);
-      std::vector<ExtendedModel> list(std::min<std::size_t>(accepted.rivals.size(), 8));
-      report_progress("any rivals of " + accepted.candidate.name + "?");
-      parallel_for(list.size(), [&](std::size_t i) {
-        const Rival& rival = accepted.rivals[i];
-        list[i] = fit_extended_model(reduced.job, rival.candidate,
-                                     rival.others.empty() ? values_of(reduced.fit) : rival.others,
-                                     rival.values.strengths, rival.values.shapes, context_);
-      });
-      for (std::size_t i = 0; i < list.size(); ++i) {
-        ExtendedModel& e = list[i];
-        if (!e.fit.usable) continue;
-        const double loss =
-            bic_difference(best, current().job.free.size(), e.residuals, e.job.free.size());
-        const bool present = std::ranges::any_of(accepted_, [&](const Accepted& other) {
-          return same_effect(other.candidate, e.candidate);
-        });
-        if (present) continue;
-        if (only_record) {
-          const bool simpler = e.candidate.parameters() <= accepted.candidate.parameters();
-          // A clock that is off has precedence: no part of the machine is its equal.
-          const bool is_behind = accepted.candidate.is_timing && !e.candidate.is_timing;
-          if (is_clearly_worse(loss) || !simpler || is_behind) continue;
-          if (trial_of(e.candidate) == nullptr) record_trial(e, &e);
-          rival_pairs_.push_back({a, e.candidate, fitted_model(e.job, e.fit)});
-          continue;
-        }
-        if (!is_clearly_worse(-loss)) continue;
-        const auto before = residual_series(reduced.job, reduced.fit);
-        judge(e, before);
+      report_progress("any better than " + accepted.candidate.name + "?");
+      for (ExtendedModel& e : fit_rivals(a, [](const Candidate&) { return true; })) {
+        if (!is_clearly_worse(-loss_with(e))) continue;
+        const SelectionStep& reduced = without(a);
+        judge(e, residual_series(reduced.job, reduced.fit));
         if (e.rejection) continue;
         if (EffectTrial* old = trial_of(accepted.candidate)) {
           old->decision = Decision::rejected;
@@ -691,6 +755,28 @@ class EffectSelector {
     return false;
   }
 
+  /// Whether a rival explains the data as well as an accepted effect, now that all else is known.
+  void record_rivals() {
+    if (!accepted_.empty()) report_progress("any equals?");
+    for (Accepted& accepted : accepted_) add_alternatives(accepted);
+    std::vector<std::vector<ExtendedModel>> rivals(accepted_.size());
+    parallel_for(accepted_.size(), [&](std::size_t a) {
+      const Candidate& chosen = accepted_[a].candidate;
+      rivals[a] = fit_rivals(a, [&](const Candidate& rival) {
+        // A clock that is off has precedence: no part of the machine is its equal.
+        const bool is_behind = chosen.is_timing && !rival.is_timing;
+        return !is_behind && rival.parameters() <= chosen.parameters();
+      });
+    });
+    for (std::size_t a = 0; a < accepted_.size(); ++a) {
+      for (const ExtendedModel& e : rivals[a]) {
+        if (is_clearly_worse(loss_with(e))) continue;
+        if (trial_of(e.candidate) == nullptr) record_trial(e, &e);
+        rival_pairs_.push_back({a, e.candidate, fitted_model(e.job, e.fit)});
+      }
+    }
+  }
+
   void finish();
   std::vector<std::string> small_effects() const;
   void decide();
@@ -705,6 +791,9 @@ class EffectSelector {
   std::vector<RivalPair> rival_pairs_;
   std::vector<Candidate> degenerate_;  ///< not to be tried again
   std::size_t tried_ = 1;
+  Neighbours neighbours_;
+  /// Of the current model, fitted to every second stretch, once an effect was tried so.
+  std::optional<std::vector<ResidualSeries>> stretches_before_;
   int round_ = 0;
   bool swapped_ = false;
 };

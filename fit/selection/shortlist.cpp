@@ -40,7 +40,7 @@ std::vector<ShortlistEntry> best_of(const ScoreTest& test, std::size_t length) {
                       : effects >= 2 * length || (effects >= length && score.gain < kNearly * best);
     beyond = beyond || (taken.size() >= kFirst && score.gain < kWorth * best);
     // A clock that is a little off is heard before anything else is blamed.
-    if (beyond && !candidate.is_timing) continue;
+    if (beyond && !(candidate.is_timing && score.gain >= kWorth * best)) continue;
     if (std::ranges::any_of(
             taken, [&](const ShortlistEntry& p) { return same_effect(p.candidate, candidate); }))
       continue;
