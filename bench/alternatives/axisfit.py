@@ -79,6 +79,11 @@ def curve(of):
     return lambda k, p: -spline([p.get(f"c{i}", 0.0) for i in range(1, 17)], of(k), p["from"], p["to"])
 
 
+def dahl(k, p):
+    build_up = hysteresis(k, p["l_d"])
+    return p["F_d"] * build_up + p.get("B_d", 0.0) * k.v * (1.0 - build_up * k.direction)
+
+
 # Force in N that the drive needs for the effect.
 LAWS = {
     "coulomb_friction": lambda k, p: p["F_c"] * k.direction,
@@ -87,12 +92,21 @@ LAWS = {
     "directional_friction": lambda k, p: p.get("dB_a", 0.0) * np.abs(k.v)
     + p.get("dF_c", 0.0) * np.abs(k.direction),
     "stribeck_friction": lambda k, p: p["F_st"] * k.direction
-    * np.exp(-(np.abs(k.v) / p["v_st"]) ** p.get("n_st", 1.0)),
+    * np.exp(-(np.abs(k.v) / p["v_st"]) ** p.get("n", 1.0)),
     "position_friction": lambda k, p: (p.get("G_c", 0.0) * k.y + p.get("G_q", 0.0) * k.y**2)
     * k.direction + p.get("G_b", 0.0) * k.y * k.v,
     "friction_bump": lambda k, p: p["F_b"] * k.direction * np.exp(-(((k.y - p["y_b"]) / p["w_b"]) ** 2)),
     "load_friction": lambda k, p: p["mu"] * np.abs(k.force) * k.direction,
-    "dahl_friction": lambda k, p: p["F_d"] * hysteresis(k, p["l_d"]),
+    "quadratic_load_friction": lambda k, p: p["mu_q"] * k.force**2 * k.direction,
+    "stribeck_load_friction": lambda k, p: p["mu_st"] * np.abs(k.force) * k.direction
+    * np.exp(-np.abs(k.v) / p["v_l"]),
+    "dahl_friction": dahl,
+    "second_dahl_friction": dahl,
+    "warming_friction": lambda k, p: p["F_w"] * k.direction * np.exp(-k.time / p["t_w"]),
+    "warming_grease": lambda k, p: p["B_w"] * k.v * np.exp(-k.time / p["t_b"]),
+    "running_in_friction": lambda k, p: p["F_r"] * k.direction
+    * np.exp(-np.concatenate([[0.0], np.cumsum(np.abs(np.diff(k.y)))]) / p["l_r"]),
+    "pendulum_gravity": lambda k, p: p.get("G_s", 0.0) * np.sin(k.y) + p.get("G_c", 0.0) * np.cos(k.y),
     "stroke_spring": lambda k, p: p["k_s"] * k.y,
     "periodic_force": lambda k, p: -sum(
         p.get(f"F_{part}{n}", 0.0) * of(2 * np.pi * n * k.y / p["period"])
@@ -102,8 +116,10 @@ LAWS = {
     "force_over_velocity": curve(lambda k: k.v),
     "force_over_position": curve(lambda k: k.y),
     "force_over_time": curve(lambda k: k.time),
+    "friction_over_velocity": lambda k, p: -curve(lambda k: np.abs(k.v))(k, p) * k.direction,
+    "friction_over_position": lambda k, p: -curve(lambda k: k.y)(k, p) * k.direction,
 }  # fmt: skip
-ELSEWHERE = ("torque_fade", "drive_lag")  # they change the force that arrives
+ELSEWHERE = ("torque_fade", "force_droop", "drive_lag")  # they change the force that arrives
 
 
 def grouped(values):
@@ -137,6 +153,8 @@ def lacking(values, recording):
     force = shifted(k.force, k.time, -base.get("T_d", 0.0))
     if "torque_fade" in groups:
         force = force / (1.0 + groups["torque_fade"]["c_t"] * k.time)
+    if "force_droop" in groups:
+        force = force * (1.0 - groups["force_droop"]["c_f"] * np.abs(force))
     if "drive_lag" in groups and groups["drive_lag"]["T_l"] > 0.0:
         follow = signal.cont2discrete(([1.0], [groups["drive_lag"]["T_l"], 1.0]), 1.0 / k.rate,
                                       "bilinear")  # fmt: skip

@@ -2,8 +2,7 @@
 
 `right` are the names in the catalogue for this physics, `related` those of its nearest relatives: an
 effect that is the same to first order (a lag and a dead time), or the curve over the same variable.
-Names that the catalogue does not have yet are listed as well, so that the judgement need not change
-with it. Everything else that is claimed is a wrong structure.
+Everything else that is claimed is a wrong structure.
 """
 import dataclasses
 
@@ -74,11 +73,12 @@ KINDS = {
         lambda m, s, u, f: {"bump": s, "bump_at": 0.3 * (u[0] - 0.5),
                             "bump_width": between(0.02, 0.1, u[1])}, setups=("servo",)),
     "load": Kind(
-        "dry friction by the drive force, rounded at zero", frozenset({"load_friction"}), frozenset(),
+        "dry friction by the drive force, rounded at zero", frozenset({"load_friction"}),
+        frozenset({"quadratic_load_friction", "stribeck_load_friction"}),
         lambda m, s, u, f: {"load": s}, is_force=False, most=0.9),
     "presliding": Kind(
         "dry friction with a bristle (LuGre)", frozenset({"dahl_friction"}),
-        frozenset({"presliding", "lugre_friction", "maxwell_slip", "generalised_maxwell_slip"}),
+        frozenset({"second_dahl_friction"}),
         lambda m, s, u, f: {"bristle": s}, start=3e-4, is_force=False, most=0.02),
     "spring": Kind(
         "a spring that stiffens", frozenset({"stroke_spring"}), OVER_STROKE,
@@ -94,12 +94,12 @@ KINDS = {
         lambda m, s, u, f: {"mass": m.mass * (1.0 + s)}, is_force=False, secret="M", most=2.0),
     "elastic": Kind(
         "a part of the mass on a spring", frozenset({"elastic_mode"}),
-        frozenset({"compliance", "backlash"}),
+        frozenset({"soft_transmission", "backlash"}),
         lambda m, s, u, f: {"motor_share": 1.0 - s, **coupled(m, s, between(12.0, 30.0, u[0]), 0.03)},
         0.2, is_force=False, setups=("servo",), most=0.7),
     "backlash": Kind(
-        "a gap between motor and load", frozenset({"backlash", "H"}),
-        frozenset({"elastic_mode", "compliance"}),
+        "a gap between motor and load", frozenset({"soft_transmission", "backlash"}),
+        frozenset({"elastic_mode"}),
         lambda m, s, u, f: {"motor_share": 0.5, "gap": s, **coupled(m, 0.5, 60.0, 0.2)},
         1e-4, is_force=False, setups=("servo",), most=5e-3),
     "lag": Kind(
@@ -109,17 +109,16 @@ KINDS = {
         "a drive that acts late", frozenset({"dead_time"}), TIMING,
         lambda m, s, u, f: {"dead_time": s}, 2e-3, is_force=False, most=0.03),
     "saturation": Kind(
-        "a force that saturates smoothly: not in the catalogue",
-        frozenset({"torque_droop", "force_droop", "saturation"}), frozenset(),
+        "a force that saturates smoothly",
+        frozenset({"force_droop"}), frozenset(),
         lambda m, s, u, f: {"saturation": s / f}, 0.5, is_force=False, most=2.0, power=2.0),
     "fade": Kind(
         "a motor that loses force as it warms up", frozenset({"torque_fade"}), frozenset(),
         lambda m, s, u, f: {"fade": s, "fade_time": between(2.0, 10.0, u[0])}, 0.1, is_force=False,
         most=0.9),
     "warming": Kind(
-        "dry friction that falls as it warms up", frozenset({"friction_fade", "friction_over_time",
-                                                             "warming_friction"}),
-        frozenset({"force_over_time"}),
+        "dry friction that falls as it warms up", frozenset({"warming_friction"}),
+        frozenset({"running_in_friction", "warming_grease", "force_over_time"}),
         lambda m, s, u, f: {"warming": s, "warming_time": between(1.0, 5.0, u[0])}, 0.3,
         is_force=False, most=0.95),
     "disturbance": Kind(

@@ -118,11 +118,11 @@ def candidate_terms(k, s, declared):
               ("stroke_spring", "x", x), ("position_friction", "x sgn v", x * sgn),
               ("position_friction", "x^2 sgn v", x * x * sgn), ("position_friction", "x v", x * v),
               ("load_friction", "|F| sgn v", np.abs(f) * sgn), ("torque_fade", "F t", f * t),
-              ("friction_fade", "t sgn v", t * sgn)]  # fmt: skip
+              ("warming_friction", "t sgn v", t * sgn)]  # fmt: skip
     smooth = low_pass(f, CUTOFF, k.rate)
     terms.append(("drive_lag", "dF/dt", slope(t, smooth)))
     terms.append(("elastic_mode", "d2a/dt2", slope(t, slope(t, k.a))))
-    terms.append(("saturation", "F|F|", f * np.abs(f)))
+    terms.append(("force_droop", "F|F|", f * np.abs(f)))
     for part in (0.01, 0.03, 0.1, 0.3):
         terms.append(("stribeck_friction", f"exp(-|v|/{part * s.speed:.3g}) sgn v",
                       np.exp(-np.abs(v) / (part * s.speed)) * sgn))  # fmt: skip
