@@ -99,6 +99,7 @@ ProgressLine::~ProgressLine() {
 void ProgressLine::update(Progress progress) {
   const std::lock_guard lock(mutex_);
   // A count that goes on is that of the same phase, whatever it deals with at the moment.
+  if (!progress.finished.empty()) finished_ += progress.finished + "\n";
   if (progress.of != progress_.of || progress.done < progress_.done) phase_begin_ = Clock::now();
   progress_ = std::move(progress);
 }
@@ -109,10 +110,11 @@ void ProgressLine::run(const std::stop_token& end) {
     tick_.wait_for(lock, end, std::chrono::milliseconds(100), [] { return false; });
     if (end.stop_requested()) return;
     std::string text = text_now();
-    if (text == painted) continue;
+    const std::string stays = text.empty() ? "" : std::exchange(finished_, "");
+    if (text == painted && stays.empty()) continue;
     lock.unlock();  // a terminal that is held does not hold the work
     line_is_shown = true;
-    put(fmt::format("{}{}", kClear, text));
+    put(fmt::format("{}{}{}", kClear, stays, text));
     painted = std::move(text);
     lock.lock();
   }

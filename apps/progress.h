@@ -29,8 +29,9 @@ std::string progress_text(const Progress& progress, double elapsed, std::optiona
                           std::size_t width);
 
 /// Shows the latest of what it is told on standard error, until it goes away and takes the line
-/// with it. Paints from a thread of its own, at most ten times a second and only what has changed,
-/// so that the clock runs on while there is nothing to tell. Silent for the first second.
+/// with it; what finished stays. Paints from a thread of its own, at most ten times a second and
+/// only what has changed, so that the clock runs on while there is nothing to tell. Silent for the
+/// first second.
 class ProgressLine {
  public:
   explicit ProgressLine(bool visible);
@@ -49,7 +50,8 @@ class ProgressLine {
   const Clock::time_point begin_ = Clock::now();
   std::mutex mutex_;
   std::condition_variable_any tick_;
-  Progress progress_;                       ///< guarded by the mutex, as is the next
+  Progress progress_;                       ///< guarded by the mutex, as are the next two
+  std::string finished_;                    ///< lines that are to stay
   Clock::time_point phase_begin_ = begin_;  ///< of the parts that are counted
   std::jthread painter_;                    ///< not running unless visible
 };

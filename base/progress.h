@@ -13,6 +13,7 @@ struct Progress {
   int of = 0;         ///< parts that it has; zero where it has none
   /// Reduced chi-square of the best model so far; not a number before there is one.
   double best = std::numeric_limits<double>::quiet_NaN();
+  std::string finished{};  ///< what has just ended and how, to be kept in view; mostly empty
 };
 
 /// Called from several threads, one at a time.

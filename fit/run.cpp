@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "fit/estimation/guesses.h"
+#include "fit/estimation/hold.h"
 
 namespace axisfit {
 namespace {
@@ -134,6 +135,14 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
       result.scores.push_back(std::move(score));
     }
   FitResult& last = result.selection ? result.selection->result.fit : result.first;
+  if (!result.interrupted) {
+    if (context.progress) context.progress({.phase = "does the hold matter?"});
+    try {
+      allow_for_hold(result.job(), last, context);
+    } catch (const Interrupted&) {
+      result.interrupted = true;
+    }
+  }
   result.grade = grade_of(result.job(), last, result.diagnosis);
   // Something is missing, though it cannot be told what.
   if (result.grade.grade == Grade::explained && result.selection &&

@@ -1,6 +1,9 @@
 #include "fit/selection/select_effects.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <mutex>
@@ -228,7 +231,20 @@ class EffectSelector {
   /// size of the residual is that of the noise, an effect may yet be hidden in it: then only those
   /// are refitted whose score is beyond chance.
   bool round(bool curves, double chance = kChance) {
+    const auto begin = std::chrono::steady_clock::now();
     ++round_;
+    const bool passed = try_round(curves, chance);
+    if (context_.progress) {
+      const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+      context_.progress({.phase = "search",
+                         .best = current().fit.reduced_chi_square,
+                         .finished = fmt::format("round {}, {:.1f} s: {}", round_, time.count(),
+                                                 passed ? current().added : "none")});
+    }
+    return passed;
+  }
+
+  bool try_round(bool curves, double chance) {
     stretches_before_.reset();
     report_progress("scoring effects");
     const bool is_complete = explained();
@@ -493,20 +509,22 @@ class EffectSelector {
 
   const Job& declared_job() const { return result_.models.front().job; }
 
-  /// Takes away what is not needed any more. What the recordings to validate tell alike beside all
-  /// other effects is.
+  /// Takes away what is not needed any more, or never was but to a simulation that tracks. Where
+  /// the fit stays far from the noise, what the recordings to validate tell alike beside all other
+  /// effects is needed.
   void eliminate_backward() {
-    if (accepted_.size() < 2) return;
-    for (std::size_t a = 0; a < accepted_.size() && accepted_.size() > 1;) {
+    for (std::size_t a = 0; a < accepted_.size();) {
       const Candidate& candidate = accepted_[a].candidate;
-      if (is_alike_elsewhere(candidate)) {
+      const bool is_far = !explained();
+      const auto is_plain = [&](const Candidate& c) { return is_far && is_alike_elsewhere(c); };
+      if (is_plain(candidate)) {
         ++a;
         continue;
       }
       report_progress("is " + candidate.name + " necessary?");
       std::vector<std::size_t> doubted;
       for (std::size_t b = a; b < accepted_.size(); ++b)
-        if (!is_alike_elsewhere(accepted_[b].candidate)) doubted.push_back(b);
+        if (!is_plain(accepted_[b].candidate)) doubted.push_back(b);
       reduce_by(doubted);
       SelectionStep reduced = without(a);
       const Improvement gain = improvement(residual_series(reduced.job, reduced.fit),

@@ -236,7 +236,7 @@ class Page {
                 drawing);
   }
 
-  static Html badge(const ParameterResult& p) {
+  static Html badge(const ParameterResult& p, std::string_view unit) {
     const ParameterUncertainty& u = p.uncertainty;
     const auto kind = [&] {
       switch (u.verdict()) {
@@ -256,6 +256,7 @@ class Page {
         html(R"(<span class="badge {}">{}</span>)", kind(), std::string(verdict_name(u.verdict())));
     for (const GuessInfluence& guess : p.rests_on)
       all += html(" <small>{}</small>", guess_text(guess));
+    if (p.hold) all += html(" <small>{}</small>", hold_text(*p.hold, unit));
     return all;
   }
 
@@ -276,7 +277,7 @@ class Page {
                                                : "-") +
                   html(R"(<td class="unit">{}</td>)", std::string(quantity.unit)) +
                   number_cell(number(as_specified(run_result_, i).initial)) +
-                  cell(interval_bar(i)) + cell(badge(p)));
+                  cell(interval_bar(i)) + cell(badge(p, quantity.unit)));
     }
     Html all = table({"Parameter", "#value", "#standard error", "#95 % interval", "Unit",
                       "#initial", "Within its bounds", "Verdict"},

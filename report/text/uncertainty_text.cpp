@@ -39,12 +39,19 @@ std::string correlation_text(const FitResult& result) {
   return paragraph(fmt::format("Strongly correlated: {}{}.", fmt::join(names, ", "), more), 2);
 }
 
-/// The estimates whose error bars leave out that a value beneath them is a guess.
-std::string guesses_text(const FitResult& result) {
+/// The estimates whose error bars leave out that a value beneath them is a guess, or allow for what
+/// another hold makes of them.
+std::string remarks_text(const Job& job, const FitResult& result) {
   std::string text;
-  for (const ParameterResult& p : result.parameters)
+  for (std::size_t i = 0; i < result.parameters.size(); ++i) {
+    const ParameterResult& p = result.parameters[i];
     for (const GuessInfluence& guess : p.rests_on)
       text += paragraph(fmt::format("{}: {}.", p.name, guess_text(guess)), 2);
+    if (p.hold)
+      text += paragraph(fmt::format("{}: {}.", p.name, hold_text(*p.hold, unit_of(job, i))), 2);
+  }
+  if (const std::string better = better_hold_text(result); !better.empty())
+    text += paragraph(better + ".", 2);
   return text;
 }
 
@@ -83,7 +90,7 @@ std::string uncertainty_text(const Job& job, const FitResult& result) {
     noise += fmt::format(", and {}, which makes up to {:.2g} % of their squares",
                          input_noise_text(job), 100.0 * result.input_part);
   return paragraph("Standard errors and intervals assume " + noise + ".", 2) +
-         guesses_text(result) + correlation_text(result) +
+         remarks_text(job, result) + correlation_text(result) +
          identifiability_text(result.identifiability);
 }
 

@@ -318,6 +318,20 @@ std::string motion_text(const Motion& motion) {
   return std::visit([](const auto& m) { return text_of(m); }, motion);
 }
 
+std::string hold_text(const HoldShift& hold, std::string_view unit) {
+  return fmt::format(
+      "{} where the simulation is held at {:.3g} 1/s instead, which its error allows for",
+      with_unit(fmt::format("{:.4g}", hold.value), unit), hold.observer_gain);
+}
+
+std::string better_hold_text(const FitResult& fit) {
+  if (!fit.better_hold) return "";
+  return fmt::format(
+      "Held at {0:.3g} 1/s, the fit predicts the recordings to validate better, simulated freely: "
+      "set 'observer: {{fixed: {0:.3g} 1/s}}'",
+      *fit.better_hold);
+}
+
 std::string guess_text(const GuessInfluence& guess) {
   constexpr double kWhole = 0.005;  // of an elasticity of one
   if (std::abs(guess.elasticity - 1.0) < kWhole)
