@@ -8,8 +8,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "fit/estimation/gain_sensitivity.h"
 #include "fit/estimation/guesses.h"
-#include "fit/estimation/hold.h"
 
 namespace axisfit {
 namespace {
@@ -136,9 +136,9 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
     }
   FitResult& last = result.selection ? result.selection->result.fit : result.first;
   if (!result.interrupted) {
-    if (context.progress) context.progress({.phase = "does the hold matter?"});
+    if (context.progress) context.progress({.phase = "does the observer gain matter?"});
     try {
-      allow_for_hold(result.job(), last, context);
+      allow_for_observer_gain(result.job(), last, context);
     } catch (const Interrupted&) {
       result.interrupted = true;
     }

@@ -121,8 +121,9 @@ Json estimate_json(const ParameterResult& p) {
                 {"confidence_interval", interval_json(u)}};
   for (const GuessInfluence& guess : p.rests_on)
     estimate["rests_on"].push_back({{"name", guess.name}, {"elasticity", guess.elasticity}});
-  if (p.hold)
-    estimate["hold"] = {{"observer_gain", p.hold->observer_gain}, {"value", p.hold->value}};
+  if (p.gain_shift)
+    estimate["at_other_gain"] = {{"observer_gain", p.gain_shift->observer_gain},
+                                 {"value", p.gain_shift->value}};
   return estimate;
 }
 
@@ -478,7 +479,7 @@ Json result_json(const RunResult& run_result) {
                    {"iterations", fit.iterations},
                    {"seed", run_result.baseline.options.seed},
                    {"wall_time_s", run_result.wall_time}});
-  if (fit.better_hold) json["better_observer_gain"] = *fit.better_hold;
+  if (fit.better_gain) json["better_observer_gain"] = *fit.better_gain;
   return json;
 }
 

@@ -51,8 +51,8 @@ struct GuessInfluence {
   double elasticity = 0.0;  ///< d ln estimate / d ln guess
 };
 
-/// What an estimate is where the simulation is held to the recording at another rate.
-struct HoldShift {
+/// What an estimate is at another observer gain.
+struct GainShift {
   double observer_gain = 0.0;  ///< 1/s
   double value = 0.0;
 };
@@ -62,8 +62,8 @@ struct ParameterResult {
   double value = 0.0;
   ParameterUncertainty uncertainty;
   std::vector<GuessInfluence> rests_on{};  ///< see guesses.h; found by run()
-  /// Where it differs by more than the errors say, which then count that in; see hold.h, by run().
-  std::optional<HoldShift> hold{};
+  /// Where it differs by more than the errors say, which then count that in; see gain_sensitivity.h.
+  std::optional<GainShift> gain_shift{};
 };
 
 /// How one start of a multistart ended.
@@ -123,8 +123,8 @@ struct FitResult {
   double input_part = 0.0;          ///< that noise of the input makes, see uncertainty.h
   Identifiability identifiability;  ///< at the solution
   double observer_gain = 0.0;       ///< of the last stage
-  /// 1/s, at which what was estimated predicts the recordings to validate better; see hold.h.
-  std::optional<double> better_hold{};
+  /// 1/s, at which what was estimated predicts the recordings to validate better; see gain_sensitivity.h.
+  std::optional<double> better_gain{};
   int iterations = 0;               ///< of the best start, all stages
   std::vector<Stage> stages;        ///< of the best start
   std::vector<StartResult> starts;

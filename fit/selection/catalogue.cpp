@@ -72,6 +72,7 @@ Candidate candidate_of(const EffectInfo& effect, SearchEntry entry) {
   candidate.settings = std::move(entry.settings);
   candidate.shapes_are_free = !entry.is_curve;
   candidate.probes = std::move(entry.probes);
+  candidate.extends = entry.extends;
   candidate.is_curve = entry.is_curve;
   candidate.has_phase = entry.has_phase;
   return candidate;
@@ -114,6 +115,11 @@ std::pair<double, double> range_of_place(const Candidate& candidate, std::size_t
 }
 
 }  // namespace
+
+bool is_part_of(const Candidate& part, const Candidate& whole) {
+  return part.extends == whole.name && whole.extends.empty() &&
+         quantity_list()[part.strengths.front()].group == whole.name;
+}
 
 std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
   scales.pinion_radius = job.model.axis.r_g;

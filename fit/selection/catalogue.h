@@ -29,9 +29,10 @@ struct Candidate {
   /// Strengths at which the score test looks instead of at zero, where the derivative there says
   /// little: that of a lag or delay holds while it is shorter than anything else. Empty: none.
   std::vector<double> probes = {};
-  bool is_curve = false;   ///< a curve: it fits whatever no other effect explains
-  bool has_phase = false;  ///< the strengths are sine and cosine of a phase
-  bool is_timing = false;  ///< a delay of the input or of an instrument
+  std::string extends = {};  ///< the effect beside which alone it is offered; empty: any model
+  bool is_curve = false;     ///< a curve: it fits whatever no other effect explains
+  bool has_phase = false;    ///< the strengths are sine and cosine of a phase
+  bool is_timing = false;    ///< a delay of the input or of an instrument
   /// A value of the axis file that is not free: the hypothesis is that it is another.
   bool is_constant = false;
 
@@ -44,6 +45,9 @@ struct Candidate {
 inline bool same_effect(const Candidate& a, const Candidate& b) {
   return a.strengths == b.strengths;
 }
+
+/// Whether a candidate is a part of another's effect that does nothing without it.
+bool is_part_of(const Candidate& part, const Candidate& whole);
 
 /// All candidates that the job's axis can have, its recordings could show, and its model lacks:
 /// effects, instruments that are not as they should be, and constants that are not what the axis

@@ -176,7 +176,7 @@ class EffectSelector {
         trial->rejection = {.test = Rejection::Test::bound, .parameter = shape};
       }
       degenerate_.push_back(candidate);
-      accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(a));
+      erase_accepted(a);
       rebuild(std::move(reduced));
       return true;
     }
@@ -462,7 +462,20 @@ class EffectSelector {
     return neighbours_;
   }
 
-  /// The model without one accepted effect, refitted.
+  /// Strikes an accepted effect off the list, and what is part of it.
+  void erase_accepted(std::size_t place) {
+    const Candidate whole = accepted_[place].candidate;
+    std::erase_if(accepted_, [&](const Accepted& a) {
+      if (!is_part_of(a.candidate, whole)) return same_effect(a.candidate, whole);
+      if (EffectTrial* trial = trial_of(a.candidate)) {
+        trial->decision = Decision::rejected;
+        trial->reason = Reason::not_needed;
+      }
+      return true;
+    });
+  }
+
+  /// The model without one accepted effect, and what is part of it, refitted.
   const SelectionStep& without(std::size_t index) {
     std::optional<SelectionStep>& reduced = neighbours().reduced[index];
     if (!reduced) reduced = reduce(index);
@@ -486,8 +499,8 @@ class EffectSelector {
     for (std::size_t i = 0; i < job.free.size(); ++i)
       values.push_back(current().fit.parameters[i].value);
     for (std::size_t a = 0; a < accepted_.size(); ++a) {
-      if (a == except) continue;
       const Candidate& candidate = accepted_[a].candidate;
+      if (except && (a == *except || is_part_of(candidate, accepted_[*except].candidate))) continue;
       const CandidateValues own = candidate_values(current().job, current().fit, candidate);
       job = with_candidate(job, candidate, values, own.strengths, own.shapes);
       values = initial_values(job);
@@ -538,7 +551,7 @@ class EffectSelector {
         trial->decision = Decision::rejected;
         trial->reason = Reason::not_needed;
       }
-      accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(a));
+      erase_accepted(a);
       rebuild(std::move(reduced));
       a = 0;
     }
@@ -567,7 +580,7 @@ class EffectSelector {
       }
       if (!least.fit.usable) return;
       reject_for_share(accepted_[place].candidate, percent);
-      accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(place));
+      erase_accepted(place);
       rebuild(std::move(least));
     }
   }
@@ -695,7 +708,7 @@ class EffectSelector {
     }
     for (const std::size_t place : places) {
       SelectionStep reduced = without(place);
-      accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(place));
+      erase_accepted(place);
       rebuild(std::move(reduced));
     }
   }
@@ -761,11 +774,9 @@ class EffectSelector {
           old->other = e.candidate.name;
         }
         record_trial(e, &e);
-        accepted.candidate = e.candidate;
-        accepted.rivals.clear();
-        // Order: the exchanged effect goes last, where its parameters are.
-        std::rotate(accepted_.begin() + static_cast<std::ptrdiff_t>(a),
-                    accepted_.begin() + static_cast<std::ptrdiff_t>(a) + 1, accepted_.end());
+        // The exchanged effect goes last, where its parameters are.
+        erase_accepted(a);
+        accepted_.push_back({e.candidate, {}});
         rebuild({e.candidate.name, std::move(e.job), std::move(e.fit)});
         return true;
       }

@@ -256,7 +256,7 @@ class Page {
         html(R"(<span class="badge {}">{}</span>)", kind(), std::string(verdict_name(u.verdict())));
     for (const GuessInfluence& guess : p.rests_on)
       all += html(" <small>{}</small>", guess_text(guess));
-    if (p.hold) all += html(" <small>{}</small>", hold_text(*p.hold, unit));
+    if (p.gain_shift) all += html(" <small>{}</small>", gain_shift_text(*p.gain_shift, unit));
     return all;
   }
 

@@ -40,17 +40,18 @@ std::string correlation_text(const FitResult& result) {
 }
 
 /// The estimates whose error bars leave out that a value beneath them is a guess, or allow for what
-/// another hold makes of them.
+/// another observer gain makes of them.
 std::string remarks_text(const Job& job, const FitResult& result) {
   std::string text;
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     const ParameterResult& p = result.parameters[i];
     for (const GuessInfluence& guess : p.rests_on)
       text += paragraph(fmt::format("{}: {}.", p.name, guess_text(guess)), 2);
-    if (p.hold)
-      text += paragraph(fmt::format("{}: {}.", p.name, hold_text(*p.hold, unit_of(job, i))), 2);
+    if (p.gain_shift)
+      text += paragraph(
+          fmt::format("{}: {}.", p.name, gain_shift_text(*p.gain_shift, unit_of(job, i))), 2);
   }
-  if (const std::string better = better_hold_text(result); !better.empty())
+  if (const std::string better = better_gain_text(result); !better.empty())
     text += paragraph(better + ".", 2);
   return text;
 }

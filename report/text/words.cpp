@@ -318,18 +318,17 @@ std::string motion_text(const Motion& motion) {
   return std::visit([](const auto& m) { return text_of(m); }, motion);
 }
 
-std::string hold_text(const HoldShift& hold, std::string_view unit) {
-  return fmt::format(
-      "{} where the simulation is held at {:.3g} 1/s instead, which its error allows for",
-      with_unit(fmt::format("{:.4g}", hold.value), unit), hold.observer_gain);
+std::string gain_shift_text(const GainShift& shift, std::string_view unit) {
+  return fmt::format("{} at an observer gain of {:.3g} 1/s, which its error allows for",
+                     with_unit(fmt::format("{:.4g}", shift.value), unit), shift.observer_gain);
 }
 
-std::string better_hold_text(const FitResult& fit) {
-  if (!fit.better_hold) return "";
+std::string better_gain_text(const FitResult& fit) {
+  if (!fit.better_gain) return "";
   return fmt::format(
-      "Held at {0:.3g} 1/s, the fit predicts the recordings to validate better, simulated freely: "
-      "set 'observer: {{fixed: {0:.3g} 1/s}}'",
-      *fit.better_hold);
+      "Fitted at an observer gain of {0:.3g} 1/s, the model predicts the recordings to validate "
+      "better in the free run: set 'observer: {{fixed: {0:.3g} 1/s}}'",
+      *fit.better_gain);
 }
 
 std::string guess_text(const GuessInfluence& guess) {

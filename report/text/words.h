@@ -33,10 +33,10 @@ std::string motion_text(const Motion& motion);
 /// "known only as a ratio to K_f, which is a guess"
 std::string guess_text(const GuessInfluence& guess);
 
-/// "157 N s/m where the simulation is held at 100 1/s instead, which its error allows for".
-std::string hold_text(const HoldShift& hold, std::string_view unit);
-/// What to do where another hold predicts better; empty where none does.
-std::string better_hold_text(const FitResult& fit);
+/// "157 N s/m at an observer gain of 100 1/s, which its error allows for".
+std::string gain_shift_text(const GainShift& shift, std::string_view unit);
+/// What to do where another observer gain predicts better; empty where none does.
+std::string better_gain_text(const FitResult& fit);
 
 /// In which motion and signal two undecided effects differ, one sentence.
 std::string discrimination_text(const Discrimination& discrimination);

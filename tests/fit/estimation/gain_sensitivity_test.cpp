@@ -1,4 +1,4 @@
-#include "fit/estimation/hold.h"
+#include "fit/estimation/gain_sensitivity.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 namespace axisfit {
 namespace {
 
-/// 30 s of a slide's position, with or without dry friction that the job does not have, held at
+/// 30 s of a slide's position, with or without dry friction that the job does not have, tracked at
 /// 9 1/s.
-Job held_job(bool has_friction) {
+Job tracking_job(bool has_friction) {
   HiddenEffect friction = hidden_effect_named("coulomb_friction");
   if (!has_friction) friction.strengths[0].second = 0.0;
   Job job = two_recordings(slide(), slide(), {"M", "B_a"});
@@ -21,49 +21,49 @@ Job held_job(bool has_friction) {
   return job;
 }
 
-TEST(Hold, WidensWhatMovesWithIt) {
-  const Job job = held_job(true);
+TEST(GainSensitivity, WidensWhatMovesWithIt) {
+  const Job job = tracking_job(true);
   const FitResult before = estimate(job);
   FitResult after = before;
-  allow_for_hold(job, after);
+  allow_for_observer_gain(job, after);
   int moved = 0;
   for (std::size_t i = 0; i < after.parameters.size(); ++i) {
     const ParameterResult& p = after.parameters[i];
     EXPECT_EQ(p.value, before.parameters[i].value);
-    if (!p.hold) {
+    if (!p.gain_shift) {
       EXPECT_EQ(p.uncertainty.standard_error, before.parameters[i].uncertainty.standard_error);
       continue;
     }
     ++moved;
-    EXPECT_TRUE(p.hold->observer_gain == 3.0 || p.hold->observer_gain == 27.0);
-    EXPECT_GT(p.uncertainty.standard_error, std::abs(p.hold->value - p.value));
-    EXPECT_LT(p.uncertainty.lower, p.hold->value);
-    EXPECT_GT(p.uncertainty.upper, p.hold->value);
+    EXPECT_TRUE(p.gain_shift->observer_gain == 3.0 || p.gain_shift->observer_gain == 27.0);
+    EXPECT_GT(p.uncertainty.standard_error, std::abs(p.gain_shift->value - p.value));
+    EXPECT_LT(p.uncertainty.lower, p.gain_shift->value);
+    EXPECT_GT(p.uncertainty.upper, p.gain_shift->value);
   }
   EXPECT_GT(moved, 0);
 }
 
-TEST(Hold, LeavesACompleteModelAlone) {
-  const Job job = held_job(false);
+TEST(GainSensitivity, LeavesACompleteModelAlone) {
+  const Job job = tracking_job(false);
   const FitResult before = estimate(job);
   FitResult after = before;
-  allow_for_hold(job, after);
+  allow_for_observer_gain(job, after);
   for (std::size_t i = 0; i < after.parameters.size(); ++i) {
-    EXPECT_FALSE(after.parameters[i].hold) << after.parameters[i].name;
+    EXPECT_FALSE(after.parameters[i].gain_shift) << after.parameters[i].name;
     EXPECT_EQ(after.parameters[i].uncertainty.standard_error,
               before.parameters[i].uncertainty.standard_error);
   }
 }
 
-TEST(Hold, IsOfFixedObserversAlone) {
-  Job job = held_job(true);
+TEST(GainSensitivity, IsOfFixedObserversAlone) {
+  Job job = tracking_job(true);
   FitResult fit = estimate(job);
   job.options.observer = ObserverMode::continuation;
-  allow_for_hold(job, fit);
-  for (const ParameterResult& p : fit.parameters) EXPECT_FALSE(p.hold);
+  allow_for_observer_gain(job, fit);
+  for (const ParameterResult& p : fit.parameters) EXPECT_FALSE(p.gain_shift);
 }
 
-TEST(Hold, WidensIntervalsOnTheirScale) {
+TEST(GainSensitivity, WidensIntervalsOnTheirScale) {
   ParameterUncertainty known;
   known.determined = true;
   known.standard_error = 3.0;

@@ -1,4 +1,4 @@
-#include "fit/estimation/hold.h"
+#include "fit/estimation/gain_sensitivity.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@ namespace {
 constexpr std::array kFactors{1.0 / 3.0, 3.0};
 
 /// The fit at another gain, from where this one ended.
-FitResult fit_held(Job job, const FitResult& fit, double gain, const RunContext& context) {
+FitResult fit_at(Job job, const FitResult& fit, double gain, const RunContext& context) {
   const auto values = values_of(fit);
   for (std::size_t i = 0; i < values.size(); ++i)
     job.free[i].initial = std::clamp(values[i], job.free[i].lower, job.free[i].upper);
@@ -61,13 +61,13 @@ ParameterUncertainty widened(ParameterUncertainty known, double value, const Fre
   return known;
 }
 
-void allow_for_hold(const Job& job, FitResult& fit, const RunContext& context) {
+void allow_for_observer_gain(const Job& job, FitResult& fit, const RunContext& context) {
   if (job.options.observer != ObserverMode::fixed || !(fit.observer_gain > 0.0) || !fit.usable)
     return;
   const ThreadPool pool(job.options.threads);
   std::array<FitResult, kFactors.size()> others;
   parallel_for(others.size(), [&](std::size_t k) {
-    others[k] = fit_held(job, fit, kFactors[k] * fit.observer_gain, context);
+    others[k] = fit_at(job, fit, kFactors[k] * fit.observer_gain, context);
   });
   constexpr double kBetter = 0.8;  // of the error, not its square
   double least = kBetter * kBetter * free_running_error(job, fit).value_or(0.0);
@@ -75,7 +75,7 @@ void allow_for_hold(const Job& job, FitResult& fit, const RunContext& context) {
     if (!other.usable) continue;
     if (const auto error = free_running_error(job, other); error && *error < least) {
       least = *error;
-      fit.better_hold = other.observer_gain;
+      fit.better_gain = other.observer_gain;
     }
     for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
       ParameterResult& p = fit.parameters[i];
@@ -85,15 +85,16 @@ void allow_for_hold(const Job& job, FitResult& fit, const RunContext& context) {
       const double errors =
           std::hypot(p.uncertainty.standard_error, there.uncertainty.standard_error);
       constexpr double kErrors = 2.0;
-      if (move <= kErrors * errors || (p.hold && move <= std::abs(p.hold->value - p.value)))
+      if (move <= kErrors * errors ||
+          (p.gain_shift && move <= std::abs(p.gain_shift->value - p.value)))
         continue;
-      p.hold = HoldShift{other.observer_gain, there.value};
+      p.gain_shift = GainShift{other.observer_gain, there.value};
     }
   }
   for (std::size_t i = 0; i < fit.parameters.size(); ++i)
-    if (ParameterResult& p = fit.parameters[i]; p.hold)
+    if (ParameterResult& p = fit.parameters[i]; p.gain_shift)
       p.uncertainty =
-          widened(p.uncertainty, p.value, job.free[i], std::abs(p.hold->value - p.value));
+          widened(p.uncertainty, p.value, job.free[i], std::abs(p.gain_shift->value - p.value));
 }
 
 }  // namespace axisfit
