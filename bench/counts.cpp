@@ -1,14 +1,17 @@
 // counts [none|step|held]: what one evaluation costs, counted, not timed: steps, events and
 // allocations of the paper's step with five parameters, of the same held to its data, and of a
-// whole fit. With a name that work alone is done once, for a profiler; "none" of them.
+// whole fit; of a force with a dead time; and of a search for a missing effect. With a name that
+// work alone is done once, for a profiler; "none" of them.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
 #include "bench/allocations.h"
 #include "bench/speed/evaluation.h"
 #include "fit/estimation/estimate.h"
+#include "fit/selection/select_effects.h"
 
 namespace {
 
@@ -47,6 +50,59 @@ FitResult fit(const Rig& rig) {
   return estimate(job);
 }
 
+/// A mass that a force drives, 20 kg, with friction that falls with speed.
+Rig rubbing_mass() {
+  Rig rig;
+  rig.model.structure.drive = Drive::force_source;
+  rig.model.structure.transmission = Transmission::rigid;
+  rig.model.axis.r_g = 1.0;
+  rig.model.axis.K_f = 40.0;
+  rig.model.axis.M = 20.0;
+  rig.model.axis.B_a = 30.0;
+  rig.noise[index_of(Signal::velocity)] = 1e-3;
+  rig.model.structure.effects.set(*effect_named("stribeck_friction"));
+  *members(rig.model)[find_quantity("stribeck_friction.F_st")->index] = 8.0;
+  *members(rig.model)[find_quantity("stribeck_friction.v_st")->index] = 0.05;
+  return rig;
+}
+
+Job job_of(const Rig& rig) {
+  Job job;
+  job.model = rig.model;
+  job.options.threads = 1;
+  RecordingOptions options;
+  options.duration = kDuration;
+  options.signals = {Signal::velocity};
+  job.recordings.push_back(
+      simulated(rig, LevelsMotion{{6.0, -6.0, -4.0, 6.0, 2.0, -3.0}, 0.2}, options));
+  for (const char* name : {"M", "B_a"}) job.free.push_back(free_parameter(job.model, name));
+  return job;
+}
+
+/// A force that is smooth, on readings and switches of a command that a dead time keeps apart.
+void count_late() {
+  Job job = job_of(rubbing_mass());
+  job.model.axis.T_d = 0.3e-3;
+  const Recording& recording = job.recordings[0];
+  Schedule command;  // that switches at every sample
+  for (const double t : recording.times) command.append(t, 6.0 * std::sin(10.0 * t));
+  const SimulationResult outcome = simulate<double>(
+      job.model, command, recording.times, [](std::size_t, const Integrator<double>&) {}, {}, {},
+      recording_options(recording.times, FitOptions{}.step));
+  fmt::print("late.steps {}\n", outcome.steps);
+}
+
+/// The whole search for the friction.
+void count_loop() {
+  Job job = job_of(rubbing_mass());
+  job.model.structure.effects.reset();
+  const FitResult first = estimate(job);
+  const long before = allocations();
+  const EffectSelection selection = select_effects(job, first);
+  fmt::print("loop.allocations {}\nloop.effects {}\n", allocations() - before,
+             selection.effects.size());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -64,6 +120,8 @@ int main(int argc, char** argv) {
     const FitResult result = fit(rig);
     fmt::print("fit.allocations {}\nfit.iterations {}\n", allocations() - before,
                result.iterations);
+    count_late();
+    count_loop();
   }
   return 0;
 }
