@@ -62,7 +62,8 @@ struct ParameterResult {
   double value = 0.0;
   ParameterUncertainty uncertainty;
   std::vector<GuessInfluence> rests_on{};  ///< see guesses.h; found by run()
-  /// Where it differs by more than the errors say, which then count that in; see gain_sensitivity.h.
+  /// Where it differs by more than the errors say, which then count that in; see
+  /// gain_sensitivity.h.
   std::optional<GainShift> gain_shift{};
 };
 
@@ -123,10 +124,11 @@ struct FitResult {
   double input_part = 0.0;          ///< that noise of the input makes, see uncertainty.h
   Identifiability identifiability;  ///< at the solution
   double observer_gain = 0.0;       ///< of the last stage
-  /// 1/s, at which what was estimated predicts the recordings to validate better; see gain_sensitivity.h.
+  /// 1/s, at which what was estimated predicts the recordings to validate better; see
+  /// gain_sensitivity.h.
   std::optional<double> better_gain{};
-  int iterations = 0;               ///< of the best start, all stages
-  std::vector<Stage> stages;        ///< of the best start
+  int iterations = 0;         ///< of the best start, all stages
+  std::vector<Stage> stages;  ///< of the best start
   std::vector<StartResult> starts;
 };
 

@@ -42,12 +42,13 @@ bool evaluate_columns(std::span<const std::size_t> all, Evaluate&& evaluate) {
     const auto columns = all.first(std::min<std::size_t>(all.size(), kWidestJet));
     all = all.subspan(columns.size());
     const std::size_t n = columns.size();
-    const bool finished = n <= 2    ? evaluate.template operator()<ceres::Jet<double, 2>>(columns)
-                          : n <= 4  ? evaluate.template operator()<ceres::Jet<double, 4>>(columns)
-                          : n <= 6  ? evaluate.template operator()<ceres::Jet<double, 6>>(columns)
-                          : n <= 8  ? evaluate.template operator()<ceres::Jet<double, 8>>(columns)
-                          : n <= 12 ? evaluate.template operator()<ceres::Jet<double, 12>>(columns)
-                                    : evaluate.template operator()<ceres::Jet<double, kWidestJet>>(columns);
+    const bool finished =
+        n <= 2    ? evaluate.template operator()<ceres::Jet<double, 2>>(columns)
+        : n <= 4  ? evaluate.template operator()<ceres::Jet<double, 4>>(columns)
+        : n <= 6  ? evaluate.template operator()<ceres::Jet<double, 6>>(columns)
+        : n <= 8  ? evaluate.template operator()<ceres::Jet<double, 8>>(columns)
+        : n <= 12 ? evaluate.template operator()<ceres::Jet<double, 12>>(columns)
+                  : evaluate.template operator()<ceres::Jet<double, kWidestJet>>(columns);
     if (!finished) return false;
   } while (!all.empty());
   return true;
