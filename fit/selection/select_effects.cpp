@@ -10,6 +10,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <span>
 
 #include "base/parallel.h"
 #include "fit/residuals/missing_force.h"
@@ -265,13 +266,14 @@ class EffectSelector {
     constexpr double kRival = 0.6;
     double promised = 0.0;
     for (const ShortlistEntry& entry : entries) promised = std::max(promised, entry.gain);
-    const auto others = std::ranges::stable_partition(
-        entries, [&](const ShortlistEntry& entry) { return entry.gain >= kRival * promised; });
+    const auto others = std::stable_partition(
+        entries.begin(), entries.end(),
+        [&](const ShortlistEntry& entry) { return entry.gain >= kRival * promised; });
     std::vector<ExtendedModel> extended_models;
-    refit_all({entries.begin(), others.begin()}, before, chance, extended_models);
+    refit_all({entries.begin(), others}, before, chance, extended_models);
     if (std::ranges::all_of(extended_models,
                             [](const ExtendedModel& e) { return e.rejection.has_value(); }))
-      refit_all(others, before, chance, extended_models);
+      refit_all({others, entries.end()}, before, chance, extended_models);
     // Of several settings of one candidate the best counts.
     std::vector<ExtendedModel*> contenders;
     for (ExtendedModel& e : extended_models) {
