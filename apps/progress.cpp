@@ -98,8 +98,8 @@ ProgressLine::~ProgressLine() {
 
 void ProgressLine::update(Progress progress) {
   const std::lock_guard lock(mutex_);
-  // A count that goes on is that of the same phase, whatever it deals with at the moment.
   if (!progress.finished.empty()) finished_ += progress.finished + "\n";
+  // A count that goes on is that of the same phase, whatever it deals with at the moment.
   if (progress.of != progress_.of || progress.done < progress_.done) phase_begin_ = Clock::now();
   progress_ = std::move(progress);
 }

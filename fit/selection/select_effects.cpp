@@ -61,7 +61,7 @@ class EffectSelector {
   struct Rival {
     Candidate candidate;
     CandidateValues values;
-    /// Of the other free parameters, where its refit starts; empty: the fit without either.
+    /// Of the other free parameters, where its refit starts; empty: from where all else is.
     std::vector<double> others{};
   };
   struct Accepted {
@@ -171,11 +171,7 @@ class EffectSelector {
       if (shape.empty()) continue;
       SelectionStep reduced = without(a);
       if (!reduced.fit.usable) continue;
-      if (EffectTrial* trial = trial_of(candidate)) {
-        trial->decision = Decision::rejected;
-        trial->reason = Reason::failed_test;
-        trial->rejection = {.test = Rejection::Test::bound, .parameter = shape};
-      }
+      fail(candidate, {.test = Rejection::Test::bound, .parameter = shape});
       degenerate_.push_back(candidate);
       erase_accepted(a);
       rebuild(std::move(reduced));
@@ -449,6 +445,20 @@ class EffectSelector {
     return nullptr;
   }
 
+  /// Writes down that an effect is out; returns its trial, if it had one.
+  EffectTrial* reject(const Candidate& candidate, Reason reason) {
+    EffectTrial* trial = trial_of(candidate);
+    if (trial != nullptr) {
+      trial->decision = Decision::rejected;
+      trial->reason = reason;
+    }
+    return trial;
+  }
+  void fail(const Candidate& candidate, Rejection rejection) {
+    if (EffectTrial* trial = reject(candidate, Reason::failed_test))
+      trial->rejection = std::move(rejection);
+  }
+
   /// What was fitted beside the present model.
   struct Neighbours {
     std::vector<double> of;                             ///< values and gain of that model
@@ -469,10 +479,7 @@ class EffectSelector {
     const Candidate whole = accepted_[place].candidate;
     std::erase_if(accepted_, [&](const Accepted& a) {
       if (!is_part_of(a.candidate, whole)) return same_effect(a.candidate, whole);
-      if (EffectTrial* trial = trial_of(a.candidate)) {
-        trial->decision = Decision::rejected;
-        trial->reason = Reason::not_needed;
-      }
+      reject(a.candidate, Reason::not_needed);
       return true;
     });
   }
@@ -549,10 +556,7 @@ class EffectSelector {
         ++a;
         continue;
       }
-      if (EffectTrial* trial = trial_of(candidate)) {
-        trial->decision = Decision::rejected;
-        trial->reason = Reason::not_needed;
-      }
+      reject(candidate, Reason::not_needed);
       erase_accepted(a);
       rebuild(std::move(reduced));
       a = 0;
@@ -581,7 +585,7 @@ class EffectSelector {
         least = std::move(reduced);
       }
       if (!least.fit.usable) return;
-      reject_for_share(accepted_[place].candidate, percent);
+      fail(accepted_[place].candidate, {.test = Rejection::Test::share, .found = percent});
       erase_accepted(place);
       rebuild(std::move(least));
     }
@@ -616,7 +620,8 @@ class EffectSelector {
     if (accepted_.empty() || explained()) return;
     const double percent = of_all().missing_percent;
     if (percent >= kLeastPercent) return;
-    for (const Accepted& a : accepted_) reject_for_share(a.candidate, percent);
+    for (const Accepted& a : accepted_)
+      fail(a.candidate, {.test = Rejection::Test::share, .found = percent});
     accepted_.clear();
     result_.models.resize(1);
   }
@@ -638,12 +643,7 @@ class EffectSelector {
       verdict.recording = last.job.recordings[r].name;
     }
     if (verdict.at_bound.empty() && verdict.recording.empty()) return;
-    for (const Accepted& a : accepted_)
-      if (EffectTrial* trial = trial_of(a.candidate)) {
-        trial->decision = Decision::rejected;
-        trial->reason = Reason::failed_test;
-        trial->rejection = {.test = Rejection::Test::misfit};
-      }
+    for (const Accepted& a : accepted_) fail(a.candidate, {.test = Rejection::Test::misfit});
     accepted_.clear();
     result_.models.resize(1);
   }
@@ -654,14 +654,6 @@ class EffectSelector {
     const bool none = free.lower == natural && natural == 0.0 &&
                       found.value - free.lower < 0.5 * (free.upper - free.lower);
     return found.uncertainty.at_bound && !none;
-  }
-
-  void reject_for_share(const Candidate& candidate, double percent) {
-    if (EffectTrial* trial = trial_of(candidate)) {
-      trial->decision = Decision::rejected;
-      trial->reason = Reason::failed_test;
-      trial->rejection = {.test = Rejection::Test::share, .found = percent};
-    }
   }
 
   /// By how much all accepted effects lower the validation error.
@@ -770,11 +762,8 @@ class EffectSelector {
         const SelectionStep& reduced = without(a);
         judge(e, residual_series(reduced.job, reduced.fit));
         if (e.rejection) continue;
-        if (EffectTrial* old = trial_of(accepted.candidate)) {
-          old->decision = Decision::rejected;
-          old->reason = Reason::replaced;
+        if (EffectTrial* old = reject(accepted.candidate, Reason::replaced))
           old->other = e.candidate.name;
-        }
         record_trial(e, &e);
         // The exchanged effect goes last, where its parameters are.
         erase_accepted(a);
