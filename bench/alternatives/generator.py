@@ -59,6 +59,7 @@ class Machine:
     stiffness: float = 0.0  # N/m
     damping: float = 0.0  # N s/m
     gap: float = 0.0  # m, half of the backlash
+    guided: float = 0.0  # 1: friction is on the motor's side, 0: on the load's
     # What nobody models
     disturbance: float = 0.0  # N rms, coloured
     disturbance_corner: float = 3.0  # Hz
@@ -195,23 +196,27 @@ class Laws:
             touch = (beyond != 0.0) * self.damping
             coupling = self.stiffness * beyond + touch * (state[MOTOR_V] - v)
             on_load = force + self.two * (coupling - force)
-        sliding = turned = np.tanh(v / self.creep)
-        speed = np.abs(v)
+        rubs = v
+        if self.used["guided"]:
+            rubs = v + self.guided * (state[MOTOR_V] - v)
+        sliding = turned = np.tanh(rubs / self.creep)
+        speed = np.abs(rubs)
         if self.used["bristle"]:
             z = state[BRISTLE] * self.per_bristle
-            rate[BRISTLE] = self.has_bristle * (v - speed * z)
+            rate[BRISTLE] = self.has_bristle * (rubs - speed * z)
             sliding = turned + self.has_bristle * (z - turned)
-        friction = self.dry(t, y, speed, force) * sliding + self.viscous * v
+        friction = self.dry(t, y, speed, force) * sliding + self.viscous * rubs
         if self.used["directional"]:
             friction = friction + self.directional * speed
         if self.used["drag"]:
             friction = friction + self.drag * speed**self.drag_exponent * turned
-        acceleration = (on_load - friction + self.stroke(y) + disturbance) * self.per_load
+        on_motor = self.guided * friction
+        acceleration = (on_load - (friction - on_motor) + self.stroke(y) + disturbance) * self.per_load
         rate[Y], rate[V] = v, acceleration
         rate[MOTOR_Y], rate[MOTOR_V] = v, acceleration
         if self.used["motor_share"]:
             rate[MOTOR_Y] += self.two * (state[MOTOR_V] - v)
-            rate[MOTOR_V] += self.two * ((force - on_load) / self.motor_mass - acceleration)
+            rate[MOTOR_V] += self.two * ((force - on_load - on_motor) / self.motor_mass - acceleration)
         return rate
 
 

@@ -93,9 +93,10 @@ KINDS = {
         frozenset({"position.gain", "velocity.gain"}),  # the same where one signal is recorded
         lambda m, s, u, f: {"mass": m.mass * (1.0 + s)}, is_force=False, secret="M", most=2.0),
     "elastic": Kind(
-        "a part of the mass on a spring", frozenset({"elastic_mode"}),
+        "a part of the mass on a spring, beyond what is guided", frozenset({"elastic_mode"}),
         frozenset({"soft_transmission", "backlash"}),
-        lambda m, s, u, f: {"motor_share": 1.0 - s, **coupled(m, s, between(12.0, 30.0, u[0]), 0.03)},
+        lambda m, s, u, f: {"motor_share": 1.0 - s, "guided": 1.0,
+                            **coupled(m, s, between(12.0, 30.0, u[0]), 0.03)},
         0.2, is_force=False, setups=("servo",), most=0.7),
     "backlash": Kind(
         "a gap between motor and load", frozenset({"soft_transmission", "backlash"}),

@@ -109,8 +109,12 @@ class Scorer {
     score.shapes = setting.shapes;
     score.strengths = reached;
     // The free parameters adapt to the effect, no further than a linear step can be trusted.
-    const Eigen::VectorXd way = solver_.solve(-(base_.residuals + derivatives * step));
-    score.values = space_.values(u_ + way.cwiseMax(-0.7).cwiseMin(0.7));
+    Eigen::VectorXd way = solver_.solve(-(base_.residuals + derivatives * step));
+    for (std::size_t i = 0; i < space_.size(); ++i) {
+      double& by = way[static_cast<Eigen::Index>(i)];
+      if (space_[i].logarithmic) by = std::clamp(by, -0.7, 0.7);
+    }
+    score.values = space_.values(u_ + way);
   }
 
   /// The step of the shapes, from a score and the derivatives with respect to strengths and shapes

@@ -93,11 +93,11 @@ class EffectSelector {
   void search() {
     search_named();
     if (explained()) return;
-    SearchState free_running = snapshot();
+    SearchState strict = snapshot();
     provisional_ = true;
-    search_tracking();
+    search_together();
     provisional_ = false;
-    if (!is_better(current(), free_running.models.back())) restore(std::move(free_running));
+    if (!is_better(current(), strict.models.back())) restore(std::move(strict));
     last_valid_ = snapshot();
     if (explained()) return;
     const SearchState named = snapshot();
@@ -130,23 +130,27 @@ class EffectSelector {
   /// Several large effects mask each other: the free-running simulation drifts away from the data
   /// whichever of them is added, and its residual says little. A simulation that tracks the data
   /// stays near them. So the effects are found and judged while tracking, and then refitted
-  /// together free-running; backward elimination removes those that are not needed there.
-  void search_tracking() {
-    const SelectionStep declared = result_.models.front();
-    if (declared.job.options.observer != ObserverMode::continuation) return;
-    restart();
-    SelectionStep& tracking = result_.models.front();
-    tracking.job.options.observer = ObserverMode::fixed;
-    tracking.job.options.observer_gain = score_gains(declared.job).front();
-    tracking.fit = refit_from(tracking.job, values_of(declared.fit), context_);
-    // What else is missing counts as noise here: judged strictly when it is known.
+  /// together free-running. What else is missing counts as noise for each of them: they are judged
+  /// leniently until all are known, and strictly by backward elimination.
+  void search_together() {
     constexpr double kProvisionalChance = 0.05;
+    const SelectionStep declared = result_.models.front();
+    const bool is_continued = declared.job.options.observer == ObserverMode::continuation;
+    if (is_continued) {
+      restart();
+      SelectionStep& tracking = result_.models.front();
+      tracking.job.options.observer = ObserverMode::fixed;
+      tracking.job.options.observer_gain = score_gains(declared.job).front();
+      tracking.fit = refit_from(tracking.job, values_of(declared.fit), context_);
+    }
     while (current().fit.usable && has_room() && !explained() && round(false, kProvisionalChance)) {
     }
-    SelectionStep all = accepted_.empty() ? declared : with_accepted(declared.job);
-    result_.models = {declared};
-    if (accepted_.empty() || !all.fit.usable) return restart();
-    rebuild(std::move(all));
+    if (is_continued) {
+      SelectionStep all = accepted_.empty() ? declared : with_accepted(declared.job);
+      result_.models = {declared};
+      if (accepted_.empty() || !all.fit.usable) return restart();
+      rebuild(std::move(all));
+    }
     search_named();
     eliminate_backward();
   }
@@ -258,18 +262,25 @@ class EffectSelector {
       std::erase_if(entries, [&](const ShortlistEntry& entry) {
         return entry.gain < least_gain(entry.candidate, samples_of(before), tried_);
       });
-    // What promises little beside the best is refitted only where that does not pass.
+    // What promises little beside the best is refitted only where that does not pass, and what a
+    // simpler effect does as well where none of these does.
     constexpr double kRival = 0.6;
     double promised = 0.0;
-    for (const ShortlistEntry& entry : entries) promised = std::max(promised, entry.gain);
-    const auto others = std::stable_partition(
-        entries.begin(), entries.end(),
-        [&](const ShortlistEntry& entry) { return entry.gain >= kRival * promised; });
+    for (const ShortlistEntry& entry : entries)
+      if (!entry.is_second) promised = std::max(promised, entry.gain);
+    const auto turn = [&](const ShortlistEntry& entry) {
+      return entry.is_second ? 2 : entry.gain >= kRival * promised ? 0 : 1;
+    };
+    std::ranges::stable_sort(entries, {}, turn);
     std::vector<ExtendedModel> extended_models;
-    refit_all({entries.begin(), others}, before, chance, extended_models);
-    if (std::ranges::all_of(extended_models,
-                            [](const ExtendedModel& e) { return e.rejection.has_value(); }))
-      refit_all({others, entries.end()}, before, chance, extended_models);
+    for (auto next = entries.begin(); next != entries.end();) {
+      const auto end = std::ranges::upper_bound(next, entries.end(), turn(*next), {}, turn);
+      refit_all({next, end}, before, chance, extended_models);
+      if (std::ranges::any_of(extended_models,
+                              [](const ExtendedModel& e) { return !e.rejection; }))
+        break;
+      next = end;
+    }
     // Of several settings of one candidate the best counts.
     std::vector<ExtendedModel*> contenders;
     for (ExtendedModel& e : extended_models) {

@@ -17,8 +17,7 @@ bool nearly_same(const ShortlistEntry& a, const ShortlistEntry& b) {
          });
 }
 
-/// The best of the scores: no more than `length`, but for those that nearly gain as much, and never
-/// one that gains no more than a simpler one does.
+/// The best of the scores: no more than `length`, but for those that nearly gain as much.
 std::vector<ShortlistEntry> best_of(const ScoreTest& test, std::size_t length) {
   constexpr double kMinGain = 6.0;  // of a sum of squares: below is chance
   constexpr double kNearly = 0.9;   // of the best gain: heard even beyond the length
@@ -48,19 +47,14 @@ std::vector<ShortlistEntry> best_of(const ScoreTest& test, std::size_t length) {
     taken.push_back({candidate, score, score.gain / unit});
   }
   // What a simpler one gains as well, more parameters gain by chance.
-  std::vector<bool> is_beaten(taken.size());
-  for (std::size_t i = 0; i < taken.size(); ++i)
+  for (ShortlistEntry& entry : taken)
     for (const ShortlistEntry& simple : taken) {
-      const std::size_t own = taken[i].candidate.parameters(),
-                        fewer = simple.candidate.parameters();
-      if (fewer >= own) continue;
+      const std::size_t own = entry.candidate.parameters(), fewer = simple.candidate.parameters();
+      if (fewer >= own || entry.candidate.is_timing) continue;
       const double price = static_cast<double>(own - fewer) * std::log(std::max(2.0, samples));
-      if (taken[i].gain < simple.gain + price && !taken[i].candidate.is_timing) is_beaten[i] = true;
+      entry.is_second = entry.is_second || entry.gain < simple.gain + price;
     }
-  std::vector<ShortlistEntry> kept;
-  for (std::size_t i = 0; i < taken.size(); ++i)
-    if (!is_beaten[i]) kept.push_back(std::move(taken[i]));
-  return kept;
+  return taken;
 }
 
 }  // namespace

@@ -13,6 +13,8 @@ struct ShortlistEntry {
   Candidate candidate;
   Score score;
   double gain = 0.0;  ///< the score's, in units of the residuals' mean square, at least one
+  /// A simpler one gains as much, so that this is worth a fit only where that one fails.
+  bool is_second = false;
 };
 
 struct Shortlist {
@@ -22,8 +24,7 @@ struct Shortlist {
 
 /// The best by score_test() at each of these observer gains, about `length` of each, from a fit
 /// with the given values of the free parameters; those of the catalogue or, with `curves`, those
-/// without a name. An effect that gains no more than a simpler one is left out, and so is, beyond
-/// the first three, what gains less than half as much as the best. The thread pool shares the work.
+/// without a name. Beyond the first three, what gains less than half as much as the best is left out. The thread pool shares the work.
 Shortlist shortlist(const Job& job, const std::vector<double>& values,
                     const std::vector<double>& observer_gains, bool curves, int length,
                     const RunContext& context = {});

@@ -14,7 +14,8 @@ namespace axisfit {
 ///
 /// stiffness F_d / l_d at the reversal. The damping B_d acts only while the asperities bend.
 /// Between two reversals z has a closed form in the travel since the first of them, so that no fast
-/// state has to be integrated. It starts at z = 0.
+/// state has to be integrated. It starts at z = 0. An observer may move the axis back against its
+/// velocity: z waits until the travel is made up for.
 ///
 /// Surfaces that bend over two lengths have two such elements, the second an effect of its own.
 ///
@@ -57,7 +58,8 @@ struct DahlElement {
     using std::exp;
     const double s = at.direction;
     const T travel = s * (at.position - at.memory.position);
-    return s == 0.0 ? at.memory.hysteresis : s - (s - at.memory.hysteresis) * exp(-travel / l_d);
+    if (s == 0.0 || travel < 0.0) return at.memory.hysteresis;
+    return s - (s - at.memory.hysteresis) * exp(-travel / l_d);
   }
 
   T arm_force(const Instant<T>& at) const {
