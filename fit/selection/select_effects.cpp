@@ -276,8 +276,7 @@ class EffectSelector {
     for (auto next = entries.begin(); next != entries.end();) {
       const auto end = std::ranges::upper_bound(next, entries.end(), turn(*next), {}, turn);
       refit_all({next, end}, before, chance, extended_models);
-      if (std::ranges::any_of(extended_models,
-                              [](const ExtendedModel& e) { return !e.rejection; }))
+      if (std::ranges::any_of(extended_models, [](const ExtendedModel& e) { return !e.rejection; }))
         break;
       next = end;
     }
@@ -692,6 +691,21 @@ class EffectSelector {
     result_.models = std::move(models);
   }
 
+  /// Which of two clocks is off matters little: without either, all that is estimated pays for it.
+  /// The chosen one stays, and the other is named beside it.
+  void keep_with_equal(const RivalPair& pair) {
+    const Candidate& chosen = accepted_[pair.place].candidate;
+    if (EffectTrial* trial = reject(pair.rival, Reason::explains_equally)) {
+      trial->rejection.reset();
+      trial->other = chosen.name;
+    }
+    add_pair(pair);
+  }
+  void add_pair(const RivalPair& pair) {
+    result_.rivals.push_back({accepted_[pair.place].candidate.name, pair.rival.name,
+                              fitted_model(current().job, current().fit), pair.model});
+  }
+
   /// An effect that has an equal is not accepted: neither silently.
   void drop_undecided() {
     std::set<std::size_t, std::greater<>> places;
@@ -707,8 +721,7 @@ class EffectSelector {
       };
       undecide(chosen, r.rival);
       undecide(r.rival, chosen);
-      result_.rivals.push_back(
-          {chosen.name, r.rival.name, fitted_model(current().job, current().fit), r.model});
+      add_pair(r);
       places.insert(r.place);
     }
     for (const std::size_t place : places) {
@@ -803,7 +816,11 @@ class EffectSelector {
       for (const ExtendedModel& e : rivals[a]) {
         if (is_clearly_worse(loss_with(e))) continue;
         if (trial_of(e.candidate) == nullptr) record_trial(e, &e);
-        rival_pairs_.push_back({a, e.candidate, fitted_model(e.job, e.fit)});
+        RivalPair pair{a, e.candidate, fitted_model(e.job, e.fit)};
+        if (accepted_[a].candidate.is_timing && e.candidate.is_timing)
+          keep_with_equal(pair);
+        else
+          rival_pairs_.push_back(std::move(pair));
       }
     }
   }

@@ -62,7 +62,8 @@ struct SelectionStep {
   FitResult fit;
 };
 
-/// Two effects that explain the recordings equally well.
+/// Two effects that explain the recordings equally well: both undecided, or of two clocks that may
+/// be off the chosen one accepted.
 struct UndecidedPair {
   std::string chosen, rival;
   Model<double> with_chosen, with_rival;  ///< fitted
@@ -109,7 +110,7 @@ struct EffectSelection {
   bool explained = false;             ///< nothing but noise is left, and no small effect
   bool interrupted = false;           ///< the search was not finished
   SelectionVerdict verdict;
-  std::vector<UndecidedPair> rivals;  ///< the effects that stay undecided
+  std::vector<UndecidedPair> rivals;
 };
 
 /// `first` is the fit of the job as declared. When the stop flag is set, the effects accepted

@@ -24,7 +24,8 @@ struct Shortlist {
 
 /// The best by score_test() at each of these observer gains, about `length` of each, from a fit
 /// with the given values of the free parameters; those of the catalogue or, with `curves`, those
-/// without a name. Beyond the first three, what gains less than half as much as the best is left out. The thread pool shares the work.
+/// without a name. Beyond the first three, what gains less than half as much as the best is left
+/// out. The thread pool shares the work.
 Shortlist shortlist(const Job& job, const std::vector<double>& values,
                     const std::vector<double>& observer_gains, bool curves, int length,
                     const RunContext& context = {});

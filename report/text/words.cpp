@@ -240,6 +240,9 @@ std::string verdict_text(const EffectSelection& selection) {
                       verdict.accepted.size() > 1 ? "them" : "it", verdict.validate_percent,
                       selection.explained ? ", and every signal is explained down to its noise."
                                           : ", but not down to the noise.");
+      for (const UndecidedPair& pair : selection.rivals)
+        if (std::ranges::find(verdict.accepted, pair.chosen) != verdict.accepted.end())
+          text += fmt::format(" These recordings do not tell {} from {}.", pair.chosen, pair.rival);
       break;
     case misfit:
       return verdict.at_bound.empty()

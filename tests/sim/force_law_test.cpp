@@ -528,6 +528,20 @@ TEST(ForceLaw, OfDahlFrictionIsTheHysteresisOfItsEquation) {
     }
 }
 
+// As an observer may move the axis, against its velocity.
+TEST(ForceLaw, OfDahlFrictionWaitsWhereTheAxisIsMovedBack) {
+  const DahlFriction<double> dahl{10.0, 2e-4, 0.0};
+  for (const int way : {-1, 1}) {
+    Instant<double> at{};
+    at.memory.hysteresis = -0.3 * way;
+    at.direction = way;
+    at.position = -way * 1.0;
+    EXPECT_EQ(dahl.hysteresis(at), at.memory.hysteresis);
+    at.position = way * 1.0;
+    EXPECT_NEAR(dahl.hysteresis(at), way, 1e-12);
+  }
+}
+
 TEST(ForceLaw, OfDahlFrictionFollowsTheMotion) {
   // Two elements together with Coulomb friction, through reversals and rests, with each z
   // integrated as a state.

@@ -67,6 +67,27 @@ TEST_P(SelectEffectsTwin, IsLeftUndecided) {
 INSTANTIATE_TEST_SUITE_P(EverySlot, SelectEffectsTwin, testing::ValuesIn(hidden_effects(true)),
                          [](const auto& one) { return one.param.label(); });
 
+// Without either, every estimate would pay for the clock.
+TEST(SelectEffects, AddsOneOfTwoClocksThatMayBeOffAndNamesTheOther) {
+  Model<double> truth = slide();
+  truth.axis.T_d = 4e-3;
+  const EffectSelection selection =
+      close(two_recordings(truth, slide(), {"M", "B_a"}, 6.0, {Signal::velocity}));
+  EXPECT_EQ(accepted(selection), Names{"dead_time"});
+  EXPECT_EQ(undecided(selection), Names{});
+  EXPECT_TRUE(selection.explained);
+  ASSERT_EQ(selection.rivals.size(), 1u);
+  EXPECT_EQ(selection.rivals[0].chosen, "dead_time");
+  EXPECT_EQ(selection.rivals[0].rival, "velocity.delay");
+  const auto rival = std::ranges::find(selection.effects, "velocity.delay",
+                                       [](const EffectTrial& t) { return t.candidate.name; });
+  ASSERT_NE(rival, selection.effects.end());
+  EXPECT_EQ(rival->decision, Decision::rejected);
+  EXPECT_EQ(rival->reason, Reason::explains_equally);
+  EXPECT_EQ(rival->other, "dead_time");
+  expect_found(selection, "T_d", 4e-3);
+}
+
 TEST(SelectEffects, AddsNothingToAModelThatHasEverything) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const EffectSelection selection = close(two_recordings(

@@ -102,6 +102,12 @@ TEST(WordsTest, OfWhatASearchComesTo) {
             "T_z is 0.007999 s, not the 0.00705 s of the axis file. The model lacked spring. With "
             "them, the validation error falls by 71.4 %, and every signal is explained down to its "
             "noise.");
+  selection.rivals.push_back({"T_z", "velocity.delay", {}, {}});
+  selection.verdict.corrections.clear();
+  EXPECT_EQ(verdict_text(selection),
+            "The model lacked T_z, spring. With them, the validation error falls by 71.4 %, and "
+            "every signal is explained down to its noise. These recordings do not tell T_z from "
+            "velocity.delay.");
   selection.verdict = {.kind = undecided, .undecided = {"spring", "position.gain"}};
   EXPECT_EQ(verdict_text(selection), "Undecided: spring, position.gain; none of them was added.");
 }
