@@ -13,6 +13,7 @@
 #include "fit/data/noise.h"
 #include "fit/estimation/continuation.h"
 #include "fit/estimation/input_noise.h"
+#include "fit/estimation/parameters.h"
 #include "fit/estimation/residual.h"
 
 namespace axisfit {
@@ -256,8 +257,7 @@ FitResult estimate_with_noise(Job& job, const RunContext& context, std::span<con
         m.sigma = sigma;
       }
     if (change < kStays) break;
-    const std::vector<double> values = values_of(result);
-    for (std::size_t i = 0; i < again.free.size(); ++i) again.free[i].initial = values[i];
+    set_initial_values(again, values_of(result));
     FitResult next;
     try {
       next = estimate(again, context);

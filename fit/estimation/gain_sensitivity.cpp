@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/parallel.h"
+#include "fit/estimation/parameters.h"
 
 namespace axisfit {
 namespace {
@@ -14,9 +15,7 @@ constexpr std::array kFactors{1.0 / 3.0, 3.0};
 
 /// The fit at another gain, from where this one ended.
 FitResult fit_at(Job job, const FitResult& fit, double gain, const RunContext& context) {
-  const auto values = values_of(fit);
-  for (std::size_t i = 0; i < values.size(); ++i)
-    job.free[i].initial = std::clamp(values[i], job.free[i].lower, job.free[i].upper);
+  set_initial_values(job, values_of(fit));
   job.options.starts = 1;
   job.options.attempts = 1;
   job.options.observer_gain = gain;

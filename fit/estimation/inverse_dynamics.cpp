@@ -7,6 +7,7 @@
 
 #include "fit/estimation/jet.h"
 #include "fit/estimation/least_squares.h"
+#include "fit/estimation/parameters.h"
 #include "sim/equations.h"
 #include "sim/sampling.h"
 
@@ -347,9 +348,8 @@ std::vector<std::size_t> keep_balanced(Job& job, const std::vector<Trajectory>& 
       [&](std::size_t i) { return !is_balanced(given, quantity_list()[given.free[i].quantity]); });
   if (job.free.empty()) return {};
   const ParameterSpace space(job);
-  std::vector<double> initial;
-  for (const FreeParameter& p : job.free) initial.push_back(p.initial);
-  const Linearization at = linearize(space, costs_of(job, space, paths), space.internal(initial));
+  const Linearization at =
+      linearize(space, costs_of(job, space, paths), space.internal(initial_values(job)));
   if (!at.finite) return {};
   const Eigen::Index rows = at.series.front().count;
   hold_all([&](std::size_t i) {
@@ -409,11 +409,7 @@ std::optional<InverseDynamics> inverse_dynamics(const Job& job) {
   std::vector<Trajectory> paths;
   Job balanced = job;
   const ParameterSpace declared(job);
-  const std::vector<double> initial = [&] {
-    std::vector<double> values;
-    for (const FreeParameter& p : job.free) values.push_back(p.initial);
-    return values;
-  }();
+  const std::vector<double> initial = initial_values(job);
   const Eigen::VectorXd start = declared.internal(initial);
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     if (job.recordings[r].role != Role::fit) continue;
@@ -467,8 +463,7 @@ std::optional<InverseDynamics> inverse_dynamics(const Job& job) {
 }
 
 std::vector<double> start_from(const Job& job, const InverseDynamics& estimate) {
-  std::vector<double> values;
-  for (const FreeParameter& p : job.free) values.push_back(p.initial);
+  std::vector<double> values = initial_values(job);
   for (const InverseEstimate& e : estimate.parameters) {
     const FreeParameter& p = job.free[e.parameter];
     values[e.parameter] = std::clamp(e.value, p.lower, p.upper);

@@ -55,6 +55,17 @@ std::vector<double> ParameterSpace::values(const Eigen::VectorXd& u) const {
   return values;
 }
 
+std::vector<double> initial_values(const Job& job) {
+  std::vector<double> values;
+  for (const FreeParameter& p : job.free) values.push_back(p.initial);
+  return values;
+}
+
+void set_initial_values(Job& job, std::span<const double> values) {
+  for (std::size_t i = 0; i < job.free.size(); ++i)
+    job.free[i].initial = std::clamp(values[i], job.free[i].lower, job.free[i].upper);
+}
+
 Model<double> model_at(const Job& job, const ParameterSpace& space, const double* u,
                        std::size_t recording) {
   Model<double> model = job.model;

@@ -43,6 +43,11 @@ class ParameterSpace {
   std::vector<double> magnitude_;
 };
 
+/// Where a job's fit begins, in the quantities' units.
+std::vector<double> initial_values(const Job& job);
+/// Lets it begin there, or at the bound that is nearest.
+void set_initial_values(Job& job, std::span<const double> values);
+
 /// The model of one recording of a job at u, with the recording's overrides and initial state.
 Model<double> model_at(const Job& job, const ParameterSpace& space, const double* u,
                        std::size_t recording);

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "fit/estimation/jet.h"
+#include "fit/estimation/parameters.h"
 #include "fit/estimation/solve.h"
 
 namespace axisfit {
@@ -50,13 +51,6 @@ Eigen::MatrixXd per_unit(Eigen::MatrixXd columns, const ParameterSpace& space,
     if (!space[i].logarithmic) columns.col(k) /= space.slope(i, u[k]);
   }
   return columns;
-}
-
-/// u at the initial values of a job.
-Eigen::VectorXd initial_point(const Job& job, const ParameterSpace& space) {
-  std::vector<double> values;
-  for (const FreeParameter& p : job.free) values.push_back(p.initial);
-  return space.internal(values);
 }
 
 Job with_setting(const Job& job, const EffectSetting& setting) {
@@ -184,7 +178,7 @@ std::vector<Eigen::MatrixXd> EffectColumns::derivatives(
 Eigen::MatrixXd EffectColumns::exact(const EffectSetting& setting) const {
   const Job job = with_setting(job_, setting);
   const ParameterSpace space(job);
-  const Eigen::VectorXd u = initial_point(job, space);
+  const Eigen::VectorXd u = space.internal(initial_values(job));
   Linearization at = linearize(job, space, u, observer_gain_);
   return at.finite ? per_unit(std::move(at.jacobian), space, u) : Eigen::MatrixXd();
 }
@@ -204,7 +198,7 @@ void EffectColumns::add_batch(const std::vector<EffectSetting>& settings,
     job = with_candidate(job, one, {}, one.neutral, {});
   }
   const ParameterSpace space(job);
-  const Eigen::VectorXd u = initial_point(job, space);
+  const Eigen::VectorXd u = space.internal(initial_values(job));
   Linearization at = linearize(job, space, u, observer_gain_);
   if (at.finite) at.jacobian = per_unit(std::move(at.jacobian), space, u);
   for (const Column& c : columns) {
@@ -247,7 +241,7 @@ Disturbances EffectColumns::disturbances(std::size_t place,
     }
     const ParameterSpace space(job);
     const Model<double> model =
-        model_at(job, space, initial_point(job, space).data(), recordings_[place]);
+        model_at(job, space, space.internal(initial_values(job)).data(), recordings_[place]);
     SmoothForce(model, quantities, sticks)
         .along(trajectory, [&](std::size_t i, const State<SmoothForce::T>& rates) {
           for (std::size_t k = 0; k < quantities.size(); ++k) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "fit/estimation/parameters.h"
 #include "fit/selection/score.h"
 
 namespace axisfit {
@@ -21,8 +22,7 @@ FitResult refit(const Job& job, const RunContext& context) {
 }
 
 FitResult refit_from(Job job, const std::vector<double>& values, const RunContext& context) {
-  for (std::size_t i = 0; i < job.free.size(); ++i)
-    job.free[i].initial = std::clamp(values[i], job.free[i].lower, job.free[i].upper);
+  set_initial_values(job, values);
   return refit(job, context);
 }
 

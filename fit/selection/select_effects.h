@@ -10,56 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "fit/estimation/estimate.h"
-#include "fit/selection/acceptance.h"
-#include "fit/selection/catalogue.h"
-#include "fit/selection/replication.h"
+#include "fit/selection/model_chain.h"
+#include "fit/selection/trials.h"
 
 namespace axisfit {
 
 struct SelectionOptions {
   int shortlist = 6;  ///< effects that are refitted in each round
   int max_effects = 6;
-};
-
-enum class Decision {
-  accepted,
-  undecided,  ///< explains the data as well as another effect
-  rejected,
-};
-
-/// What a decision on an effect rests on.
-enum class Reason {
-  failed_test,         ///< EffectTrial::rejection
-  explains_best,       ///< of all that were tried in its round
-  replicates,          ///< the recordings to validate, fitted by themselves, tell the same of it
-  shown_by_stretches,  ///< held out from the fitted recordings, since those to validate could not
-  explains_less,       ///< than the other
-  replaced,            ///< by the other, which explains more
-  explains_equally,    ///< as well as the other
-  not_needed,          ///< any longer, with the effects that were accepted after it
-};
-
-/// One effect that was refitted, and what became of it.
-struct EffectTrial {
-  Candidate candidate;
-  int round = 0;
-  Decision decision = Decision::rejected;
-  Reason reason = Reason::failed_test;
-  std::optional<Rejection> rejection;       ///< of failed_test
-  std::string other;                        ///< effect that it was compared with, see reason
-  double score = 0.0;                       ///< gain that the score test promised
-  std::vector<ParameterResult> parameters;  ///< its own
-  Improvement improvement;                  ///< against the model before it
-  /// Of an accepted effect, what the recordings to validate say of it by themselves.
-  std::optional<Replication> replication{};
-};
-
-/// One intermediate model: the declared one, and one after each accepted effect.
-struct SelectionStep {
-  std::string added;  ///< the effect; empty for the declared model
-  Job job;
-  FitResult fit;
 };
 
 /// Two effects that explain the recordings equally well: both undecided, or of two clocks that may

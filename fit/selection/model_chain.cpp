@@ -1,0 +1,115 @@
+#include "fit/selection/model_chain.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/parallel.h"
+#include "fit/estimation/parameters.h"
+
+namespace axisfit {
+
+bool explains(const SelectionStep& model) {
+  auto series = residual_series(model.job, model.fit);
+  if (std::ranges::all_of(series, is_explained)) return !series.empty();
+  allow_for_parameters(model.job, model.fit, series);
+  return !series.empty() && std::ranges::all_of(series, is_explained);
+}
+
+void ModelChain::append(AcceptedEffect effect, Job job, FitResult fit) {
+  models_.push_back({effect.candidate.name, std::move(job), std::move(fit)});
+  accepted_.push_back(std::move(effect));
+}
+
+void ModelChain::restart(SelectionStep declared) {
+  models_ = {std::move(declared)};
+  accepted_.clear();
+}
+
+void ModelChain::replace(SelectionStep declared, SelectionStep last) {
+  models_.front() = std::move(declared);
+  rebuild(std::move(last));
+}
+
+ModelChain::Neighbours& ModelChain::neighbours() {
+  std::vector<double> values = values_of(current().fit);
+  values.push_back(current().fit.observer_gain);
+  if (values != neighbours_.of || neighbours_.reduced.size() != accepted_.size())
+    neighbours_ = {std::move(values), {accepted_.size(), std::nullopt}, false, std::nullopt};
+  return neighbours_;
+}
+
+const SelectionStep& ModelChain::without(std::size_t place) {
+  std::optional<SelectionStep>& reduced = neighbours().reduced[place];
+  if (!reduced) reduced = reduce(place);
+  return *reduced;
+}
+
+void ModelChain::fit_without(const std::vector<std::size_t>& places) {
+  auto& all = neighbours().reduced;
+  parallel_for(places.size(), [&](std::size_t i) {
+    if (!all[places[i]]) all[places[i]] = reduce(places[i]);
+  });
+}
+
+SelectionStep ModelChain::reduce(std::size_t place) const {
+  return accepted_.size() == 1 ? declared() : with_accepted(declared().job, place);
+}
+
+Job ModelChain::job_with_accepted(const Job& declared, std::optional<std::size_t> except) const {
+  Job job = declared;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < job.free.size(); ++i)
+    values.push_back(current().fit.parameters[i].value);
+  for (std::size_t a = 0; a < accepted_.size(); ++a) {
+    const Candidate& candidate = accepted_[a].candidate;
+    if (except && (a == *except || is_part_of(candidate, accepted_[*except].candidate))) continue;
+    const CandidateValues own = candidate_values(current().job, current().fit, candidate);
+    job = with_candidate(job, candidate, values, own.strengths, own.shapes);
+    values = initial_values(job);
+  }
+  set_initial_values(job, values);
+  return job;
+}
+
+SelectionStep ModelChain::with_accepted(const Job& declared,
+                                        std::optional<std::size_t> except) const {
+  Job job = job_with_accepted(declared, except);
+  FitResult fit = refit(job, *context_);
+  return {"", std::move(job), std::move(fit)};
+}
+
+std::vector<Candidate> ModelChain::erase(std::size_t place) {
+  const Candidate whole = accepted_[place].candidate;
+  std::vector<Candidate> parts;
+  std::erase_if(accepted_, [&](const AcceptedEffect& a) {
+    if (!is_part_of(a.candidate, whole)) return same_effect(a.candidate, whole);
+    parts.push_back(a.candidate);
+    return true;
+  });
+  return parts;
+}
+
+void ModelChain::rebuild(SelectionStep last) {
+  models_.resize(1);
+  for (std::size_t a = 0; a + 1 < accepted_.size(); ++a) {
+    const Candidate& candidate = accepted_[a].candidate;
+    const CandidateValues own = candidate_values(last.job, last.fit, candidate);
+    ExtendedModel e = fit_extended_model(current().job, candidate, values_of(current().fit),
+                                         own.strengths, own.shapes, *context_);
+    models_.push_back({candidate.name, std::move(e.job), std::move(e.fit)});
+  }
+  if (accepted_.empty()) return;
+  last.added = accepted_.back().candidate.name;
+  models_.push_back(std::move(last));
+}
+
+const std::optional<FitResult>& ModelChain::elsewhere() {
+  Neighbours& known = neighbours();
+  if (!known.has_elsewhere) {
+    known.elsewhere = fit_elsewhere(current().job, current().fit, *context_);
+    known.has_elsewhere = true;
+  }
+  return known.elsewhere;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,97 @@
+// The declared model and the effects accepted one after another.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fit/selection/extended_model.h"
+
+namespace axisfit {
+
+/// One intermediate model: the declared one, and one after each accepted effect.
+struct SelectionStep {
+  std::string added;  ///< the effect; empty for the declared model
+  Job job;
+  FitResult fit;
+};
+
+/// Whether the model leaves nothing but noise in any signal.
+bool explains(const SelectionStep& model);
+
+/// Another effect that explained as much as an accepted one when that was chosen.
+struct Rival {
+  Candidate candidate;
+  CandidateValues values;
+  /// Of the other free parameters, where its refit starts; empty: from where all else is.
+  std::vector<double> others{};
+};
+
+struct AcceptedEffect {
+  Candidate candidate;
+  std::vector<Rival> rivals;
+  bool is_seen_elsewhere = false;  ///< it replicates, or held-out stretches show it
+};
+
+/// A value that may be copied, put aside and taken up again. What was fitted beside the last model
+/// (without one of its effects, or to other recordings) is kept until that changes. Not to be used
+/// by several threads at once; its fits share the thread pool.
+class ModelChain {
+ public:
+  /// The context must outlive it.
+  ModelChain(SelectionStep declared, const RunContext& context)
+      : context_(&context), models_{std::move(declared)} {}
+
+  const std::vector<SelectionStep>& models() const { return models_; }
+  const SelectionStep& declared() const { return models_.front(); }
+  const SelectionStep& current() const { return models_.back(); }
+  const std::vector<AcceptedEffect>& accepted() const { return accepted_; }
+  std::vector<AcceptedEffect>& accepted() { return accepted_; }
+
+  void append(AcceptedEffect effect, Job job, FitResult fit);
+  /// Begins anew with a declared model.
+  void restart(SelectionStep declared);
+  /// Puts another declared model in the place of the present one, and the last model with the
+  /// accepted effects that follow from it.
+  void replace(SelectionStep declared, SelectionStep last);
+
+  /// The last model without one accepted effect, and what is part of it, refitted.
+  const SelectionStep& without(std::size_t place);
+  /// Fits without each of these, side by side.
+  void fit_without(const std::vector<std::size_t>& places);
+
+  /// A declared job with the accepted effects, but for one, that starts from where they are.
+  Job job_with_accepted(const Job& declared, std::optional<std::size_t> except = {}) const;
+  /// That, refitted.
+  SelectionStep with_accepted(const Job& declared, std::optional<std::size_t> except = {}) const;
+
+  /// Strikes an accepted effect off the list, and what is part of it; returns the latter. The
+  /// models are as before, until rebuild().
+  std::vector<Candidate> erase(std::size_t place);
+  /// Refits the intermediate models after effects were removed or exchanged; the last one is given.
+  void rebuild(SelectionStep last);
+
+  /// The last model fitted to the recordings to validate alone, see fit_elsewhere().
+  const std::optional<FitResult>& elsewhere();
+  /// Whether it was already.
+  bool has_elsewhere() { return neighbours().has_elsewhere; }
+
+ private:
+  /// What was fitted beside the present model.
+  struct Neighbours {
+    std::vector<double> of;                             ///< values and gain of that model
+    std::vector<std::optional<SelectionStep>> reduced;  ///< without each of the accepted effects
+    bool has_elsewhere = false;
+    std::optional<FitResult> elsewhere;
+  };
+  Neighbours& neighbours();
+  SelectionStep reduce(std::size_t place) const;
+
+  const RunContext* context_;
+  std::vector<SelectionStep> models_;
+  std::vector<AcceptedEffect> accepted_;
+  Neighbours neighbours_;
+};
+
+}  // namespace axisfit

@@ -1,0 +1,235 @@
+#include "fit/selection/round.h"
+
+#include <algorithm>
+#include <functional>
+#include <mutex>
+#include <numeric>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "base/parallel.h"
+#include "fit/selection/shortlist.h"
+
+namespace axisfit {
+namespace {
+
+bool is_of_validation(const Rejection& rejection) {
+  return rejection.test == Rejection::Test::validation || rejection.test == Rejection::Test::power;
+}
+
+bool all_are_rejected(const std::vector<ExtendedModel>& models) {
+  return std::ranges::all_of(models,
+                             [](const ExtendedModel& e) { return e.rejection.has_value(); });
+}
+
+class RoundTrial {
+ public:
+  RoundTrial(const SelectionStep& model, const RoundOptions& options, const RunContext& context)
+      : model_(model),
+        options_(options),
+        context_(context),
+        is_complete_(explains(model)),
+        before_(residual_series(model.job, model.fit)) {}
+
+  RoundResult run() && {
+    refit_in_turns(entries());
+    keep_the_best_setting();
+    // Where nothing but noise is left, what lowers no error elsewhere is chance.
+    if (!is_complete_ && !options_.held_out_blocks && all_are_rejected(result_.models))
+      for (ExtendedModel& e : result_.models) {
+        try_to_replicate(e);
+        try_on_stretches(e);
+      }
+    choose();
+    return std::move(result_);
+  }
+
+ private:
+  void report_progress(const std::string& phase, int done = 0, int of = 0) const {
+    if (context_.progress) context_.progress({phase, done, of, model_.fit.reduced_chi_square});
+  }
+
+  /// A simulation that is far from the data must track them to be scored. Of one that is not, the
+  /// free-running residual is white, and its score is exact.
+  std::vector<double> gains_to_score() const {
+    if (is_complete_ && model_.job.options.observer != ObserverMode::fixed) return {0.0};
+    return score_gains(model_.job);
+  }
+
+  std::vector<ShortlistEntry> entries() {
+    report_progress("scoring effects");
+    Shortlist list = shortlist(model_.job, values_of(model_.fit), gains_to_score(), options_.curves,
+                               options_.shortlist, context_);
+    result_.tried = list.tried;
+    const double samples = samples_of(before_);
+    std::erase_if(list.entries, [&](const ShortlistEntry& entry) {
+      const bool is_chance =
+          is_complete_ && entry.gain < least_gain(entry.candidate, samples, result_.tried);
+      return is_chance || std::ranges::any_of(options_.excluded, [&](const Candidate& c) {
+               return same_effect(c, entry.candidate);
+             });
+    });
+    return std::move(list.entries);
+  }
+
+  /// What promises little beside the best is refitted only where that does not pass, and what a
+  /// simpler effect does as well where none of these does.
+  void refit_in_turns(std::vector<ShortlistEntry> entries) {
+    constexpr double kRival = 0.6;
+    double promised = 0.0;
+    for (const ShortlistEntry& entry : entries)
+      if (!entry.is_second) promised = std::max(promised, entry.gain);
+    const auto turn = [&](const ShortlistEntry& entry) {
+      return entry.is_second ? 2 : entry.gain >= kRival * promised ? 0 : 1;
+    };
+    std::ranges::stable_sort(entries, {}, turn);
+    for (auto next = entries.begin(); next != entries.end() && all_are_rejected(result_.models);) {
+      const auto end = std::ranges::upper_bound(next, entries.end(), turn(*next), {}, turn);
+      refit_all({next, end});
+      next = end;
+    }
+  }
+
+  /// Refits with each of these and judges it.
+  void refit_all(std::span<const ShortlistEntry> entries) {
+    std::vector<ExtendedModel>& models = result_.models;
+    const std::size_t first = models.size();
+    models.resize(first + entries.size());
+    // What takes longest first, so that nobody waits for it at the end.
+    std::vector<std::size_t> order(entries.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::greater{},
+                             [&](std::size_t i) { return entries[i].candidate.parameters(); });
+    int done = 0;
+    std::mutex mutex;
+    parallel_for(order.size(), [&](std::size_t k) {
+      const ShortlistEntry& p = entries[order[k]];
+      const auto report = [&](int step) {
+        const std::lock_guard lock(mutex);
+        done += step;
+        report_progress("trying " + p.candidate.name, done, static_cast<int>(entries.size()));
+      };
+      report(0);
+      ExtendedModel& e = models[first + order[k]];
+      e = fit_extended_model(model_.job, p.candidate, p.score.values, p.score.strengths,
+                             p.score.shapes, context_);
+      e.score = p.score.gain;
+      judge(e, before_, result_.tried, options_.chance);
+      report(1);
+    });
+  }
+
+  /// Of several settings of one effect.
+  void keep_the_best_setting() {
+    const auto is_preferred = [](const ExtendedModel& a, const ExtendedModel& b) {
+      if (a.rejection.has_value() != b.rejection.has_value()) return !a.rejection;
+      return bic_advantage(a, b) > 0.0;
+    };
+    std::vector<ExtendedModel> kept;
+    for (ExtendedModel& e : result_.models) {
+      const auto other = std::ranges::find_if(
+          kept, [&](const ExtendedModel& c) { return same_effect(c.candidate, e.candidate); });
+      if (other == kept.end())
+        kept.push_back(std::move(e));
+      else if (is_preferred(e, *other))
+        *other = std::move(e);
+    }
+    result_.models = std::move(kept);
+  }
+
+  Determination determined(const ExtendedModel& e) const {
+    return determination(e.job, e.fit, e.candidate, e.residuals);
+  }
+
+  /// What lowers the error of one recording and not that of another may yet be in both, where
+  /// something else differs between them.
+  void try_to_replicate(ExtendedModel& e) const {
+    if (!e.fit.usable || !is_of_validation(*e.rejection)) return;
+    report_progress("does " + e.candidate.name + " replicate?");
+    const auto elsewhere = fit_elsewhere(e.job, e.fit, context_);
+    if (!elsewhere) return;
+    Replication found = replication(e.job, e.fit, *elsewhere, e.candidate);
+    if (!found.is_alike) return;
+    e.rejection = rejection_of(e.candidate, e.gain, determined(e), result_.tried, kChance, true);
+    if (!e.rejection) e.replication = std::move(found);
+  }
+
+  /// What the recordings to validate could not have shown is judged by stretches of the fitted
+  /// ones, held out from both fits.
+  void try_on_stretches(ExtendedModel& e) {
+    if (!e.fit.usable || !e.rejection || e.rejection->test != Rejection::Test::power) return;
+    report_progress("do held-out stretches show " + e.candidate.name + "?");
+    const auto held_out = [&](SelectionStep model) {
+      model = with_held_out_blocks(std::move(model), context_);
+      auto series = residual_series(model.job, model.fit);
+      std::erase_if(series, [&](const ResidualSeries& s) {
+        return model.job.recordings[s.recording].role != Role::fit;
+      });
+      return series;
+    };
+    if (!stretches_before_) stretches_before_ = held_out(model_);
+    Improvement gain = improvement(*stretches_before_, held_out({"", e.job, e.fit}));
+    gain.fit_gain = e.gain.fit_gain;
+    gain.samples = e.gain.samples;
+    if (rejection_of(e.candidate, gain, determined(e), result_.tried)) return;
+    e.rejection.reset();
+    e.gain = gain;
+    e.on_stretches = true;
+  }
+
+  void choose() {
+    const ExtendedModel* best = nullptr;
+    for (const ExtendedModel& e : result_.models)
+      if (!e.rejection && (best == nullptr || bic_advantage(e, *best) > 0.0)) best = &e;
+    if (best == nullptr) return;
+    const auto is_equal = [&](const ExtendedModel& e) {
+      return !e.rejection && !is_clearly_worse(bic_advantage(*best, e));
+    };
+    // No simpler effect does as well.
+    for (const ExtendedModel& e : result_.models)
+      if (e.candidate.parameters() < best->candidate.parameters() && is_equal(e)) best = &e;
+    // Nor does a clock that is a little off: that is no part of the machine.
+    for (const ExtendedModel& e : result_.models)
+      if (!best->candidate.is_timing && e.candidate.is_timing && is_equal(e)) best = &e;
+    result_.best = static_cast<std::size_t>(best - result_.models.data());
+  }
+
+  const SelectionStep& model_;
+  const RoundOptions& options_;
+  const RunContext& context_;
+  const bool is_complete_;
+  const std::vector<ResidualSeries> before_;
+  RoundResult result_;
+  /// Of the model, fitted to every second stretch, once an effect was tried so.
+  std::optional<std::vector<ResidualSeries>> stretches_before_;
+};
+
+}  // namespace
+
+RoundResult try_round(const SelectionStep& model, const RoundOptions& options,
+                      const RunContext& context) {
+  return RoundTrial(model, options, context).run();
+}
+
+void judge(ExtendedModel& e, const std::vector<ResidualSeries>& before, std::size_t tried,
+           double chance) {
+  e.gain = improvement(before, e.residuals);
+  e.rejection = e.fit.usable ? rejection_of(e.candidate, e.gain,
+                                            determination(e.job, e.fit, e.candidate, e.residuals),
+                                            tried, chance)
+                             : Rejection{.test = Rejection::Test::fit};
+}
+
+SelectionStep with_held_out_blocks(SelectionStep model, const RunContext& context) {
+  constexpr std::size_t kBlocks = 10;
+  for (Recording& r : model.job.recordings) {
+    r.held_out.assign(r.times.size(), false);
+    for (std::size_t i = 0; i < r.times.size(); ++i)
+      r.held_out[i] = i * kBlocks / r.times.size() % 2 == 1;
+  }
+  model.fit = refit_from(model.job, values_of(model.fit), context);
+  return model;
+}
+
+}  // namespace axisfit
