@@ -65,6 +65,13 @@ bool stands_alone(const EffectInfo& effect) {
   });
 }
 
+/// Whether an effect is nothing without the dry friction that it changes.
+bool changes_dry_friction(const std::string& name) {
+  const auto effect = effect_named(name);
+  return effect &&
+         std::ranges::any_of(kEffectTable[*effect].search({}), &SearchEntry::changes_dry_friction);
+}
+
 /// All effects but the curves, dead time and instruments, and at last a curve, which stands for an
 /// effect outside of the catalogue.
 const std::vector<std::string>& secret_names() {
@@ -221,7 +228,10 @@ Job job_of(const Rig& rig, const Model<double>& declared, const std::vector<Moti
     exclude_acceleration_at_standstill(recording);
     job.recordings.push_back(std::move(recording));
   }
-  for (const char* name : {"V_L", "B_a", "b_g", "k_g", "T_p"})
+  std::vector<const char*> names{"V_L", "B_a", "b_g", "k_g", "T_p"};
+  if (declared.structure.effects[*effect_named("coulomb_friction")])
+    names.push_back("coulomb_friction.F_c");
+  for (const char* name : names)
     job.free.push_back(free_parameter(job.model, name, draw.factor(2.0)));
   return job;
 }
@@ -250,6 +260,8 @@ Outcome run(const Case& one, const Rig& paper, std::uint64_t seed) {
     *p *= draw.factor(1.4);
   axis.T_p *= draw.factor(1.5);
   if (draw.uniform(0.0, 1.0) < 0.5) axis.F_s = 0.0;
+  if (std::ranges::any_of(one.in, changes_dry_friction))
+    put({"coulomb_friction", {{"F_c", 1}}, {}, 8}, 8.0, rig.model);
   const int kind = static_cast<int>(draw.uniform(0, 4));
   std::vector<Motion> motions{draw_motion(kind, draw), draw_motion((kind + 1) % 4, draw)};
   const Model<double> declared = rig.model;

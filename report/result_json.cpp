@@ -291,6 +291,13 @@ Json residual_json(const Job& job, const Diagnosis& diagnosis) {
           {"missing_force", std::move(forces)}};
 }
 
+Json closed_form_term_json(const ClosedForm::Term& term) {
+  return {{"factor", term.factor},
+          {"standard_error", term.standard_error},
+          {"unit", term.unit},
+          {"form", term.form}};
+}
+
 Json effect_json(const EffectTrial& t) {
   const bool judged = t.improvement.comparable;
   Json json{{"name", t.candidate.name},
@@ -307,6 +314,11 @@ Json effect_json(const EffectTrial& t) {
   if (t.replication)
     json["elsewhere"] = {{"alike", t.replication->is_alike},
                          {"parameters", list(t.replication->parameters, estimate_json)}};
+  if (t.closed_form)
+    json["closed_form"] = {{"text", closed_form_text(*t.closed_form)},
+                           {"terms", list(t.closed_form->terms, closed_form_term_json)},
+                           {"chi_square", t.closed_form->chi_square},
+                           {"degrees_of_freedom", t.closed_form->degrees_of_freedom}};
   return json;
 }
 

@@ -10,6 +10,7 @@
 
 #include "base/parallel.h"
 #include "fit/selection/shortlist.h"
+#include "sim/effects/effects.h"
 
 namespace axisfit {
 namespace {
@@ -159,6 +160,9 @@ class RoundTrial {
   /// ones, held out from both fits.
   void try_on_stretches(ExtendedModel& e) {
     if (!e.fit.usable || !e.rejection || e.rejection->test != Rejection::Test::power) return;
+    // A disturbance goes on from one stretch to the next: only another recording tells it from a
+    // law.
+    if (e.candidate.name == ForceOverTime<double>::name) return;
     report_progress("do held-out stretches show " + e.candidate.name + "?");
     const auto held_out = [&](SelectionStep model) {
       model = with_held_out_blocks(std::move(model), context_);

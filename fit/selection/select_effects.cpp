@@ -98,8 +98,13 @@ class EffectSelector {
     if (!round(true)) return restore(appended);
     search_named();
     eliminate_backward();
-    const double loss = loss_of(appended.chain.current(), current());
-    if (loss > 0.0 && (appends || is_clearly_worse(loss))) restore(appended);
+    const SelectionStep& rival = appended.chain.current();
+    const double loss = loss_of(rival, current());
+    // A curve has a mean, too: what is not fitted must tell it from a named effect.
+    const Improvement gain = improvement(residual_series(rival.job, rival.fit),
+                                         residual_series(current().job, current().fit));
+    const bool is_proven = gain.comparable && gain.p_value < kChance;
+    if (!is_proven || (loss > 0.0 && (appends || is_clearly_worse(loss)))) restore(appended);
   }
 
   /// By how much b explains the recordings worse than a, parameters counted.
@@ -354,6 +359,11 @@ class EffectSelector {
                        residual_series(current().job, current().fit));
   }
 
+  /// Whether all that it does, to first order, is to act later: a delay or a lag.
+  static bool is_delay(const Candidate& candidate) {
+    return !candidate.is_constant && candidate.strengths.size() == 1 &&
+           quantity_list()[candidate.strengths.front()].quantity.unit == "s";
+  }
   /// Which of two clocks is off matters little: without either, all that is estimated pays for it.
   /// The chosen one stays, and the other is named beside it.
   void keep_with_equal(const RivalPair& pair) {
@@ -469,7 +479,7 @@ class EffectSelector {
         if (is_clearly_worse(loss_with(e))) continue;
         if (trials_.find(e.candidate) == nullptr) trials_.record(e, &e, round_);
         RivalPair pair{a, e.candidate, fitted_model(e.job, e.fit)};
-        if (accepted[a].candidate.is_timing && e.candidate.is_timing)
+        if (is_delay(accepted[a].candidate) && is_delay(e.candidate))
           keep_with_equal(pair);
         else
           rival_pairs_.push_back(std::move(pair));
@@ -520,6 +530,9 @@ void EffectSelector::finish() {
       result_.interrupted = true;
     }
   }
+  for (const AcceptedEffect& a : chain_.accepted())
+    if (EffectTrial* trial = trials_.find(a.candidate); trial != nullptr && a.candidate.is_curve)
+      trial->closed_form = closed_form(last.job, last.fit, a.candidate);
   decide();
   result_.models = chain_.models();
   result_.effects = trials_.list();

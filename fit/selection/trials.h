@@ -1,9 +1,11 @@
 // The effects that were refitted, and what became of each.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "fit/selection/closed_form.h"
 #include "fit/selection/extended_model.h"
 
 namespace axisfit {
@@ -39,6 +41,7 @@ struct EffectTrial {
   Improvement improvement;                  ///< against the model before it
   /// Of an accepted effect, what the recordings to validate say of it by themselves.
   std::optional<Replication> replication{};
+  std::optional<ClosedForm> closed_form{};  ///< of an accepted curve
 };
 
 /// Of every effect its last trial.

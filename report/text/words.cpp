@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "base/terminal.h"
+#include "base/text_table.h"
 #include "base/units.h"
 
 namespace axisfit {
@@ -217,6 +218,15 @@ std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour)
   return text;
 }
 
+std::string closed_form_text(const ClosedForm& closed_form) {
+  std::vector<std::string> terms;
+  for (const ClosedForm::Term& term : closed_form.terms)
+    terms.push_back(fmt::format("({} +- {:.2g}) {} {}",
+                                with_digits_of(term.factor, term.standard_error),
+                                term.standard_error, term.unit, term.form));
+  return fmt::format("{}", fmt::join(terms, " + "));
+}
+
 std::string verdict_text(const EffectSelection& selection) {
   using enum SelectionVerdict::Kind;
   const SelectionVerdict& verdict = selection.verdict;
@@ -240,6 +250,10 @@ std::string verdict_text(const EffectSelection& selection) {
                       verdict.accepted.size() > 1 ? "them" : "it", verdict.validate_percent,
                       selection.explained ? ", and every signal is explained down to its noise."
                                           : ", but not down to the noise.");
+      for (const EffectTrial& t : selection.effects)
+        if (t.closed_form)
+          text += fmt::format(" {} is explained as well by {}.", t.candidate.name,
+                              closed_form_text(*t.closed_form));
       for (const UndecidedPair& pair : selection.rivals)
         if (std::ranges::find(verdict.accepted, pair.chosen) != verdict.accepted.end())
           text += fmt::format(" These recordings do not tell {} from {}.", pair.chosen, pair.rival);

@@ -1,0 +1,120 @@
+#include "fit/selection/closed_form.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "base/linear_algebra.h"
+#include "base/random.h"
+#include "tests/fit/example.h"
+
+namespace axisfit {
+namespace {
+
+/// A fit that found a curve over 0 ... 1 m/s or m: that nearest to a function, with independent
+/// errors of this size.
+class FoundCurve {
+ public:
+  template <template <class> class Of>
+  static FoundCurve of(const std::function<double(double)>& f, double error) {
+    using CurveType = Of<double>;
+    FoundCurve found;
+    add_effect<Of>(found.job.model) = {};
+    Model<double> model = found.job.model;
+    const auto member = members(model);
+    const std::string group(CurveType::name);
+    *member[find_quantity(group + ".to")->index] = 1.0;
+    CurveType one{};
+    one.to = 1.0;
+    constexpr int kPoints = 300;
+    Eigen::MatrixXd basis(kPoints, CurveType::kCoefficients);
+    Eigen::VectorXd values(kPoints);
+    for (int i = 0; i < kPoints; ++i) {
+      const double x = (i + 0.5) / kPoints;
+      values[i] = f(x);
+      for (std::size_t k = 0; k < CurveType::kCoefficients; ++k) {
+        one.c.fill(0.0);
+        one.c[k] = 1.0;
+        basis(i, static_cast<Eigen::Index>(k)) = one.value(x);
+      }
+    }
+    const Eigen::VectorXd c = LeastSquaresSolver(basis).solve(values);
+    found.job.model = model;
+    std::mt19937_64 random(7);
+    for (std::size_t k = 1; k + 1 < CurveType::kCoefficients; ++k) {
+      const std::string name = group + "." + std::string(CurveType::kNames[k]);
+      found.job.free.push_back(free_parameter(name, 0.0));
+      ParameterResult p;
+      p.name = name;
+      p.value = c[static_cast<Eigen::Index>(k)] + error * normal(random);
+      p.uncertainty.determined = true;
+      p.uncertainty.standard_error = error;
+      found.fit.parameters.push_back(p);
+      found.curve.strengths.push_back(find_quantity(name)->index);
+    }
+    found.curve.name = group;
+    found.curve.shapes = {find_quantity(group + ".from")->index,
+                          find_quantity(group + ".to")->index};
+    const auto n = static_cast<Eigen::Index>(found.job.free.size());
+    found.fit.correlation = Eigen::MatrixXd::Identity(n, n);
+    found.fit.degrees_of_freedom = 2000.0;
+    return found;
+  }
+  std::optional<ClosedForm> closed() const { return closed_form(job, fit, curve); }
+
+  Job job;
+  FitResult fit;
+  Candidate curve;
+};
+
+TEST(ClosedForm, OfQuadraticDragIsOneTerm) {
+  const auto found =
+      FoundCurve::of<FrictionOverVelocity>([](double v) { return 3.0 + 8.0 * v * v; }, 0.02)
+          .closed();
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->terms.size(), 1u);
+  EXPECT_EQ(found->terms[0].form, "|v|^2");
+  EXPECT_EQ(found->terms[0].unit, "N s^2/m^2");
+  EXPECT_NEAR(found->terms[0].factor, 8.0, 4.0 * found->terms[0].standard_error);
+  EXPECT_LT(found->terms[0].standard_error, 0.2);
+}
+
+TEST(ClosedForm, OfStribeckFrictionIsAnExponential) {
+  const auto found = FoundCurve::of<FrictionOverVelocity>(
+                         [](double v) { return 5.0 * std::exp(-v / 0.2) + 2.0 * v; }, 0.02)
+                         .closed();
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->terms.size(), 1u);
+  EXPECT_EQ(found->terms[0].form.substr(0, 11), "exp(-|v| / ");
+  EXPECT_NEAR(std::stod(found->terms[0].form.substr(11)), 0.2, 0.02);
+  EXPECT_NEAR(found->terms[0].factor, 5.0, 0.2);
+}
+
+TEST(ClosedForm, OfABumpIsABell) {
+  const auto found =
+      FoundCurve::of<FrictionOverPosition>(
+          [](double y) { return 4.0 * std::exp(-std::pow((y - 0.4) / 0.15, 2)); }, 0.05)
+          .closed();
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->terms.size(), 1u);
+  EXPECT_EQ(found->terms[0].form.substr(0, 10), "exp(-((y -");
+  EXPECT_NEAR(found->terms[0].factor, 4.0, 0.3);
+}
+
+// Coefficients that nothing connects.
+TEST(ClosedForm, IsNoneForACurveThatWriggles) {
+  EXPECT_FALSE(
+      FoundCurve::of<FrictionOverPosition>(
+          [](double y) { return std::sin(40.0 * y * y) + 2.0 * std::cos(11.0 / (y + 0.3)); }, 0.01)
+          .closed());
+}
+
+// Then the coefficients say so little that a constant would do.
+TEST(ClosedForm, IsNoneWhereNothingButAConstantIsSeen) {
+  const auto found = FoundCurve::of<FrictionOverPosition>([](double) { return 2.0; }, 0.1).closed();
+  EXPECT_FALSE(found);
+}
+
+}  // namespace
+}  // namespace axisfit
