@@ -38,7 +38,7 @@ std::string gain_shift_text(const GainShift& shift, std::string_view unit);
 /// What to do where another observer gain predicts better; empty where none does.
 std::string better_gain_text(const FitResult& fit);
 
-/// "(8.1 +- 0.2) N exp(-|v| / 0.02 m/s)".
+/// "(8.10 +- 0.20) N exp(-|v| / 0.02 m/s)".
 std::string closed_form_text(const ClosedForm& closed_form);
 /// In which motion and signal two undecided effects differ, one sentence.
 std::string discrimination_text(const Discrimination& discrimination);

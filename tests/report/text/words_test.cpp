@@ -112,12 +112,12 @@ TEST(WordsTest, OfWhatASearchComesTo) {
   EffectTrial curve;
   curve.candidate.name = "friction_over_velocity";
   curve.closed_form = ClosedForm{
-      {{5.031, 0.18, "N", "exp(-|v| / 0.2 m/s)"}, {-8.2, 0.4, "N s^2/m^2", "|v|^2"}}, 7.0, 9.0};
+      {{5.031, 0.18, "N", "exp(-|v| / 0.2 m/s)"}, {-8.2, 0.42, "N s^2/m^2", "|v|^2"}}, 7.0, 9.0};
   selection.effects.push_back(curve);
   EXPECT_EQ(verdict_text(selection),
             "The model lacked T_z, spring. With them, the validation error falls by 71.4 %, and "
             "every signal is explained down to its noise. friction_over_velocity is explained as "
-            "well by (5.03 +- 0.18) N exp(-|v| / 0.2 m/s) + (-8.2 +- 0.4) N s^2/m^2 |v|^2.");
+            "well by (5.03 +- 0.18) N exp(-|v| / 0.2 m/s) + (-8.20 +- 0.42) N s^2/m^2 |v|^2.");
   selection.effects.clear();
   selection.verdict = {.kind = undecided, .undecided = {"spring", "position.gain"}};
   EXPECT_EQ(verdict_text(selection), "Undecided: spring, position.gain; none of them was added.");
