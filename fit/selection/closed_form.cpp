@@ -106,7 +106,7 @@ std::vector<Form> forms_over(const Variable& x, double from, double to) {
 /// The coefficients of the curve that is nearest to a function.
 class SplineFit {
  public:
-  SplineFit(double from, double to, bool closes) : from_(from), to_(to), closes_(closes) {
+  SplineFit(double from, double to, bool closes) : from_(from), to_(to) {
     basis_.resize(kPoints, kCount);
     for (int k = 0; k < kCount; ++k) {
       ForceOverMotorAngle<double> closed{};
@@ -131,7 +131,6 @@ class SplineFit {
   double at(int i) const { return from_ + (to_ - from_) * (i + 0.5) / kPoints; }
 
   double from_, to_;
-  bool closes_;
   Eigen::MatrixXd basis_;
   std::optional<LeastSquaresSolver> solver_;
 };
