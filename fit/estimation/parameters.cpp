@@ -62,7 +62,7 @@ std::vector<double> initial_values(const Job& job) {
 }
 
 void set_initial_values(Job& job, std::span<const double> values) {
-  for (std::size_t i = 0; i < job.free.size(); ++i)
+  for (std::size_t i = 0; i < values.size(); ++i)
     job.free[i].initial = std::clamp(values[i], job.free[i].lower, job.free[i].upper);
 }
 

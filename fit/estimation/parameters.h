@@ -45,7 +45,7 @@ class ParameterSpace {
 
 /// Where a job's fit begins, in the quantities' units.
 std::vector<double> initial_values(const Job& job);
-/// Lets it begin there, or at the bound that is nearest.
+/// Lets it begin there, or at the bound that is nearest: of the first so many parameters.
 void set_initial_values(Job& job, std::span<const double> values);
 
 /// The model of one recording of a job at u, with the recording's overrides and initial state.

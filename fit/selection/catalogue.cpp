@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "fit/estimation/continuation.h"
+#include "fit/estimation/parameters.h"
 #include "sim/equations.h"
 
 namespace axisfit {
@@ -182,8 +183,7 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
 Job with_candidate(const Job& job, const Candidate& candidate, std::span<const double> values,
                    std::span<const double> strengths, std::span<const double> shapes) {
   Job extended_job = job;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    extended_job.free[i].initial = std::clamp(values[i], job.free[i].lower, job.free[i].upper);
+  set_initial_values(extended_job, values);
   Structure& structure = extended_job.model.structure;
   const auto member = members(extended_job.model);
   structure = extended(structure, candidate.strengths.front());

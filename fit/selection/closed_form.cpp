@@ -46,13 +46,6 @@ std::string power_unit(const Variable& x, int power) {
   return power == 1 ? fmt::format("N/{}", x.unit) : fmt::format("N/{}^{}", x.unit, power);
 }
 
-std::vector<double> between(double low, double high, int count) {
-  std::vector<double> list;
-  for (int i = 0; i < count; ++i)
-    list.push_back(low * std::pow(high / low, static_cast<double>(i) / (count - 1)));
-  return list;
-}
-
 /// All terms over a range of the variable. Of what is inside a term, steps of a twentieth.
 std::vector<Form> forms_over(const Variable& x, double from, double to) {
   std::vector<Form> list;
@@ -75,7 +68,9 @@ std::vector<Form> forms_over(const Variable& x, double from, double to) {
     list.push_back({"v |v|", power_unit(x, 2), 0, [](double q) { return q * std::abs(q); }});
   }
   constexpr int kWidths = 40;
-  const auto widths = between(0.04 * range, 0.6 * range, kWidths);
+  std::vector<double> widths;
+  for (const auto& setting : geometric(0.04 * range, 0.6 * range, kWidths))
+    widths.push_back(setting.front());
   if (x.is_speed || x.unit == "s")
     for (const double w : widths)
       list.push_back({fmt::format("exp(-{} / {:.3g} {})", s, w, x.unit), "N", 1,
@@ -91,8 +86,9 @@ std::vector<Form> forms_over(const Variable& x, double from, double to) {
         list.push_back({fmt::format("exp(-(({} - {:.3g} m) / {:.3g} m)^2)", s, at, w), "N", 2,
                         [at, w](double q) { return std::exp(-std::pow((q - at) / w, 2)); }});
       }
-    for (const double period : between(0.2 * range, range, kWidths))
+    for (const auto& setting : geometric(0.2 * range, range, kWidths))
       for (int i = 0; i < 24; ++i) {
+        const double period = setting.front();
         const double phase = std::numbers::pi * i / 24.0;
         list.push_back({fmt::format("sin(2 pi {} / {:.3g} m + {:.3g})", s, period, phase), "N", 2,
                         [period, phase](double q) {
@@ -135,42 +131,86 @@ class SplineFit {
   std::optional<LeastSquaresSolver> solver_;
 };
 
+/// Of the coefficients of a curve those that the recordings determine, and their covariance.
+class KnownCoefficients {
+ public:
+  /// Nothing where they are too few, or their covariance is none.
+  static std::optional<KnownCoefficients> of(const Job& job, const FitResult& fit,
+                                             const Candidate& curve) {
+    if (fit.correlation.rows() != static_cast<Eigen::Index>(job.free.size())) return std::nullopt;
+    KnownCoefficients known;
+    std::vector<Eigen::Index> of_fit;
+    std::vector<double> values, errors;
+    for (std::size_t i = 0; i < job.free.size(); ++i) {
+      const ParameterResult& p = fit.parameters[i];
+      const auto own = std::ranges::find(curve.strengths, job.free[i].quantity);
+      if (own == curve.strengths.end() || !p.uncertainty.determined) continue;
+      of_fit.push_back(static_cast<Eigen::Index>(i));
+      values.push_back(p.value);
+      errors.push_back(p.uncertainty.standard_error);
+      // The first coefficient is no strength, see curve.h.
+      known.place_.push_back(1 + (own - curve.strengths.begin()));
+    }
+    constexpr Eigen::Index kLeast = 4;
+    if (known.count() < kLeast) return std::nullopt;
+    const Eigen::Map<const Eigen::VectorXd> error(errors.data(), known.count());
+    known.root_.compute(error.asDiagonal() * Eigen::MatrixXd(fit.correlation(of_fit, of_fit)) *
+                        error.asDiagonal());
+    if (known.root_.info() != Eigen::Success) return std::nullopt;
+    known.found_ = known.root_.matrixL().solve(
+        Eigen::Map<const Eigen::VectorXd>(values.data(), known.count()));
+    return known;
+  }
+
+  Eigen::Index count() const { return static_cast<Eigen::Index>(place_.size()); }
+  /// As found, and those of all of a curve's, both with unit covariance.
+  const Eigen::VectorXd& found() const { return found_; }
+  Eigen::VectorXd whitened(const Eigen::VectorXd& coefficients) const {
+    return root_.matrixL().solve(Eigen::VectorXd(coefficients(place_)));
+  }
+
+ private:
+  std::vector<Eigen::Index> place_;
+  Eigen::LLT<Eigen::MatrixXd> root_;
+  Eigen::VectorXd found_;
+};
+
+Eigen::MatrixXd with_column(Eigen::MatrixXd a, const Eigen::VectorXd& column) {
+  a.conservativeResize(Eigen::NoChange, a.cols() + 1);
+  a.col(a.cols() - 1) = column;
+  return a;
+}
+
+/// The form that, beside these terms, takes most off what they leave, the price of what is inside
+/// it counted; as many as there are forms: none takes any.
+std::size_t best_beside(const Eigen::MatrixXd& terms, const Eigen::VectorXd& left,
+                        const std::vector<Form>& forms, const Eigen::MatrixXd& columns,
+                        double price) {
+  constexpr double kAlias = 1e-6;
+  const Eigen::MatrixXd basis = LeastSquaresSolver(terms).basis();
+  const Eigen::MatrixXd own = columns - basis * (basis.transpose() * columns);
+  double most = 0.0;
+  std::size_t best = forms.size();
+  for (std::size_t g = 0; g < forms.size(); ++g) {
+    const auto k = static_cast<Eigen::Index>(g);
+    if (own.col(k).norm() < kAlias * columns.col(k).norm()) continue;
+    const double gain =
+        std::pow(own.col(k).dot(left), 2) / own.col(k).squaredNorm() - forms[g].inside * price;
+    if (gain <= most) continue;
+    most = gain;
+    best = g;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
                                       const Candidate& curve) {
   const auto* x = std::ranges::find(kVariables, curve.name, &Variable::effect);
-  const auto free_count = static_cast<Eigen::Index>(job.free.size());
-  if (x == std::end(kVariables) || fit.correlation.rows() != free_count) return std::nullopt;
-  // The coefficients that the recordings determine, and their covariance.
-  std::vector<Eigen::Index> known, place;
-  for (std::size_t i = 0; i < job.free.size(); ++i) {
-    const auto own = std::ranges::find(curve.strengths, job.free[i].quantity);
-    if (own == curve.strengths.end() || !fit.parameters[i].uncertainty.determined) continue;
-    known.push_back(static_cast<Eigen::Index>(i));
-    // The first coefficient is no strength, see curve.h.
-    place.push_back(1 + (own - curve.strengths.begin()));
-  }
-  const auto count = static_cast<Eigen::Index>(known.size());
-  if (count < 4) return std::nullopt;
-  Eigen::VectorXd found(count), errors(count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const ParameterResult& p =
-        fit.parameters[static_cast<std::size_t>(known[static_cast<std::size_t>(k)])];
-    found[k] = p.value;
-    errors[k] = p.uncertainty.standard_error;
-  }
-  const Eigen::MatrixXd covariance =
-      errors.asDiagonal() * Eigen::MatrixXd(fit.correlation(known, known)) * errors.asDiagonal();
-  const Eigen::LLT<Eigen::MatrixXd> root(covariance);
-  if (root.info() != Eigen::Success) return std::nullopt;
-  const auto whitened = [&](const Eigen::VectorXd& coefficients) {
-    Eigen::VectorXd own(count);
-    for (Eigen::Index k = 0; k < count; ++k)
-      own[k] = coefficients[place[static_cast<std::size_t>(k)]];
-    return Eigen::VectorXd(root.matrixL().solve(own));
-  };
-
+  if (x == std::end(kVariables)) return std::nullopt;
+  const auto known = KnownCoefficients::of(job, fit, curve);
+  if (!known) return std::nullopt;
   const bool closes = x->unit == "rad";
   double from = 0.0, to = 2.0 * std::numbers::pi;
   if (!closes) {
@@ -179,70 +219,52 @@ std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
     to = own.shapes[1];
   }
   const SplineFit spline(from, to, closes);
-  const Eigen::VectorXd target = root.matrixL().solve(found);
-  // What other effects hold.
-  Eigen::MatrixXd terms = whitened(spline.coefficients([](double) { return 1.0; }));
-  const auto add = [&terms](const Eigen::VectorXd& column) {
-    terms.conservativeResize(Eigen::NoChange, terms.cols() + 1);
-    terms.col(terms.cols() - 1) = column;
+  const auto column_of = [&](const std::function<double(double)>& f) {
+    return known->whitened(spline.coefficients(f));
   };
-  if (x->has_line_elsewhere) add(whitened(spline.coefficients([](double q) { return q; })));
+  const std::vector<Form> forms = forms_over(*x, from, to);
+  Eigen::MatrixXd columns(known->count(), static_cast<Eigen::Index>(forms.size()));
+  for (std::size_t g = 0; g < forms.size(); ++g)
+    columns.col(static_cast<Eigen::Index>(g)) = column_of(forms[g].value);
+
+  // First what other effects hold.
+  Eigen::MatrixXd terms = column_of([](double) { return 1.0; });
+  if (x->has_line_elsewhere) terms = with_column(terms, column_of([](double q) { return q; }));
   const Eigen::Index elsewhere = terms.cols();
-
-  const std::vector<Form> grammar = forms_over(*x, from, to);
-  Eigen::MatrixXd columns(count, static_cast<Eigen::Index>(grammar.size()));
-  for (std::size_t g = 0; g < grammar.size(); ++g)
-    columns.col(static_cast<Eigen::Index>(g)) = whitened(spline.coefficients(grammar[g].value));
-
-  const auto left_of = [&target](const Eigen::MatrixXd& a) {
-    return (target - a * LeastSquaresSolver(a).solve(target)).squaredNorm();
-  };
+  const auto count = static_cast<double>(known->count() - elsewhere);
   const double price = std::log(std::max(2.0, fit.degrees_of_freedom));
-  // Of the coefficients, or of nothing at all.
-  double best_cost = std::min(static_cast<double>(count - elsewhere) * price, left_of(terms));
-  std::optional<ClosedForm> best;
-  std::vector<std::size_t> chosen;
-  constexpr std::size_t kMost = 3;
+  double least_cost = count * price;  // of the coefficients
   double parameters = 0.0;
-  while (chosen.size() < kMost) {
-    const Eigen::MatrixXd basis = LeastSquaresSolver(terms).basis();
-    const Eigen::VectorXd left = target - basis * (basis.transpose() * target);
-    double most = 0.0;
-    std::size_t next = grammar.size();
-    for (std::size_t g = 0; g < grammar.size(); ++g) {
-      const Eigen::VectorXd raw = columns.col(static_cast<Eigen::Index>(g));
-      const Eigen::VectorXd own = raw - basis * (basis.transpose() * raw);
-      if (own.norm() < 1e-6 * raw.norm()) continue;
-      const double gain =
-          std::pow(own.dot(left), 2) / own.squaredNorm() - grammar[g].inside * price;
-      if (gain > most) {
-        most = gain;
-        next = g;
+  std::vector<std::size_t> chosen;
+  std::optional<ClosedForm> best;
+  for (;;) {
+    const Eigen::VectorXd factors = LeastSquaresSolver(terms).solve(known->found());
+    const Eigen::VectorXd left = known->found() - terms * factors;
+    const double chi_square = left.squaredNorm(), degrees = count - parameters;
+    const double cost = chi_square + parameters * price;
+    if (chosen.empty()) {
+      least_cost = std::min(least_cost, cost);  // of nothing at all
+    } else if (cost < least_cost && degrees > 0.0 &&
+               chi_square <= chi_square_upper_quantile(1e-3, degrees)) {
+      least_cost = cost;
+      best = ClosedForm{{}, chi_square, degrees};
+      const Eigen::MatrixXd variance =
+          Eigen::LLT<Eigen::MatrixXd>(terms.transpose() * terms)
+              .solve(Eigen::MatrixXd::Identity(terms.cols(), terms.cols()));
+      for (std::size_t c = 0; c < chosen.size(); ++c) {
+        const Eigen::Index k = elsewhere + static_cast<Eigen::Index>(c);
+        best->terms.push_back(
+            {factors[k], std::sqrt(variance(k, k)), forms[chosen[c]].unit, forms[chosen[c]].text});
       }
     }
-    if (next == grammar.size()) break;
+    constexpr std::size_t kMost = 3;
+    if (chosen.size() == kMost) return best;
+    const std::size_t next = best_beside(terms, left, forms, columns, price);
+    if (next == forms.size()) return best;
     chosen.push_back(next);
-    add(columns.col(static_cast<Eigen::Index>(next)));
-    parameters += 1.0 + grammar[next].inside;
-    const LeastSquaresSolver solver(terms);
-    const Eigen::VectorXd factors = solver.solve(target);
-    const double chi_square = (target - terms * factors).squaredNorm();
-    const double degrees = static_cast<double>(count - elsewhere) - parameters;
-    const double cost = chi_square + parameters * price;
-    if (degrees <= 0.0 || cost >= best_cost) continue;
-    if (chi_square > chi_square_upper_quantile(1e-3, degrees)) continue;
-    best_cost = cost;
-    best = ClosedForm{{}, chi_square, degrees};
-    const Eigen::MatrixXd variance =
-        Eigen::LLT<Eigen::MatrixXd>(terms.transpose() * terms)
-            .solve(Eigen::MatrixXd::Identity(terms.cols(), terms.cols()));
-    for (std::size_t c = 0; c < chosen.size(); ++c) {
-      const Eigen::Index k = elsewhere + static_cast<Eigen::Index>(c);
-      best->terms.push_back({factors[k], std::sqrt(variance(k, k)), grammar[chosen[c]].unit,
-                             grammar[chosen[c]].text});
-    }
+    terms = with_column(terms, columns.col(static_cast<Eigen::Index>(next)));
+    parameters += 1.0 + forms[next].inside;
   }
-  return best;
 }
 
 }  // namespace axisfit

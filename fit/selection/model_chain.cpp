@@ -18,6 +18,7 @@ bool explains(const SelectionStep& model) {
 void ModelChain::append(AcceptedEffect effect, Job job, FitResult fit) {
   models_.push_back({effect.candidate.name, std::move(job), std::move(fit)});
   accepted_.push_back(std::move(effect));
+  neighbours_ = {};  // of the model before, not to be copied with every state put aside
 }
 
 void ModelChain::restart(SelectionStep declared) {

@@ -162,11 +162,11 @@ class EffectSelector {
       const Candidate candidate = chain_.accepted()[a].candidate;
       const std::string shape = shape_at_bound(current().job, current().fit, candidate);
       if (shape.empty()) continue;
-      SelectionStep reduced = chain_.without(a);
+      const SelectionStep& reduced = chain_.without(a);
       if (!reduced.fit.usable) continue;
       trials_.fail(candidate, {.test = Rejection::Test::bound, .parameter = shape});
       degenerate_.push_back(candidate);
-      take_out(a, std::move(reduced));
+      take_out(a, reduced);
       return true;
     }
     return false;
@@ -226,9 +226,13 @@ class EffectSelector {
     return true;
   }
 
-  /// Takes an accepted effect out, for what its trial says already; the model without it is given.
-  void take_out(std::size_t place, SelectionStep reduced) {
+  /// Strikes an accepted effect off, for what its trial says already, and what is part of it.
+  void strike_off(std::size_t place) {
     for (const Candidate& part : chain_.erase(place)) trials_.reject(part, Reason::not_needed);
+  }
+  /// Takes it out of the models; that without it is given.
+  void take_out(std::size_t place, SelectionStep reduced) {
+    strike_off(place);
     chain_.rebuild(std::move(reduced));
   }
 
@@ -236,32 +240,33 @@ class EffectSelector {
   /// the fit stays far from the noise, what the recordings to validate tell alike beside all other
   /// effects is needed.
   void eliminate_backward() {
-    for (std::size_t a = 0; a < chain_.accepted().size();) {
-      const bool is_far = !explained();
-      const auto is_plain = [&](const AcceptedEffect& effect) {
-        return is_far && is_alike_elsewhere(effect.candidate);
-      };
-      const AcceptedEffect& effect = chain_.accepted()[a];
-      const Candidate& candidate = effect.candidate;
-      if (is_plain(effect)) {
+    const auto& accepted = chain_.accepted();
+    bool is_far = !explained();
+    const auto is_plain = [&](const AcceptedEffect& effect) {
+      return is_far && is_alike_elsewhere(effect.candidate);
+    };
+    for (std::size_t a = 0; a < accepted.size();) {
+      const Candidate& candidate = accepted[a].candidate;
+      if (is_plain(accepted[a])) {
         ++a;
         continue;
       }
       report_progress("is " + candidate.name + " necessary?");
       std::vector<std::size_t> doubted;
-      for (std::size_t b = a; b < chain_.accepted().size(); ++b)
-        if (!is_plain(chain_.accepted()[b])) doubted.push_back(b);
+      for (std::size_t b = a; b < accepted.size(); ++b)
+        if (!is_plain(accepted[b])) doubted.push_back(b);
       chain_.fit_without(doubted);
-      SelectionStep reduced = chain_.without(a);
+      const SelectionStep& reduced = chain_.without(a);
       const Improvement gain = improvement(residual_series(reduced.job, reduced.fit),
                                            residual_series(current().job, current().fit));
       if (!reduced.fit.usable ||
-          is_needed(gain, candidate.parameters(), effect.is_seen_elsewhere)) {
+          is_needed(gain, candidate.parameters(), accepted[a].is_seen_elsewhere)) {
         ++a;
         continue;
       }
       trials_.reject(candidate, Reason::not_needed);
-      take_out(a, std::move(reduced));
+      take_out(a, reduced);
+      is_far = !explained();
       a = 0;
     }
   }
@@ -274,23 +279,21 @@ class EffectSelector {
     const auto& accepted = chain_.accepted();
     while (!accepted.empty() && !explained()) {
       const auto now = residual_series(current().job, current().fit);
-      SelectionStep least;
-      std::size_t place = 0;
+      std::optional<std::size_t> least;
       double percent = kLeastPercent;
       for (std::size_t a = 0; a < accepted.size(); ++a) {
         const Candidate& candidate = accepted[a].candidate;
         if (candidate.is_curve || is_alike_elsewhere(candidate)) continue;
         report_progress("what does " + candidate.name + " explain?");
-        SelectionStep reduced = chain_.without(a);
+        const SelectionStep& reduced = chain_.without(a);
         const Improvement gain = improvement(residual_series(reduced.job, reduced.fit), now);
         if (!reduced.fit.usable || gain.missing_percent >= percent) continue;
         percent = gain.missing_percent;
-        place = a;
-        least = std::move(reduced);
+        least = a;
       }
-      if (!least.fit.usable) return;
-      trials_.fail(accepted[place].candidate, {.test = Rejection::Test::share, .found = percent});
-      take_out(place, std::move(least));
+      if (!least) return;
+      trials_.fail(accepted[*least].candidate, {.test = Rejection::Test::share, .found = percent});
+      take_out(*least, chain_.without(*least));
     }
   }
 
@@ -386,10 +389,7 @@ class EffectSelector {
       add_pair(r);
       places.insert(r.place);
     }
-    for (const std::size_t place : places) {
-      SelectionStep reduced = chain_.without(place);
-      take_out(place, std::move(reduced));
-    }
+    for (const std::size_t place : places) take_out(place, chain_.without(place));
   }
 
   /// The constants that may be wrong in place of one that was corrected.
@@ -429,29 +429,29 @@ class EffectSelector {
     return list;
   }
 
-  /// By how much it explains the recordings worse than the present model.
-  double loss_with(const ExtendedModel& e) {
-    return bic_difference(residual_series(current().job, current().fit), current().job.free.size(),
-                          e.residuals, e.job.free.size());
+  /// By how much it explains the recordings worse than the present model, with these residuals.
+  double loss_with(const ExtendedModel& e, const std::vector<ResidualSeries>& now) const {
+    return bic_difference(now, current().job.free.size(), e.residuals, e.job.free.size());
   }
 
   /// Replaces the first accepted effect that has a clearly better rival.
   bool try_swap() {
     if (chain_.accepted().empty() || swapped_) return false;
     swapped_ = true;
+    const auto now = residual_series(current().job, current().fit);
     for (std::size_t a = 0; a < chain_.accepted().size(); ++a) {
       const AcceptedEffect& accepted = chain_.accepted()[a];
       if (accepted.rivals.empty()) continue;
       report_progress("any better than " + accepted.candidate.name + "?");
       for (ExtendedModel& e : fit_rivals(a, [](const Candidate&) { return true; })) {
-        if (!is_clearly_worse(-loss_with(e))) continue;
+        if (!is_clearly_worse(-loss_with(e, now))) continue;
         const SelectionStep& reduced = chain_.without(a);
         judge(e, residual_series(reduced.job, reduced.fit), tried_);
         if (e.rejection) continue;
         trials_.reject(accepted.candidate, Reason::replaced, e.candidate.name);
         trials_.record(e, &e, round_);
         // The exchanged effect goes last, where its parameters are.
-        for (const Candidate& part : chain_.erase(a)) trials_.reject(part, Reason::not_needed);
+        strike_off(a);
         chain_.accepted().push_back({e.candidate, {}});
         chain_.rebuild({e.candidate.name, std::move(e.job), std::move(e.fit)});
         return true;
@@ -474,9 +474,10 @@ class EffectSelector {
         return !is_behind && rival.parameters() <= chosen.parameters();
       });
     });
+    const auto now = residual_series(current().job, current().fit);
     for (std::size_t a = 0; a < accepted.size(); ++a) {
       for (const ExtendedModel& e : rivals[a]) {
-        if (is_clearly_worse(loss_with(e))) continue;
+        if (is_clearly_worse(loss_with(e, now))) continue;
         if (trials_.find(e.candidate) == nullptr) trials_.record(e, &e, round_);
         RivalPair pair{a, e.candidate, fitted_model(e.job, e.fit)};
         if (is_delay(accepted[a].candidate) && is_delay(e.candidate))
