@@ -7,6 +7,7 @@ acceleration.
 """
 import dataclasses
 import json
+import math
 import os
 import subprocess
 
@@ -119,6 +120,30 @@ LAWS = {
     "friction_over_velocity": lambda k, p: -curve(lambda k: np.abs(k.v))(k, p) * k.direction,
     "friction_over_position": lambda k, p: -curve(lambda k: k.y)(k, p) * k.direction,
 }  # fmt: skip
+
+
+def behind_gap(k, base, dry, others):
+    """The force between the motor, whose motion is recorded, and an arm behind a gap: the arm by small
+    steps, with dry friction that turns round over 0.1 mm/s, and the force of all other laws."""
+    steps, creep = 40, 1e-4  # per sample, m/s
+    h = 1.0 / (k.rate * steps)
+    y, v = k.y[0], k.v[0]
+    carried = np.zeros_like(k.v)
+    for i in range(len(k.v) - 1):
+        for step in range(steps):
+            part = step / steps
+            apart = k.y[i] + part * (k.y[i + 1] - k.y[i]) - y
+            beyond = apart - min(max(apart, -base["H"]), base["H"])
+            f = 0.0
+            if beyond != 0.0 or base["H"] == 0.0:
+                f = base["k_g"] * beyond + base["b_g"] * (k.v[i] + part * (k.v[i + 1] - k.v[i]) - v)
+            if step == 0:
+                carried[i] = f
+            v += h / base["M"] * (f - base["B_a"] * v - others[i] - dry * math.tanh(v / creep))
+            y += h * v
+    return carried
+
+
 ELSEWHERE = ("torque_fade", "force_droop", "drive_lag")  # they change the force that arrives
 
 
@@ -160,12 +185,18 @@ def lacking(values, recording):
                                       "bilinear")  # fmt: skip
         force = signal.lfilter(follow[0][0], follow[1], force)
     k = dataclasses.replace(k, force=force)
-    needed = base["M"] * k.a + base["B_a"] * k.v
+    needed = np.zeros_like(k.v)
     for effect, parameters in groups.items():
         if effect in LAWS:
             needed = needed + LAWS[effect](k, parameters)
         elif effect not in ("", "position", "velocity", "initial", *ELSEWHERE):
             raise Unknown(effect)
+    if "J_m" in base:  # r_g is 1 m
+        dry = groups.get("coulomb_friction", {"F_c": 0.0})["F_c"]
+        others = needed - dry * k.direction
+        needed = base["J_m"] * k.a + behind_gap(k, {"H": 0.0, **base}, dry, others)
+    else:
+        needed = needed + base["M"] * k.a + base["B_a"] * k.v
     return compared(force - needed, k.rate)
 
 

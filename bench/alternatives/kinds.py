@@ -94,15 +94,21 @@ KINDS = {
         lambda m, s, u, f: {"mass": m.mass * (1.0 + s)}, is_force=False, secret="M", most=2.0),
     "elastic": Kind(
         "a part of the mass on a spring, beyond what is guided", frozenset({"elastic_mode"}),
-        frozenset({"soft_transmission", "backlash"}),
+        frozenset({"soft_transmission", "compliance", "backlash"}),
         lambda m, s, u, f: {"motor_share": 1.0 - s, "guided": 1.0,
                             **coupled(m, s, between(12.0, 30.0, u[0]), 0.03)},
         0.2, is_force=False, setups=("servo",), most=0.7),
     "backlash": Kind(
-        "a gap between motor and load", frozenset({"soft_transmission", "backlash"}),
-        frozenset({"elastic_mode"}),
+        "a gap between motor and load", frozenset({"backlash"}),
+        frozenset({"soft_transmission", "compliance", "elastic_mode"}),
         lambda m, s, u, f: {"motor_share": 0.5, "gap": s, **coupled(m, 0.5, 60.0, 0.2)},
         1e-4, is_force=False, setups=("servo",), most=5e-3),
+    "belt": Kind(
+        "a soft belt to a load whose guide rubs", frozenset({"compliance"}),
+        frozenset({"soft_transmission", "backlash", "elastic_mode"}),
+        lambda m, s, u, f: {"motor_share": 0.3 + 0.5 * u[0],
+                            **coupled(m, 0.7 - 0.5 * u[0], between(20.0, 80.0, u[1]) / np.sqrt(s), 0.05)},
+        0.2, is_force=False, setups=("servo",), most=4.0),
     "lag": Kind(
         "a drive that follows with a lag", frozenset({"drive_lag"}), TIMING,
         lambda m, s, u, f: {"lag": s}, 2e-3, is_force=False, most=0.03),

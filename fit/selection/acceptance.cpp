@@ -109,7 +109,8 @@ Determination determination(const Job& job, const FitResult& result, const Candi
   for (std::size_t i = first; i < job.free.size(); ++i) {
     const ParameterResult& p = result.parameters[i];
     if (p.uncertainty.at_bound && d.at_bound.empty()) d.at_bound = p.name;
-    if (i >= first + strengths && !p.uncertainty.determined && d.undetermined.empty())
+    if (i >= first + strengths && !candidate.gives_backlash && !p.uncertainty.determined &&
+        d.undetermined.empty())
       d.undetermined = p.name;
   }
   constexpr double kByChance = 3e-4;
@@ -135,7 +136,10 @@ Determination determination(const Job& job, const FitResult& result, const Candi
   // A neutral value that is not zero, as a gain of one, is not part of the strength.
   Eigen::VectorXd zero(static_cast<Eigen::Index>(strengths));
   for (std::size_t i = 0; i < strengths; ++i)
-    zero[static_cast<Eigen::Index>(i)] = space.internal(first + i, candidate.neutral[i]);
+    // To first order in the compliance, none is one more of the logarithm of the stiffness.
+    zero[static_cast<Eigen::Index>(i)] = std::isinf(candidate.neutral[i])
+                                             ? u[static_cast<Eigen::Index>(first + i)] + 1.0
+                                             : space.internal(first + i, candidate.neutral[i]);
   const Eigen::VectorXd shown =
       mark - at.jacobian.middleCols(static_cast<Eigen::Index>(first),
                                     static_cast<Eigen::Index>(strengths)) *

@@ -7,6 +7,7 @@
 
 #include "fit/estimation/continuation.h"
 #include "fit/estimation/parameters.h"
+#include "fit/selection/backlash.h"
 #include "sim/equations.h"
 
 namespace axisfit {
@@ -115,11 +116,19 @@ std::pair<double, double> range_of_place(const Candidate& candidate, std::size_t
   return {std::max(q.lower, least - beyond), std::min(q.upper, most + beyond)};
 }
 
+/// One of the shapes of a candidate; NaN where it has none of that name.
+double shape_named(std::string_view name, const Candidate& candidate,
+                   std::span<const double> shapes) {
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    if (quantity_list()[candidate.shapes[i]].name == name) return shapes[i];
+  return NAN;
+}
+
 }  // namespace
 
 bool is_part_of(const Candidate& part, const Candidate& whole) {
   return part.extends == whole.name && whole.extends.empty() &&
-         quantity_list()[part.strengths.front()].group == whole.name;
+         (whole.gives_backlash || quantity_list()[part.strengths.front()].group == whole.name);
 }
 
 std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
@@ -145,6 +154,7 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
     }
   };
   for (const ActsOn place : kPlacesToAct) add_effects(place, false);
+  for (Candidate& c : transmission_candidates(job, scales)) list.push_back(std::move(c));
   const std::vector<double> both_signs{-2.0 * scales.interval, 2.0 * scales.interval};
   Candidate dead_time = single("dead_time", "drive", *find_quantity("T_d"));
   dead_time.is_timing = true;
@@ -187,6 +197,7 @@ Job with_candidate(const Job& job, const Candidate& candidate, std::span<const d
   Structure& structure = extended_job.model.structure;
   const auto member = members(extended_job.model);
   structure = extended(structure, candidate.strengths.front());
+  if (candidate.gives_backlash) give_backlash(extended_job, shape_named("J_m", candidate, shapes));
   // An effect that has been absent has no values yet.
   for (const QuantityEntry& entry : quantity_list()) {
     const bool same = entry.group == quantity_list()[candidate.strengths.front()].group;
@@ -198,6 +209,8 @@ Job with_candidate(const Job& job, const Candidate& candidate, std::span<const d
     FreeParameter p;
     if (candidate.is_constant) {
       p = free_parameter(entry.name, candidate.neutral[i]);
+    } else if (std::isinf(candidate.neutral[i])) {
+      p = free_parameter(entry.name, strengths[i]);
     } else {
       p.quantity = entry.index;
       p.lower = entry.quantity.lower;
@@ -210,7 +223,14 @@ Job with_candidate(const Job& job, const Candidate& candidate, std::span<const d
   for (std::size_t i = 0; i < candidate.shapes.size(); ++i) {
     *member[candidate.shapes[i]] = shapes[i];
     if (!candidate.shapes_are_free) continue;
-    const Quantity& q = quantity_list()[candidate.shapes[i]].quantity;
+    const QuantityEntry& entry = quantity_list()[candidate.shapes[i]];
+    if (candidate.gives_backlash) {
+      FreeParameter p = free_parameter(entry.name, shapes[i]);
+      p.lower *= 1e-4;  // hardly any damping is as good as none, and no bound
+      extended_job.free.push_back(p);
+      continue;
+    }
+    const Quantity& q = entry.quantity;
     FreeParameter p;
     p.quantity = candidate.shapes[i];
     p.logarithmic = q.lower > 0.0;

@@ -1,6 +1,7 @@
 // The catalogue: all candidates that a model may lack.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,7 +19,8 @@ struct Candidate {
       acts_on;  ///< where it acts: "arm force", "friction", "inertia", "drive", "sensor" ...
   std::string meaning;  ///< a few words
   /// Quantities (indices in quantity_list()) that are estimated, and what they are while it is
-  /// absent: zero, one for a gain, and what the axis file declares for a constant.
+  /// absent: zero, one for a gain, infinite for a stiffness, and what the axis file declares for a
+  /// constant.
   std::vector<std::size_t> strengths;
   std::vector<double> neutral;
   /// Quantities that give it its shape, and the settings of them to be tried, one value for each.
@@ -33,6 +35,9 @@ struct Candidate {
   bool is_curve = false;     ///< a curve: it fits whatever no other effect explains
   bool has_phase = false;    ///< the strengths are sine and cosine of a phase
   bool is_timing = false;    ///< a delay of the input or of an instrument
+  /// Another variant of the transmission, see backlash.h. That the recordings leave a shape of it
+  /// open is no ground to doubt it.
+  bool gives_backlash = false;
   /// A value of the axis file that is not free: the hypothesis is that it is another.
   bool is_constant = false;
 
@@ -44,6 +49,12 @@ struct Candidate {
 /// Whether they are the same effect, whatever its shape.
 inline bool same_effect(const Candidate& a, const Candidate& b) {
   return a.strengths == b.strengths;
+}
+
+/// How far a strength is from what it is while the effect is absent; of a stiffness, which is
+/// infinite then, the compliance.
+inline double distance_from_neutral(double value, double neutral) {
+  return std::isinf(neutral) ? 1.0 / value : value - neutral;
 }
 
 /// Whether a candidate is a part of another's effect that does nothing without it.

@@ -7,12 +7,12 @@
 
 namespace axisfit {
 
-FitResult refit(const Job& job, const RunContext& context) {
+FitResult refit(const Job& job, const RunContext& context, int max_iterations) {
   Job quick = job;
   quick.options.starts = 1;
   quick.options.attempts = 1;
   quick.options.tolerance = 1e-7;
-  quick.options.max_iterations = std::min(job.options.max_iterations, 25);
+  quick.options.max_iterations = std::min(job.options.max_iterations, max_iterations);
   quick.options.input_noise_draws = 8;  // enough to judge by, an error of a quarter
   // Smooth effects are then a few parts in a hundred thousand off, and twice as quick.
   quick.options.step = 2.0 * job.options.step;
@@ -33,7 +33,9 @@ ExtendedModel fit_extended_model(const Job& job, const Candidate& candidate,
   ExtendedModel e;
   e.candidate = candidate;
   e.job = with_candidate(job, candidate, values, strengths, shapes);
-  e.fit = refit(e.job, context);
+  // Of another transmission the settings tried are few, and far apart.
+  constexpr int kFew = 25, kMany = 100;
+  e.fit = refit(e.job, context, candidate.gives_backlash ? kMany : kFew);
   e.residuals = residual_series(e.job, e.fit);
   return e;
 }

@@ -23,7 +23,7 @@ struct ExtendedModel {
 };
 
 /// Fits from close by, content with less than a final fit: one start, one continuation.
-FitResult refit(const Job& job, const RunContext& context = {});
+FitResult refit(const Job& job, const RunContext& context = {}, int max_iterations = 25);
 
 /// The same from these values of the free parameters.
 FitResult refit_from(Job job, const std::vector<double>& values, const RunContext& context = {});

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "fit/estimation/parameters.h"
+#include "fit/selection/backlash.h"
 
 namespace axisfit {
 
@@ -59,8 +60,12 @@ SelectionStep ModelChain::reduce(std::size_t place) const {
 Job ModelChain::job_with_accepted(const Job& declared, std::optional<std::size_t> except) const {
   Job job = declared;
   std::vector<double> values;
-  for (std::size_t i = 0; i < job.free.size(); ++i)
-    values.push_back(current().fit.parameters[i].value);
+  const double motor =
+      mass_of_motor(job.model.structure, fitted_model(current().job, current().fit));
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    const bool is_mass = quantity_list()[job.free[i].quantity].name == "M";
+    values.push_back(current().fit.parameters[i].value + (is_mass ? motor : 0.0));
+  }
   for (std::size_t a = 0; a < accepted_.size(); ++a) {
     const Candidate& candidate = accepted_[a].candidate;
     if (except && (a == *except || is_part_of(candidate, accepted_[*except].candidate))) continue;

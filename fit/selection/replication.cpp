@@ -12,15 +12,20 @@ struct Estimate {
   double value = 0.0, error = 0.0;
 };
 
+/// Of a stiffness itself, for its relative error is that of the compliance.
+double from_neutral(const Estimate& e, double neutral) {
+  return std::abs(std::isinf(neutral) ? e.value : e.value - neutral);
+}
+
 bool is_far_from_zero(const Estimate& e, double neutral) {
   constexpr double kFar = 4.0;  // standard errors
-  return std::abs(e.value - neutral) > kFar * e.error;
+  return from_neutral(e, neutral) > kFar * e.error;
 }
 
 bool is_near(const Estimate& a, const Estimate& b, double neutral) {
   constexpr double kErrors = 3.0, kPart = 0.1;
   return std::abs(a.value - b.value) <=
-         std::max(kErrors * std::hypot(a.error, b.error), kPart * std::abs(a.value - neutral));
+         std::max(kErrors * std::hypot(a.error, b.error), kPart * from_neutral(a, neutral));
 }
 
 /// The length of two strengths that are sine and cosine of a phase.

@@ -47,6 +47,8 @@ SearchScales scales_of(const Job& job, const ParameterSpace& space, const Eigen:
                        double rate, const Linearization& base, const Eigen::MatrixXd& basis,
                        const StopFlag* stop) {
   SearchScales s{INFINITY, -INFINITY, 0.0, INFINITY, -INFINITY, INFINITY, -INFINITY};
+  const Model<double> model = model_at(job, space, u.data(), 0);
+  s.mass = Equations<double>(model).moving_mass();
   Eigen::Index row = 0;
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     const Recording& recording = job.recordings[r];
@@ -136,6 +138,7 @@ class Scorer {
 
  private:
   static double moved(const Candidate& candidate, double value, double step) {
+    if (std::isinf(value)) return 1.0 / step;
     return candidate.is_constant && value > 0.0 ? value * std::exp(step) : value + step;
   }
 
@@ -163,22 +166,22 @@ class Scorer {
   const LeastSquaresSolver solver_;
 };
 
-/// The mean derivatives up to each of a candidate's probes.
+/// The mean derivatives up to each of a candidate's probes, from the residuals without it.
 std::vector<std::pair<double, Eigen::MatrixXd>> probed(const Job& fixed, const Candidate& candidate,
                                                        const std::vector<double>& shapes,
-                                                       double rate) {
+                                                       double rate,
+                                                       const Eigen::VectorXd& without) {
   std::vector<std::pair<double, Eigen::MatrixXd>> list;
   Candidate shaped = candidate;
   shaped.shapes_are_free = false;
-  const Job extended = with_candidate(fixed, shaped, {}, candidate.neutral, shapes);
-  const ParameterSpace space(extended);
-  const Eigen::VectorXd at_rest =
-      residuals_at(extended, space, space.internal(candidate.neutral), rate);
   for (const double probe : candidate.probes) {
-    const Eigen::VectorXd there =
-        residuals_at(extended, space, space.internal(std::vector{probe}), rate);
-    if (there.size() == 0 || there.size() != at_rest.size()) continue;
-    list.emplace_back(probe, (there - at_rest) / (probe - candidate.neutral[0]));
+    const std::vector<double> strength{probe};
+    const Job extended = with_candidate(fixed, shaped, {}, strength, shapes);
+    const ParameterSpace space(extended);
+    const Eigen::VectorXd there = residuals_at(extended, space, space.internal(strength), rate);
+    if (there.size() == 0 || there.size() > without.size()) continue;
+    list.emplace_back(probe, (there - without.head(there.size())) /
+                                 distance_from_neutral(probe, candidate.neutral[0]));
   }
   return list;
 }
@@ -209,7 +212,8 @@ void refine_shapes(const Job& fixed, const EffectColumns& columns, const Scorer&
   std::vector<std::size_t> chosen;
   for (const std::size_t i : order) {
     const Candidate& candidate = test.candidates[test.scores[i].candidate];
-    if (candidate.shapes.empty() || !candidate.shapes_are_free || !(test.scores[i].gain > 0.0))
+    if (candidate.shapes.empty() || !candidate.shapes_are_free || !candidate.probes.empty() ||
+        !(test.scores[i].gain > 0.0))
       continue;
     const bool known = std::ranges::any_of(chosen, [&](std::size_t other) {
       return test.scores[other].candidate == test.scores[i].candidate;
@@ -297,7 +301,8 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
     const Candidate& candidate = test.candidates[score.candidate];
     if (candidate.probes.empty()) return;
     context.check_stop();
-    for (const auto& [probe, derivative] : probed(fixed, candidate, score.shapes, rate))
+    for (const auto& [probe, derivative] :
+         probed(fixed, candidate, score.shapes, rate, base.residuals))
       scorer.consider({&candidate, candidate.neutral, score.shapes}, derivative, score);
   });
   refine_shapes(fixed, columns, scorer, test);

@@ -56,6 +56,7 @@ struct SearchScales {
   double velocity_low = 0.0, velocity_high = 0.0;  ///< m/s
   double start = 0.0, end = 0.0;                   ///< s
   double interval = 0.0;                           ///< s, between samples, mean
+  double mass = 0.0;                               ///< kg, that moves, motor included
   std::vector<double> periods = {};                ///< m, of forces along the stroke, best first
   std::vector<double> drive_periods = {};  ///< m, of such in proportion to the drive's force
   double pinion_radius = 0.0;              ///< m, r_g
