@@ -79,17 +79,19 @@ std::vector<Candidate> transmission_candidates(const Job& job, const SearchScale
       splits_mass ? std::vector{0.1, 0.5, 0.9} : std::vector{axis.J_m / r2 / scales.mass};
   // Hz, of motor and arm against each other: slower and they would not move together, faster and
   // it would not show.
-  constexpr double kSlow = 15.0, kMean = 30.0, kFast = 60.0;
+  constexpr double kFrequencies[]{15.0, 40.0, 120.0}, kMean = 40.0;
   for (const double share : shares) {
     const double motor = share * scales.mass, arm = scales.mass - motor;
     if (!(motor > 0.0) || !(arm > 0.0)) return {};
     soft.settings.push_back(setting({coupling(motor, arm, kMean).damping}, motor));
-    for (const double frequency : {kSlow, kFast}) {
+    for (const double frequency : kFrequencies) {
       const auto [stiffness, damping] = coupling(motor, arm, frequency);
       gap.settings.push_back(setting({stiffness, damping}, motor));
-      soft.probes.push_back(stiffness);
     }
   }
+  const double middle = shares[shares.size() / 2] * scales.mass;
+  for (const double frequency : kFrequencies)
+    soft.probes.push_back(coupling(middle, scales.mass - middle, frequency).stiffness);
   // From a gap that is hardly seen to a few thousandths of the stroke.
   gap.probes = {1e-4 * stroke, 5e-4 * stroke, 3e-3 * stroke};
   return {std::move(soft), std::move(gap)};

@@ -169,8 +169,8 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
       if (is_ignored(*entry, job.options.observer)) continue;
       Candidate candidate = single(name, "sensor", *entry);
       if (part == "lag") candidate.probes = later(scales);
-      candidate.is_timing = part == "delay";
-      if (candidate.is_timing) candidate.probes = both_signs;
+      candidate.is_timing = part == "delay" || part == "drift";
+      if (part == "delay") candidate.probes = both_signs;
       if (part == "drift")
         for (const double delay : both_signs)
           candidate.probes.push_back(delay / (scales.end - scales.start));

@@ -51,11 +51,15 @@ class RoundTrial {
     if (context_.progress) context_.progress({phase, done, of, model_.fit.reduced_chi_square});
   }
 
-  /// A simulation that is far from the data must track them to be scored. Of one that is not, the
-  /// free-running residual is white, and its score is exact.
+  /// A simulation that is far from the data must track them to be scored. Of one that is close, the
+  /// free run is scored, too: an instrument that errs misleads whatever tracks it.
   std::vector<double> gains_to_score() const {
-    if (is_complete_ && model_.job.options.observer != ObserverMode::fixed) return {0.0};
-    return score_gains(model_.job);
+    constexpr double kClose = 25.0;
+    const bool is_free = model_.job.options.observer != ObserverMode::fixed;
+    if (is_free && is_complete_) return {0.0};
+    std::vector<double> gains = score_gains(model_.job);
+    if (is_free && model_.fit.reduced_chi_square < kClose) gains.push_back(0.0);
+    return gains;
   }
 
   std::vector<ShortlistEntry> entries() {

@@ -98,5 +98,19 @@ TEST(SelectEffectsOnThePapersAxis, AddsNothingForNoiseThatIsLargerThanStated) {
   EXPECT_EQ(accepted(close(job)), Names{});
 }
 
+// The paper's own axis, by somebody who takes its gear for rigid.
+TEST(SelectEffects, FindsTheBacklashOfThePaper) {
+  Model<double> declared = paper_axis();
+  declared.structure.transmission = Transmission::rigid;
+  const EffectSelection selection = close(two_recordings(
+      paper_axis(), declared, {"V_L", "B_a"}, 6.0, {Signal::velocity, Signal::acceleration}));
+  EXPECT_EQ(accepted(selection), Names{"backlash"});
+  EXPECT_TRUE(selection.explained);
+  for (const char* name : {"H", "k_g", "b_g", "V_L", "B_a"}) {
+    Model<double> truth = paper_axis();
+    expect_found(selection, name, *members(truth)[find_quantity(name)->index]);
+  }
+}
+
 }  // namespace
 }  // namespace axisfit
