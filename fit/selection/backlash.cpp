@@ -79,11 +79,11 @@ std::vector<Candidate> transmission_candidates(const Job& job, const SearchScale
       splits_mass ? std::vector{0.1, 0.5, 0.9} : std::vector{axis.J_m / r2 / scales.mass};
   // Hz, of motor and arm against each other: slower and they would not move together, faster and
   // it would not show.
-  constexpr double kFrequencies[]{15.0, 40.0, 120.0}, kMean = 40.0;
+  constexpr double kFrequencies[]{15.0, 40.0, 120.0};
   for (const double share : shares) {
     const double motor = share * scales.mass, arm = scales.mass - motor;
     if (!(motor > 0.0) || !(arm > 0.0)) return {};
-    soft.settings.push_back(setting({coupling(motor, arm, kMean).damping}, motor));
+    soft.settings.push_back(setting({coupling(motor, arm, kFrequencies[1]).damping}, motor));
     for (const double frequency : kFrequencies) {
       const auto [stiffness, damping] = coupling(motor, arm, frequency);
       gap.settings.push_back(setting({stiffness, damping}, motor));

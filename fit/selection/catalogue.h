@@ -34,7 +34,8 @@ struct Candidate {
   std::string extends = {};  ///< the effect beside which alone it is offered; empty: any model
   bool is_curve = false;     ///< a curve: it fits whatever no other effect explains
   bool has_phase = false;    ///< the strengths are sine and cosine of a phase
-  bool is_timing = false;    ///< a delay of the input or of an instrument
+  bool is_timing =
+      false;  ///< a clock that is off: of the input, or a delay or drift of an instrument
   /// Another variant of the transmission, see backlash.h. That the recordings leave a shape of it
   /// open is no ground to doubt it.
   bool gives_backlash = false;

@@ -34,8 +34,8 @@ ExtendedModel fit_extended_model(const Job& job, const Candidate& candidate,
   e.candidate = candidate;
   e.job = with_candidate(job, candidate, values, strengths, shapes);
   // Of another transmission the settings tried are few, and far apart.
-  constexpr int kFew = 25, kMany = 100;
-  e.fit = refit(e.job, context, candidate.gives_backlash ? kMany : kFew);
+  constexpr int kMany = 100;
+  e.fit = candidate.gives_backlash ? refit(e.job, context, kMany) : refit(e.job, context);
   e.residuals = residual_series(e.job, e.fit);
   return e;
 }

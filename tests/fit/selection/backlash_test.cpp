@@ -83,11 +83,14 @@ TEST(Backlash, IsOfferedBesideCompliance) {
 TEST(Backlash, SplitsTheMassOfAForceSource) {
   Job job;
   job.model = rigid_slide();
+  ASSERT_EQ(transmission_candidates(job, scales(20.0)).size(), 2u);
   for (const Candidate& c : transmission_candidates(job, scales(20.0)))
     EXPECT_EQ(names_of(c.shapes).back(), "M");
   job.free = {free_parameter("M", 20.0)};
   job.free[0].prior = Prior{20.0, 0.1};
-  for (const Candidate& c : transmission_candidates(job, scales(20.0))) {
+  const auto list = transmission_candidates(job, scales(20.0));
+  ASSERT_EQ(list.size(), 2u);
+  for (const Candidate& c : list) {
     SCOPED_TRACE(c.name);
     EXPECT_EQ(names_of(c.shapes).back(), "J_m");
     for (const auto& setting : c.settings) {
