@@ -436,8 +436,14 @@ State<S> Integrator<T>::step_by_series(const View<S>& view, const State<S>& y, c
                                        double length) const {
   Propagator<S>& p = view.propagator;
   const StepLevels& levels = p.step_levels();
-  if (affine() || length <= levels.length(levels.last))
-    return series(view, y, f, length).at(length);
+  if (affine()) {
+    const auto* known = p.repeated(length);
+    if (known == nullptr) return series(view, y, f, length).at(length);
+    State<S> end = p.advance(y, f, slopes(), *known);
+    for (std::size_t i = 0; i < kStates; ++i) end[i] += (length - known->time) * f[i];
+    return end;
+  }
+  if (length <= levels.length(levels.last)) return series(view, y, f, length).at(length);
   const double half = 0.5 * length;
   // Where readings and switches of the command are even, pieces of few lengths recur.
   std::optional<State<S>> end;
@@ -613,10 +619,14 @@ bool Integrator<T>::advance_to(const T& end) {
     if (!(remaining > negligible)) break;
     const StepLevels& step_levels = this->step_levels();
     int level = std::max({level_, search, step_level()});
-    // The last piece of an interval, of whatever length, is for the series, where that holds.
-    const double resolved = step_levels.length(step_levels.resolved);
+    // The last piece of an interval, of whatever length, is for the series, where that holds: a
+    // step and no more, if the readings are not quite even.
+    constexpr double kUneven = 1.001;
+    const double resolved = kUneven * step_levels.length(step_levels.resolved);
+    const double whole = step_levels.length(level);
+    const bool is_step = std::abs(remaining - whole) <= negligible;
     const bool piece =
-        step_levels.length(level) > remaining + negligible && search == 0 && remaining <= resolved;
+        !is_step && remaining <= kUneven * whole && search == 0 && remaining <= resolved;
     while (level <= step_levels.last && step_levels.length(level) > remaining + negligible) ++level;
     const bool shortest = level >= step_levels.last;
     const bool by_series = piece || level > step_levels.last;
@@ -632,7 +642,7 @@ bool Integrator<T>::advance_to(const T& end) {
       return false;
     if (course != Crossing::none) {
       if (!shortest && !(affine() && course == Crossing::passed && length <= resolved)) {
-        search = piece ? level : level + 1;
+        search = std::max(1, piece ? level : level + 1);
         continue;
       }
       if (const std::optional<Hit> hit = locate(from, to, length)) {

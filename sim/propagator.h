@@ -215,13 +215,18 @@ class Propagator {
   const Length* repeated(double time) {
     constexpr std::size_t kKept = 8;
     constexpr double kSame = 1e-8;
-    const auto known = std::ranges::find_if(
+    ++asked_;
+    auto known = std::ranges::find_if(
         repeated_, [&](const Repeated& r) { return std::abs(r.time - time) <= kSame * time; });
     if (known == repeated_.end()) {
-      if (repeated_.size() == kKept) repeated_.pop_back();
-      repeated_.insert(repeated_.begin(), {time, {}});
+      if (repeated_.size() < kKept)
+        known = repeated_.insert(known, Repeated{});
+      else
+        known = std::ranges::min_element(repeated_, {}, &Repeated::asked);
+      *known = {time, asked_, {}};
       return nullptr;
     }
+    known->asked = asked_;
     if (!known->length) known->length = by_series(known->time, psi_by_series(known->time));
     return &*known->length;
   }
@@ -274,7 +279,8 @@ class Propagator {
 
  private:
   struct Repeated {
-    double time;
+    double time = 0.0;
+    std::uint64_t asked = 0;       ///< when it was last asked for, see asked_
     std::optional<Length> length;  ///< from the second time on
   };
 
@@ -342,7 +348,8 @@ class Propagator {
   std::vector<Ramp<T>> ramps_;
   Matrix<T> e_, psi_;               // of the longest length so far
   std::vector<Length> lengths_;     // from the shortest up
-  std::vector<Repeated> repeated_;  // the latest first
+  std::vector<Repeated> repeated_;  // those asked for last
+  std::uint64_t asked_ = 0;         // calls of repeated()
 };
 
 }  // namespace axisfit

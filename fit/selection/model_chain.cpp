@@ -29,7 +29,7 @@ void ModelChain::restart(SelectionStep declared) {
 
 void ModelChain::replace(SelectionStep declared, SelectionStep last) {
   models_.front() = std::move(declared);
-  rebuild(std::move(last));
+  set_last(std::move(last));
 }
 
 ModelChain::Neighbours& ModelChain::neighbours() {
@@ -57,7 +57,8 @@ SelectionStep ModelChain::reduce(std::size_t place) const {
   return accepted_.size() == 1 ? declared() : with_accepted(declared().job, place);
 }
 
-Job ModelChain::job_with_accepted(const Job& declared, std::optional<std::size_t> except) const {
+template <class Kept>
+Job ModelChain::job_with(const Job& declared, Kept&& kept) const {
   Job job = declared;
   std::vector<double> values;
   const double motor =
@@ -68,13 +69,20 @@ Job ModelChain::job_with_accepted(const Job& declared, std::optional<std::size_t
   }
   for (std::size_t a = 0; a < accepted_.size(); ++a) {
     const Candidate& candidate = accepted_[a].candidate;
-    if (except && (a == *except || is_part_of(candidate, accepted_[*except].candidate))) continue;
+    if (!kept(a)) continue;
     const CandidateValues own = candidate_values(current().job, current().fit, candidate);
     job = with_candidate(job, candidate, values, own.strengths, own.shapes);
     values = initial_values(job);
   }
   set_initial_values(job, values);
   return job;
+}
+
+Job ModelChain::job_with_accepted(const Job& declared, std::optional<std::size_t> except) const {
+  return job_with(declared, [&](std::size_t a) {
+    return !except ||
+           (a != *except && !is_part_of(accepted_[a].candidate, accepted_[*except].candidate));
+  });
 }
 
 SelectionStep ModelChain::with_accepted(const Job& declared,
@@ -95,18 +103,24 @@ std::vector<Candidate> ModelChain::erase(std::size_t place) {
   return parts;
 }
 
-void ModelChain::rebuild(SelectionStep last) {
+void ModelChain::set_last(SelectionStep last) {
   models_.resize(1);
-  for (std::size_t a = 0; a + 1 < accepted_.size(); ++a) {
-    const Candidate& candidate = accepted_[a].candidate;
-    const CandidateValues own = candidate_values(last.job, last.fit, candidate);
-    ExtendedModel e = fit_extended_model(current().job, candidate, values_of(current().fit),
-                                         own.strengths, own.shapes, *context_);
-    models_.push_back({candidate.name, std::move(e.job), std::move(e.fit)});
-  }
   if (accepted_.empty()) return;
   last.added = accepted_.back().candidate.name;
   models_.push_back(std::move(last));
+}
+
+std::vector<SelectionStep> ModelChain::models() const {
+  if (models_.size() == accepted_.size() + 1) return models_;
+  std::vector<SelectionStep> all(accepted_.size() + 1);
+  all.front() = declared();
+  all.back() = current();
+  parallel_for(accepted_.size() - 1, [&](std::size_t i) {
+    Job job = job_with(declared().job, [&](std::size_t a) { return a <= i; });
+    FitResult fit = refit(job, *context_);
+    all[i + 1] = {accepted_[i].candidate.name, std::move(job), std::move(fit)};
+  });
+  return all;
 }
 
 const std::optional<FitResult>& ModelChain::elsewhere() {

@@ -43,7 +43,6 @@ class ModelChain {
   ModelChain(SelectionStep declared, const RunContext& context)
       : context_(&context), models_{std::move(declared)} {}
 
-  const std::vector<SelectionStep>& models() const { return models_; }
   const SelectionStep& declared() const { return models_.front(); }
   const SelectionStep& current() const { return models_.back(); }
   const std::vector<AcceptedEffect>& accepted() const { return accepted_; }
@@ -67,10 +66,14 @@ class ModelChain {
   SelectionStep with_accepted(const Job& declared, std::optional<std::size_t> except = {}) const;
 
   /// Strikes an accepted effect off the list, and what is part of it; returns the latter. The
-  /// models are as before, until rebuild().
+  /// models are as before, until set_last().
   std::vector<Candidate> erase(std::size_t place);
-  /// Refits the intermediate models after effects were removed or exchanged; the last one is given.
-  void rebuild(SelectionStep last);
+  /// Gives the model with all accepted effects, after some were removed or exchanged.
+  void set_last(SelectionStep last);
+
+  /// The declared model, and with one accepted effect more each, the last. Refits those between
+  /// where effects were removed or exchanged.
+  std::vector<SelectionStep> models() const;
 
   /// The last model fitted to the recordings to validate alone, see fit_elsewhere().
   const std::optional<FitResult>& elsewhere();
@@ -87,9 +90,12 @@ class ModelChain {
   };
   Neighbours& neighbours();
   SelectionStep reduce(std::size_t place) const;
+  /// A declared job with those accepted effects that are `kept`.
+  template <class Kept>
+  Job job_with(const Job& declared, Kept&& kept) const;
 
   const RunContext* context_;
-  std::vector<SelectionStep> models_;
+  std::vector<SelectionStep> models_;  ///< the declared one, the last, and some between
   std::vector<AcceptedEffect> accepted_;
   Neighbours neighbours_;
 };

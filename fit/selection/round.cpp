@@ -38,10 +38,7 @@ class RoundTrial {
     keep_the_best_setting();
     // Where nothing but noise is left, what lowers no error elsewhere is chance.
     if (!is_complete_ && !options_.held_out_blocks && all_are_rejected(result_.models))
-      for (ExtendedModel& e : result_.models) {
-        try_to_replicate(e);
-        try_on_stretches(e);
-      }
+      try_elsewhere();
     choose();
     return std::move(result_);
   }
@@ -143,6 +140,29 @@ class RoundTrial {
     result_.models = std::move(kept);
   }
 
+  /// Asks other data of what explains the most, and so on down to what explains clearly less than
+  /// one that they confirm.
+  void try_elsewhere() {
+    std::vector<ExtendedModel*> order;
+    for (ExtendedModel& e : result_.models)
+      if (e.fit.usable && is_of_validation(*e.rejection)) order.push_back(&e);
+    std::ranges::stable_sort(order, std::greater{},
+                             [](const ExtendedModel* e) { return e->gain.fit_gain; });
+    constexpr std::size_t kAtOnce = 2;
+    const ExtendedModel* best = nullptr;
+    for (std::size_t first = 0; first < order.size(); first += kAtOnce) {
+      std::span<ExtendedModel*> next(order);
+      next = next.subspan(first, std::min(kAtOnce, order.size() - first));
+      if (best != nullptr && is_clearly_worse(bic_advantage(*best, *next.front()))) return;
+      report_progress("does " + next.front()->candidate.name + " replicate?");
+      parallel_for(next.size(), [&](std::size_t i) { try_to_replicate(*next[i]); });
+      for (ExtendedModel* e : next) {
+        try_on_stretches(*e);
+        if (best == nullptr && !e->rejection) best = e;
+      }
+    }
+  }
+
   Determination determined(const ExtendedModel& e) const {
     return determination(e.job, e.fit, e.candidate, e.residuals);
   }
@@ -150,8 +170,6 @@ class RoundTrial {
   /// What lowers the error of one recording and not that of another may yet be in both, where
   /// something else differs between them.
   void try_to_replicate(ExtendedModel& e) const {
-    if (!e.fit.usable || !is_of_validation(*e.rejection)) return;
-    report_progress("does " + e.candidate.name + " replicate?");
     const auto elsewhere = fit_elsewhere(e.job, e.fit, context_);
     if (!elsewhere) return;
     Replication found = replication(e.job, e.fit, *elsewhere, e.candidate);
@@ -163,7 +181,7 @@ class RoundTrial {
   /// What the recordings to validate could not have shown is judged by stretches of the fitted
   /// ones, held out from both fits.
   void try_on_stretches(ExtendedModel& e) {
-    if (!e.fit.usable || !e.rejection || e.rejection->test != Rejection::Test::power) return;
+    if (!e.rejection || e.rejection->test != Rejection::Test::power) return;
     // A disturbance goes on from one stretch to the next: only another recording tells it from a
     // law.
     if (e.candidate.name == ForceOverTime<double>::name) return;

@@ -41,12 +41,13 @@ class EffectSelector {
         drop_imitators();
         record_rivals();
         drop_undecided();
+        drop_unreplicated_where_half_remains();
         record_replications();
       } catch (const Interrupted&) {
         result_.interrupted = true;
         restore(std::move(*last_valid_));
+        if (const auto rejection = rejection_of_all()) drop_all(*rejection);
       }
-      drop_all_where_half_remains();
       drop_all_of_a_misfit();
     }
     finish();
@@ -233,7 +234,7 @@ class EffectSelector {
   /// Takes it out of the models; that without it is given.
   void take_out(std::size_t place, SelectionStep reduced) {
     strike_off(place);
-    chain_.rebuild(std::move(reduced));
+    chain_.set_last(std::move(reduced));
   }
 
   /// Takes away what is not needed any more, or never was but to a simulation that tracks. Where
@@ -315,13 +316,26 @@ class EffectSelector {
           trial->replication = replication(current().job, current().fit, *other, a.candidate);
   }
 
-  /// Of a model with which most of the error remains, no part is named.
-  void drop_all_where_half_remains() {
+  /// Of a model with which most of the error remains, no part is named but what other recordings
+  /// show alike.
+  void drop_unreplicated_where_half_remains() {
+    const std::optional<Rejection> rejection = rejection_of_all();
+    for (std::size_t a = 0; rejection && a < chain_.accepted().size();) {
+      const Candidate candidate = chain_.accepted()[a].candidate;
+      if (is_alike_elsewhere(candidate)) {
+        ++a;
+        continue;
+      }
+      trials_.fail(candidate, *rejection);
+      take_out(a, chain_.without(a));
+    }
+  }
+  std::optional<Rejection> rejection_of_all() {
     constexpr double kLeastPercent = 50.0;
-    if (chain_.accepted().empty() || explained()) return;
+    if (chain_.accepted().empty() || explained()) return std::nullopt;
     const double percent = of_all().missing_percent;
-    if (percent >= kLeastPercent) return;
-    drop_all({.test = Rejection::Test::share, .found = percent});
+    if (percent >= kLeastPercent) return std::nullopt;
+    return Rejection{.test = Rejection::Test::share, .found = percent};
   }
 
   /// A declared parameter at its bound makes up for what it is not, and where most of the drive
@@ -453,7 +467,7 @@ class EffectSelector {
         // The exchanged effect goes last, where its parameters are.
         strike_off(a);
         chain_.accepted().push_back({e.candidate, {}});
-        chain_.rebuild({e.candidate.name, std::move(e.job), std::move(e.fit)});
+        chain_.set_last({e.candidate.name, std::move(e.job), std::move(e.fit)});
         return true;
       }
     }
@@ -535,7 +549,12 @@ void EffectSelector::finish() {
     if (EffectTrial* trial = trials_.find(a.candidate); trial != nullptr && a.candidate.is_curve)
       trial->closed_form = closed_form(last.job, last.fit, a.candidate);
   decide();
-  result_.models = chain_.models();
+  try {
+    result_.models = chain_.models();
+  } catch (const Interrupted&) {
+    result_.interrupted = true;
+    result_.models = {chain_.declared(), current()};
+  }
   result_.effects = trials_.list();
 }
 

@@ -263,17 +263,25 @@ TEST(SelectEffects, FindsWhatHidesInTheNoise) {
   EXPECT_EQ(accepted(selection), std::set<std::string>{"coulomb_friction"});
 }
 
-// Of two effects one alone leaves most of the error, and a flexible one that is not there would
-// lower it as much.
-TEST(SelectEffects, NamesNothingWhereMostRemains) {
+/// Of two effects that a job lacks one alone leaves most of the error.
+Job two_hidden_effects() {
   Model<double> truth = slide();
   hidden_effect_named("coulomb_friction").put_into(truth);
   hidden_effect_named("velocity.gain").put_into(truth);
-  const Job job = two_recordings(truth, slide(), {"M", "B_a"});
-  const FitResult fit = estimate(job);
+  return two_recordings(truth, slide(), {"M", "B_a"});
+}
+
+EffectSelection select_one_effect(const Job& job) {
   SelectionOptions options;
   options.max_effects = 1;
-  const EffectSelection one = select_effects(job, fit, options);
+  return select_effects(job, estimate(job), options);
+}
+
+// A flexible effect that is not there would lower the error as much.
+TEST(SelectEffects, NamesNothingWhereMostRemains) {
+  Job job = two_hidden_effects();
+  std::erase_if(job.recordings, [](const Recording& r) { return r.role == Role::validate; });
+  const EffectSelection one = select_one_effect(job);
   EXPECT_TRUE(accepted(one).empty());
   const auto friction = std::ranges::find(one.effects, "coulomb_friction",
                                           [](const EffectTrial& t) { return t.candidate.name; });
@@ -283,6 +291,15 @@ TEST(SelectEffects, NamesNothingWhereMostRemains) {
   EXPECT_GT(friction->rejection->found, 25.0);
   EXPECT_LT(friction->rejection->found, 50.0);
   EXPECT_EQ(one.result.job.free.size(), job.free.size());
+}
+
+TEST(SelectEffects, NamesWhatTwoRecordingsTellAlikeThoughMostRemains) {
+  const EffectSelection one = select_one_effect(two_hidden_effects());
+  EXPECT_EQ(accepted(one), std::set<std::string>{"coulomb_friction"});
+  EXPECT_LT(one.effects.front().improvement.missing_percent, 50.0);
+  ASSERT_TRUE(one.effects.front().replication);
+  EXPECT_TRUE(one.effects.front().replication->is_alike);
+  EXPECT_FALSE(one.explained);
 }
 
 }  // namespace
