@@ -79,7 +79,11 @@ void run_requested_analyses(RunResult& result, const RunContext& context) {
     result.selection->result.fit = estimate_with_noise(result.selection->result.job, context);
   if (!result.fit().recordings.empty()) {
     report_progress("analysing the residual");
-    result.diagnosis = diagnose(result.job(), result.fit(), context.quiet());
+    result.diagnosis = diagnose(result.job(), result.fit());
+    // A loop has put them to the test.
+    if (!result.selection && !result.diagnosis->explained)
+      result.diagnosis->suspected_effects =
+          suspected_effects(result.job(), result.fit(), context.quiet());
     // Where nothing can be simulated there is nothing to tell.
     if (result.diagnosis->tests.empty() &&
         std::ranges::none_of(result.diagnosis->forces, &MissingForce::found))

@@ -19,7 +19,9 @@ FitResult fit_at(Job job, const FitResult& fit, double gain, const RunContext& c
   job.options.starts = 1;
   job.options.attempts = 1;
   job.options.observer_gain = gain;
-  job.options.input_noise_draws = 8;  // an error of a quarter is enough to compare by
+  // To compare by, a small part of the errors is enough, and of these a quarter.
+  job.options.tolerance = 1e-7;
+  job.options.input_noise_draws = 8;
   return estimate(job, context.quiet());
 }
 

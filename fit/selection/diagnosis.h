@@ -21,11 +21,16 @@ struct Diagnosis {
   std::vector<SeriesTest> tests;                   ///< of every signal of every recording
   std::vector<MissingForce> forces;                ///< of every recording
   bool explained = false;                          ///< every series shows no more than its noise
-  std::vector<SuspectedEffect> suspected_effects;  ///< strongest first, none when explained
+  std::vector<SuspectedEffect> suspected_effects;  ///< strongest first; empty: not asked for
 };
 
-/// Looks at a fit, also at one that is not usable: what is missing shows all the more there. The
-/// suspects take one score test of the catalogue.
-Diagnosis diagnose(const Job& job, const FitResult& result, const RunContext& context = {});
+/// Looks at a fit, also at one that is not usable: what is missing shows all the more there.
+/// Without suspects.
+Diagnosis diagnose(const Job& job, const FitResult& result);
+
+/// Up to five effects that would explain most of the residual, by one score test of the catalogue,
+/// strongest first.
+std::vector<SuspectedEffect> suspected_effects(const Job& job, const FitResult& result,
+                                               const RunContext& context = {});
 
 }  // namespace axisfit

@@ -186,6 +186,22 @@ std::vector<std::pair<double, Eigen::MatrixXd>> probed(const Job& fixed, const C
   return list;
 }
 
+/// Each setting of another transmission takes simulations of its own: those in the middle are tried
+/// first, where there are many.
+bool is_tried_first(const Candidate& candidate, std::size_t setting) {
+  const std::size_t all = candidate.settings.size();
+  return !candidate.gives_backlash || all < 9 || (3 * setting >= all && 3 * setting < 2 * all);
+}
+
+/// Whether a candidate's settings that were tried are worth trying the others, too: with a part of
+/// what the best of all candidates gains.
+bool gains_part_of(double best, std::size_t candidate, const std::vector<Score*>& tried) {
+  constexpr double kPart = 0.1;
+  return std::ranges::any_of(tried, [&](const Score* score) {
+    return score->candidate == candidate && score->gain >= kPart * best;
+  });
+}
+
 /// Of one shape, the least and the most that is tried.
 std::pair<double, double> range_of_settings(const Candidate& candidate, std::size_t shape) {
   double least = INFINITY, most = -INFINITY;
@@ -296,15 +312,29 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   const std::vector<Eigen::MatrixXd> derivatives = columns.derivatives(settings);
   for (std::size_t i = 0; i < settings.size(); ++i)
     scorer.consider(settings[i], derivatives[i], *of_setting[i]);
-  parallel_for(test.scores.size(), [&](std::size_t i) {
-    Score& score = test.scores[i];
-    const Candidate& candidate = test.candidates[score.candidate];
-    if (candidate.probes.empty()) return;
-    context.check_stop();
-    for (const auto& [probe, derivative] :
-         probed(fixed, candidate, score.shapes, rate, base.residuals))
-      scorer.consider({&candidate, candidate.neutral, score.shapes}, derivative, score);
-  });
+  const auto probe = [&](const std::vector<Score*>& scores) {
+    parallel_for(scores.size(), [&](std::size_t i) {
+      context.check_stop();
+      Score& score = *scores[i];
+      const Candidate& candidate = test.candidates[score.candidate];
+      for (const auto& [strength, derivative] :
+           probed(fixed, candidate, score.shapes, rate, base.residuals))
+        scorer.consider({&candidate, candidate.neutral, score.shapes}, derivative, score);
+    });
+  };
+  std::vector<Score*> first, rest;
+  for (std::size_t c = 0, at = 0; c < test.candidates.size(); ++c) {
+    const Candidate& candidate = test.candidates[c];
+    for (std::size_t k = 0; k < candidate.settings.size(); ++k, ++at)
+      if (!candidate.probes.empty())
+        (is_tried_first(candidate, k) ? first : rest).push_back(&test.scores[at]);
+  }
+  probe(first);
+  double best = 0.0;
+  for (const Score& score : test.scores) best = std::max(best, score.gain);
+  std::erase_if(rest,
+                [&](const Score* score) { return !gains_part_of(best, score->candidate, first); });
+  probe(rest);
   refine_shapes(fixed, columns, scorer, test);
   std::ranges::stable_sort(test.scores, std::greater{}, &Score::gain);
   return test;
