@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "fit/estimation/parameters.h"
+#include "fit/estimation/quick_fit.h"
 
 namespace axisfit {
 namespace {
@@ -16,12 +17,8 @@ constexpr std::array kFactors{1.0 / 3.0, 3.0};
 /// The fit at another gain, from where this one ended.
 FitResult fit_at(Job job, const FitResult& fit, double gain, const RunContext& context) {
   set_initial_values(job, values_of(fit));
-  job.options.starts = 1;
-  job.options.attempts = 1;
+  job.options = quick_fit(job.options);
   job.options.observer_gain = gain;
-  // To compare by, a small part of the errors is enough, and of these a quarter.
-  job.options.tolerance = 1e-7;
-  job.options.input_noise_draws = 8;
   return estimate(job, context.quiet());
 }
 

@@ -21,7 +21,7 @@ struct Diagnosis {
   std::vector<SeriesTest> tests;                   ///< of every signal of every recording
   std::vector<MissingForce> forces;                ///< of every recording
   bool explained = false;                          ///< every series shows no more than its noise
-  std::vector<SuspectedEffect> suspected_effects;  ///< strongest first; empty: not asked for
+  std::vector<SuspectedEffect> suspected_effects;  ///< strongest first; may not be sought
 };
 
 /// Looks at a fit, also at one that is not usable: what is missing shows all the more there.

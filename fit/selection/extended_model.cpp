@@ -3,17 +3,15 @@
 #include <algorithm>
 
 #include "fit/estimation/parameters.h"
+#include "fit/estimation/quick_fit.h"
 #include "fit/selection/score.h"
 
 namespace axisfit {
 
 FitResult refit(const Job& job, const RunContext& context, int max_iterations) {
   Job quick = job;
-  quick.options.starts = 1;
-  quick.options.attempts = 1;
-  quick.options.tolerance = 1e-7;
+  quick.options = quick_fit(job.options);
   quick.options.max_iterations = std::min(job.options.max_iterations, max_iterations);
-  quick.options.input_noise_draws = 8;  // enough to judge by, an error of a quarter
   // Smooth effects are then a few parts in a hundred thousand off, and twice as quick.
   quick.options.step = 2.0 * job.options.step;
   if (job.options.observer == ObserverMode::continuation)

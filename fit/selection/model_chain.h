@@ -68,7 +68,8 @@ class ModelChain {
   /// Strikes an accepted effect off the list, and what is part of it; returns the latter. The
   /// models are as before, until set_last().
   std::vector<Candidate> erase(std::size_t place);
-  /// Gives the model with all accepted effects, after some were removed or exchanged.
+  /// Replaces the last model by one with all accepted effects, after some were removed or
+  /// exchanged.
   void set_last(SelectionStep last);
 
   /// The declared model, and with one accepted effect more each, the last. Refits those between
