@@ -13,7 +13,7 @@
 
 #include "base/distributions.h"
 #include "base/linear_algebra.h"
-#include "fit/selection/extended_model.h"
+#include "fit/estimation/parameters.h"
 #include "sim/effects/effects.h"
 
 namespace axisfit {
@@ -99,10 +99,11 @@ std::vector<Form> forms_over(const Variable& x, double from, double to) {
   return list;
 }
 
-/// The coefficients of the curve that is nearest to a function.
+/// The coefficients of the curve that is nearest to a function: of any curve, or of those that a
+/// fit may find, whose ends are held at zero (see curve.h).
 class SplineFit {
  public:
-  SplineFit(double from, double to, bool closes) : from_(from), to_(to) {
+  SplineFit(double from, double to, bool closes) : from_(from), to_(to), closes_(closes) {
     basis_.resize(kPoints, kCount);
     for (int k = 0; k < kCount; ++k) {
       ForceOverMotorAngle<double> closed{};
@@ -113,22 +114,33 @@ class SplineFit {
       for (int i = 0; i < kPoints; ++i)
         basis_(i, k) = closes ? closed.value(at(i)) : open.value(at(i));
     }
-    solver_.emplace(basis_);
+    whole_.emplace(basis_);
+    held_.emplace(basis_.middleCols(1, held()));
   }
   Eigen::VectorXd coefficients(const std::function<double(double)>& f) const {
-    Eigen::VectorXd values(kPoints);
-    for (int i = 0; i < kPoints; ++i) values[i] = f(at(i));
-    return solver_->solve(values);
+    return whole_->solve(values_of(f));
+  }
+  Eigen::VectorXd with_held_ends(const std::function<double(double)>& f) const {
+    Eigen::VectorXd c = Eigen::VectorXd::Zero(kCount);
+    c.segment(1, held()) = held_->solve(values_of(f));
+    return c;
   }
 
  private:
   static constexpr int kPoints = 200;
   static constexpr int kCount = ForceOverPosition<double>::kCoefficients;
+  Eigen::Index held() const { return kCount - (closes_ ? 1 : 2); }
   double at(int i) const { return from_ + (to_ - from_) * (i + 0.5) / kPoints; }
+  Eigen::VectorXd values_of(const std::function<double(double)>& f) const {
+    Eigen::VectorXd values(kPoints);
+    for (int i = 0; i < kPoints; ++i) values[i] = f(at(i));
+    return values;
+  }
 
   double from_, to_;
+  bool closes_;
   Eigen::MatrixXd basis_;
-  std::optional<LeastSquaresSolver> solver_;
+  std::optional<LeastSquaresSolver> whole_, held_;
 };
 
 /// Of the coefficients of a curve those that the recordings determine, and their covariance.
@@ -220,7 +232,7 @@ std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
   }
   const SplineFit spline(from, to, closes);
   const auto column_of = [&](const std::function<double(double)>& f) {
-    return known->whitened(spline.coefficients(f));
+    return known->whitened(spline.with_held_ends(f));
   };
   const std::vector<Form> forms = forms_over(*x, from, to);
   Eigen::MatrixXd columns(known->count(), static_cast<Eigen::Index>(forms.size()));
@@ -228,9 +240,11 @@ std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
     columns.col(static_cast<Eigen::Index>(g)) = column_of(forms[g].value);
 
   // First what other effects hold.
-  Eigen::MatrixXd terms = column_of([](double) { return 1.0; });
-  if (x->has_line_elsewhere) terms = with_column(terms, column_of([](double q) { return q; }));
-  const Eigen::Index elsewhere = terms.cols();
+  std::vector<std::function<double(double)>> functions{[](double) { return 1.0; }};
+  if (x->has_line_elsewhere) functions.emplace_back([](double q) { return q; });
+  const auto elsewhere = static_cast<Eigen::Index>(functions.size());
+  Eigen::MatrixXd terms(known->count(), 0);
+  for (const auto& f : functions) terms = with_column(terms, column_of(f));
   const auto count = static_cast<double>(known->count() - elsewhere);
   const double price = std::log(std::max(2.0, fit.degrees_of_freedom));
   double least_cost = count * price;  // of the coefficients
@@ -247,7 +261,14 @@ std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
     } else if (cost < least_cost && degrees > 0.0 &&
                chi_square <= chi_square_upper_quantile(1e-3, degrees)) {
       least_cost = cost;
-      best = ClosedForm{{}, chi_square, degrees};
+      const Eigen::VectorXd sum = spline.coefficients([&](double q) {
+        double value = 0.0;
+        for (std::size_t k = 0; k < functions.size(); ++k)
+          value += factors[static_cast<Eigen::Index>(k)] * functions[k](q);
+        return value;
+      });
+      best = ClosedForm{
+          {}, chi_square, degrees, static_cast<std::size_t>(parameters), {sum.begin(), sum.end()}};
       const Eigen::MatrixXd variance =
           Eigen::LLT<Eigen::MatrixXd>(terms.transpose() * terms)
               .solve(Eigen::MatrixXd::Identity(terms.cols(), terms.cols()));
@@ -263,8 +284,30 @@ std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
     if (next == forms.size()) return best;
     chosen.push_back(next);
     terms = with_column(terms, columns.col(static_cast<Eigen::Index>(next)));
+    functions.push_back(forms[next].value);
     parameters += 1.0 + forms[next].inside;
   }
+}
+
+bool is_confirmed(const ClosedForm& form, const Candidate& curve, const SelectionStep& with_curve,
+                  const SelectionStep& without, const RunContext& context) {
+  Job job = with_curve.job;
+  set_initial_values(job, values_of(with_curve.fit));
+  std::erase_if(job.free, [&](const FreeParameter& p) {
+    return std::ranges::find(curve.strengths, p.quantity) != curve.strengths.end();
+  });
+  const auto member = members(job.model);
+  // The first coefficient is no strength, see curve.h.
+  for (std::size_t k = 0; k < form.coefficients.size(); ++k)
+    *member[curve.strengths.front() - 1 + k] = form.coefficients[k];
+  const FitResult fit = refit(job, context);
+  if (!fit.usable) return false;
+  const auto found = residual_series(job, fit);
+  const Improvement gain = improvement(residual_series(without.job, without.fit), found);
+  if (!gain.comparable || gain.p_value > kChance) return false;
+  return !is_clearly_worse(bic_difference(residual_series(with_curve.job, with_curve.fit),
+                                          with_curve.job.free.size(), found,
+                                          job.free.size() + form.parameters));
 }
 
 }  // namespace axisfit

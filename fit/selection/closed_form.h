@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/estimation/estimate.h"
-#include "fit/selection/catalogue.h"
+#include "fit/selection/model_chain.h"
 
 namespace axisfit {
 
@@ -20,6 +19,9 @@ struct ClosedForm {
   std::vector<Term> terms;
   double chi_square = 0.0;  ///< of the coefficients about it, their covariance as estimated
   double degrees_of_freedom = 0.0;
+  std::size_t parameters = 0;  ///< factors, and what was chosen inside the terms
+  /// Of the curve that is nearest to the terms, with what other effects hold of it.
+  std::vector<double> coefficients{};
 };
 
 /// The best of the sums of up to three terms: powers, an exponential, a bell or a sine, as goes
@@ -31,5 +33,11 @@ struct ClosedForm {
 /// chi-square), or are cheaper than it. What is assumed: the fit is linear in the coefficients, as
 /// far as they are uncertain, and their covariance is right.
 std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit, const Candidate& curve);
+
+/// Whether what is not fitted confirms the form as it did the curve: in the curve's place, all else
+/// refitted, it lowers the validation error of the model without either by more than chance, and
+/// explains the recordings not clearly worse than the curve.
+bool is_confirmed(const ClosedForm& form, const Candidate& curve, const SelectionStep& with_curve,
+                  const SelectionStep& without, const RunContext& context = {});
 
 }  // namespace axisfit

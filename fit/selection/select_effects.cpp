@@ -503,6 +503,7 @@ class EffectSelector {
   }
 
   void finish();
+  void propose_closed_forms();
   std::vector<std::string> small_effects() const;
   void decide();
 
@@ -545,17 +546,27 @@ void EffectSelector::finish() {
       result_.interrupted = true;
     }
   }
-  for (const AcceptedEffect& a : chain_.accepted())
-    if (EffectTrial* trial = trials_.find(a.candidate); trial != nullptr && a.candidate.is_curve)
-      trial->closed_form = closed_form(last.job, last.fit, a.candidate);
   decide();
   try {
+    propose_closed_forms();
     result_.models = chain_.models();
   } catch (const Interrupted&) {
     result_.interrupted = true;
     result_.models = {chain_.declared(), current()};
   }
   result_.effects = trials_.list();
+}
+
+/// For accepted curves, where they pass the test of the curve.
+void EffectSelector::propose_closed_forms() {
+  for (std::size_t a = 0; a < chain_.accepted().size(); ++a) {
+    const Candidate& curve = chain_.accepted()[a].candidate;
+    EffectTrial* trial = trials_.find(curve);
+    if (trial == nullptr || !curve.is_curve) continue;
+    auto form = closed_form(result_.result.job, result_.result.fit, curve);
+    if (form && is_confirmed(*form, curve, current(), chain_.without(a), context_))
+      trial->closed_form = std::move(form);
+  }
 }
 
 /// Effects that were rejected for their size alone, in the last round.

@@ -12,8 +12,8 @@
 namespace axisfit {
 namespace {
 
-/// A fit that found a curve over 0 ... 1 m/s or m: that nearest to a function, with independent
-/// errors of this size.
+/// A fit that found a curve over 0 ... 1 m/s or m: that nearest to a function of those whose ends
+/// are held at zero, with independent errors of this size.
 class FoundCurve {
  public:
   template <template <class> class Of>
@@ -39,7 +39,8 @@ class FoundCurve {
         basis(i, static_cast<Eigen::Index>(k)) = one.value(x);
       }
     }
-    const Eigen::VectorXd c = LeastSquaresSolver(basis).solve(values);
+    const Eigen::MatrixXd inner = basis.middleCols(1, basis.cols() - 2);
+    const Eigen::VectorXd c = LeastSquaresSolver(inner).solve(values);
     found.job.model = model;
     std::mt19937_64 random(7);
     for (std::size_t k = 1; k + 1 < CurveType::kCoefficients; ++k) {
@@ -47,7 +48,7 @@ class FoundCurve {
       found.job.free.push_back(free_parameter(name, 0.0));
       ParameterResult p;
       p.name = name;
-      p.value = c[static_cast<Eigen::Index>(k)] + error * normal(random);
+      p.value = c[static_cast<Eigen::Index>(k) - 1] + error * normal(random);
       p.uncertainty.determined = true;
       p.uncertainty.standard_error = error;
       found.fit.parameters.push_back(p);
@@ -114,6 +115,51 @@ TEST(ClosedForm, IsNoneForACurveThatWriggles) {
 TEST(ClosedForm, IsNoneWhereNothingButAConstantIsSeen) {
   const auto found = FoundCurve::of<FrictionOverPosition>([](double) { return 2.0; }, 0.1).closed();
   EXPECT_FALSE(found);
+}
+
+/// A slide with a drag that is not declared, and a curve in its place.
+class OfASlide : public testing::Test {
+ protected:
+  static SelectionStep with_curve(const SelectionStep& declared, const Candidate& curve) {
+    ExtendedModel e =
+        fit_extended_model(declared.job, curve, values_of(declared.fit),
+                           std::vector<double>(curve.strengths.size(), 0.0), curve.settings[0]);
+    return {curve.name, e.job, e.fit};
+  }
+
+  OfASlide() {
+    Model<double> truth = slide();
+    add_effect<QuadraticDrag>(truth).c = 25.0;
+    declared_.job = two_recordings(truth, slide(), {"M", "B_a"});
+    declared_.fit = refit(declared_.job);
+    double speed = 0.0;
+    for (const double v : declared_.job.recordings[0].measurements[0].values)
+      speed = std::max(speed, std::abs(v));
+    const auto candidates = catalogue(declared_.job, {.speed = speed});
+    curve_ = *std::ranges::find(candidates, "friction_over_velocity", &Candidate::name);
+    fitted_ = with_curve(declared_, curve_);
+    form_ = closed_form(fitted_.job, fitted_.fit, curve_);
+  }
+
+  SelectionStep declared_, fitted_;
+  Candidate curve_;
+  std::optional<ClosedForm> form_;
+};
+
+TEST_F(OfASlide, IsConfirmedByTheOtherRecording) {
+  ASSERT_TRUE(form_);
+  EXPECT_EQ(form_->terms[0].form, "|v|^2");
+  EXPECT_TRUE(is_confirmed(*form_, curve_, fitted_, declared_));
+}
+
+// The parameters that are refitted cannot make up for it.
+TEST_F(OfASlide, IsNotConfirmedWhereItSaysSomethingElse) {
+  ASSERT_TRUE(form_);
+  for (const double factor : {-1.0, 0.0, 0.5}) {
+    ClosedForm other = *form_;
+    for (double& c : other.coefficients) c *= factor;
+    EXPECT_FALSE(is_confirmed(other, curve_, fitted_, declared_)) << factor;
+  }
 }
 
 }  // namespace
