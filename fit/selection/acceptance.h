@@ -80,11 +80,12 @@ struct Rejection {
     strength,         ///< the data leave its strength open
     share,            ///< it lowers the validation error too little where most remains unexplained
     misfit,           ///< the declared model does not fit, with it or without
+    period,           ///< the recordings to validate, fitted by themselves, show another period
   };
   Test test = Test::fit;
   /// Of significance, the fall of the sum of squares; of validation and power, the p-value; of
   /// validation_size, the fall of the validation error, %; of share, that beyond the noise; of
-  /// strength, the standard errors from zero.
+  /// strength, the standard errors from zero; of period, that which they show.
   double found = 0.0;
   double required = 0.0;    ///< of significance: the least fall of the sum of squares
   std::size_t tried = 0;    ///< of significance: candidates and settings among which it was chosen

@@ -28,6 +28,13 @@ bool is_near(const Estimate& a, const Estimate& b, double neutral) {
          std::max(kErrors * std::hypot(a.error, b.error), kPart * from_neutral(a, neutral));
 }
 
+/// By more than estimates differ that say alike of the same thing.
+bool is_far_apart(const Estimate& a, const Estimate& b) {
+  constexpr double kErrors = 5.0, kPart = 0.1;
+  return std::abs(a.value - b.value) >
+         std::max(kErrors * std::hypot(a.error, b.error), kPart * std::abs(a.value));
+}
+
 /// The length of two strengths that are sine and cosine of a phase.
 Estimate amplitude(const Estimate& sine, const Estimate& cosine) {
   return {std::hypot(sine.value, cosine.value),
@@ -92,6 +99,8 @@ Replication replication(const Job& job, const FitResult& fit, const FitResult& e
     far_there = far_there || is_far_from_zero(there[i], neutral[i]);
   }
   result.is_alike = result.is_alike && far_here && far_there;
+  if (candidate.has_phase && here.size() == 2)
+    result.has_other_period = far_here && far_there && is_far_apart(here[1], there[1]);
   return result;
 }
 

@@ -20,6 +20,9 @@ std::optional<FitResult> fit_elsewhere(const Job& job, const FitResult& fit,
 struct Replication {
   std::vector<ParameterResult> parameters;  ///< of the effect, as found elsewhere
   bool is_alike = false;
+  /// Of an effect with a phase: it is beyond doubt in both, and has another period there. A slow
+  /// disturbance looks like part of a period, of another one in every recording.
+  bool has_other_period = false;
 };
 
 /// Alike are estimates that are determined in both, far from zero in both (a strength beyond 4

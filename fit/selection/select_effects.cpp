@@ -42,6 +42,7 @@ class EffectSelector {
         record_rivals();
         drop_undecided();
         drop_unreplicated_where_half_remains();
+        drop_other_periods();
         record_replications();
       } catch (const Interrupted&) {
         result_.interrupted = true;
@@ -336,6 +337,26 @@ class EffectSelector {
     const double percent = of_all().missing_percent;
     if (percent >= kLeastPercent) return std::nullopt;
     return Rejection{.test = Rejection::Test::share, .found = percent};
+  }
+
+  /// A period is what an effect with a phase is known by.
+  void drop_other_periods() {
+    for (std::size_t a = 0; a < chain_.accepted().size();) {
+      const Candidate candidate = chain_.accepted()[a].candidate;
+      const std::optional<FitResult>* other = candidate.has_phase ? &elsewhere() : nullptr;
+      if (other == nullptr || !*other) {
+        ++a;
+        continue;
+      }
+      const Replication found = replication(current().job, current().fit, **other, candidate);
+      if (!found.has_other_period) {
+        ++a;
+        continue;
+      }
+      trials_.fail(candidate,
+                   {.test = Rejection::Test::period, .found = found.parameters.back().value});
+      take_out(a, chain_.without(a));
+    }
   }
 
   /// A declared parameter at its bound makes up for what it is not, and where most of the drive

@@ -44,6 +44,11 @@ std::string rejection_text(const Rejection& rejection) {
                          rejection.found);
     case misfit:
       return "the declared model does not fit, with it or without";
+    case period:
+      return fmt::format(
+          "the recordings to validate, fitted by themselves, show another period, {:.3g}: a slow "
+          "disturbance looks so",
+          rejection.found);
     case share:
       return fmt::format(
           "lowers the validation error beyond the noise by no more than {:.2g} %, where most "

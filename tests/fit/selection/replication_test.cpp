@@ -96,6 +96,25 @@ TEST(ReplicationTest, OfAPhaseOnlyTheAmplitudeCounts) {
   EXPECT_FALSE(found(-3.0, 0.1, true));
 }
 
+TEST(ReplicationTest, APeriodMustNotBeAnother) {
+  const auto found = [](double period, double error, double strength = 3.0) {
+    const std::vector<Estimate> a{{"periodic_force.F_s1", 3.0, 0.1},
+                                  {"periodic_force.F_c1", 4.0, 0.1},
+                                  {"periodic_force.period", 2.1, 0.02}},
+        b{{"periodic_force.F_s1", strength, 0.1},
+          {"periodic_force.F_c1", 0.1, 0.1},
+          {"periodic_force.period", period, error}};
+    Candidate ripple =
+        candidate({"periodic_force.F_s1", "periodic_force.F_c1"}, {"periodic_force.period"});
+    ripple.has_phase = true;
+    return replication(job_with(a), fit_of(a), fit_of(b), ripple).has_other_period;
+  };
+  EXPECT_TRUE(found(1.3, 0.05));
+  EXPECT_FALSE(found(2.2, 0.05));
+  EXPECT_FALSE(found(1.3, 0.5)) << "nothing is known of it there";
+  EXPECT_FALSE(found(1.3, 0.05, 0.1)) << "it is not seen there";
+}
+
 TEST(ReplicationTest, ACurveIsNoEvidence) {
   const std::vector<Estimate> a{{"coulomb_friction.F_c", 20.0, 0.1}};
   Candidate curve = candidate({"coulomb_friction.F_c"});
