@@ -88,7 +88,12 @@ void run_command(Arguments arguments) {
   options.duration = motion.duration;
   options.noise = !arguments.exact;
   for (const std::string& name : arguments.signals) {
-    const Signal signal = *signal_by_name(name);
+    const Joint joint = rig->model.structure.joint;
+    const auto found = signal_by_name(name, joint);
+    if (!found)
+      throw std::runtime_error(fmt::format("--signals: on a {} joint there is no {}",
+                                           joint_names()[static_cast<std::size_t>(joint)], name));
+    const Signal signal = *found;
     if (std::ranges::find(options.signals, signal) != options.signals.end())
       throw std::runtime_error(fmt::format("--signals: {} is named twice", name));
     if (has_signal(signal, rig->model.structure))
@@ -113,7 +118,11 @@ void run_command(Arguments arguments) {
 int main(int argc, char** argv) {
   Arguments arguments;
   std::vector<std::string> signals;
-  for (const SignalInfo& signal : kSignalTable) signals.emplace_back(signal.name);
+  for (const Joint joint : kJoints)
+    for (const SignalInfo& signal : kSignalTable)
+      if (const std::string name(info(signal.signal, joint).name);
+          std::ranges::find(signals, name) == signals.end())
+        signals.push_back(name);
   arguments.signals = {"position", "velocity", "acceleration", "tachometer", "motor_current"};
   CLI::App app{
       "Simulates a motion of an axis and records it as a test rig would: sampled, with noise, "

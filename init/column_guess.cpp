@@ -218,6 +218,8 @@ constexpr Word kWords[]{
     {"enc", position, 6},
     {"cmd", command, 5},
     {"pwm", command, 4},
+    {"load", command, 4},
+    {"effort", force, 5},
     {"duty", command, 3},
     {"control", command, 3},
     {"input", command, 3},
@@ -448,16 +450,25 @@ const std::vector<StoredUnit>& stored_units(Kind kind) {
 
 bool is_part_of_rating(std::string_view unit) { return unit.ends_with('%'); }
 
+bool is_of_angles(const StoredUnit& unit) {
+  return std::ranges::any_of(std::array{"rad", "deg", "rev", "rpm"},
+                             [&](const char* start) { return unit.text.starts_with(start); });
+}
+
 const StoredUnit* stored_unit(Kind kind, std::string_view text) {
   const auto& list = stored_units(kind);
   const auto at = std::ranges::find(list, text, &StoredUnit::text);
   return at == list.end() ? nullptr : &*at;
 }
 
-const StoredUnit* unit_of_size(Kind kind, double size) {
-  for (const StoredUnit& unit : stored_units(kind))
-    if (size > 0.0 && std::abs(std::log(size / unit.size)) < kSameUnit) return &unit;
-  return nullptr;
+const StoredUnit* unit_of_size(Kind kind, double size, bool of_angles) {
+  const StoredUnit* other = nullptr;
+  for (const StoredUnit& unit : stored_units(kind)) {
+    if (!(size > 0.0) || std::abs(std::log(size / unit.size)) >= kSameUnit) continue;
+    if (is_of_angles(unit) == of_angles) return &unit;
+    if (other == nullptr) other = &unit;
+  }
+  return other;
 }
 
 }  // namespace axisfit

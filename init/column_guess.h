@@ -38,11 +38,11 @@ struct ColumnGuess {
 /// "Istposition", "iq", "set_velocity_v", "a (m/s^2)".
 std::optional<ColumnGuess> guess_column(const std::string& name);
 
-/// The SI unit in which a job takes the kind; "V" for a command.
+/// The SI unit in which a job for a prismatic joint takes the kind; "V" for a command.
 std::string_view si_unit(Kind kind);
 
 /// A unit that recordings of a kind are stored in, and its size in the SI unit. Angles count as the
-/// metres that a job wants: a radian is one.
+/// metres that a job for a prismatic joint wants: a radian is one.
 struct StoredUnit {
   std::string_view text;
   double size;
@@ -54,13 +54,16 @@ struct StoredUnit {
 /// Whether it is a part of a rating, such as per cent of the rated torque.
 bool is_part_of_rating(std::string_view unit);
 
+/// Whether it is a unit of angles, or of their rates.
+bool is_of_angles(const StoredUnit& unit);
+
 /// The units of a kind, most usual first.
 const std::vector<StoredUnit>& stored_units(Kind kind);
 
 /// The one whose text this is; null where there is none.
 const StoredUnit* stored_unit(Kind kind, std::string_view text);
 
-/// The one of about this size; null where there is none.
-const StoredUnit* unit_of_size(Kind kind, double size);
+/// The one of about this size; null where there is none. At best one of angles, or of what is none.
+const StoredUnit* unit_of_size(Kind kind, double size, bool of_angles = false);
 
 }  // namespace axisfit

@@ -56,6 +56,11 @@ std::string column_map(const GuessedColumn& column, const std::string& unit,
       << YAML::Key << "unit" << YAML::Value << unit;
   if (column.factor != 1.0)
     out << YAML::Key << "factor" << YAML::Value << fmt::format("{:.10g}", column.factor);
+  if (column.overflow.signed_bits > 0)
+    out << YAML::Key << "signed_bits" << YAML::Value << column.overflow.signed_bits;
+  if (column.overflow.wraps_after > 0.0)
+    out << YAML::Key << "wraps_after" << YAML::Value
+        << fmt::format("{:.15g}", column.overflow.wraps_after);
   if (column.negative) out << YAML::Key << "sign" << YAML::Value << "-1";
   if (!file.empty()) out << YAML::Key << "file" << YAML::Value << file;
   if (!column.clock.empty())
@@ -172,6 +177,7 @@ class Initialiser {
       diagnostics.throw_if_any();
       structure_ = rig->model.structure;
     }
+    for (Source& source : sources_) write_units(source.guess, joint());
     choose_inputs();
     drop_recordings_without_input();
     correct_signs();
@@ -351,7 +357,15 @@ class Initialiser {
                        }));
     structure_.drive = loop ? Drive::velocity_loop : Drive::force_source;
     structure_.transmission = loop ? Transmission::backlash : Transmission::rigid;
+    if (!loop && is_of_angles(first)) structure_.joint = Joint::revolute;
   }
+
+  Joint joint() const { return structure_.joint; }
+  /// As the job calls it.
+  const QuantityEntry& quantity(std::string_view name) const {
+    return quantity_list(joint())[find_quantity(name)->index];
+  }
+  std::string say(std::string_view text) const { return std::string(words_on(joint(), text)); }
 
   bool force_source() const { return capabilities(structure_).is_force_driven; }
 
@@ -435,10 +449,9 @@ class Initialiser {
     const Source& first = sources_.front();
     if (gain_ && (!force_source() || drives_in_newtons(first)))
       throw std::runtime_error(fmt::format(
-          "--gain is the force per unit of a current or command, but {} is {}: leave it "
-          "out",
-          sanitized(input_of(first).column),
-          force_source() ? "a force" : "a velocity that is asked for"));
+          "--gain is the {} per unit of a current or command, but {} is {}: leave it out",
+          say("force"), sanitized(input_of(first).column),
+          force_source() ? say("a force") : "a velocity that is asked for"));
     if (!force_source()) {
       starter_ = velocity_loop_starter(first.file);
       guesses_.push_back("axis.yaml describes a velocity loop with the values of a published axis");
@@ -454,11 +467,13 @@ class Initialiser {
     if (velocity) seen.largest_speed = largest(velocity->values);
     seen.balance = balance_of(first);
     seen.gain = gain_;
+    seen.joint = joint();
     starter_ = mass_starter(first.file, seen);
     structure_ = starter_->structure;
     if (starter_->gain_guessed)
       guesses_.push_back(
-          "the drive gain, K_f in axis.yaml: M, B_a and the friction forces scale with it");
+          fmt::format("the drive gain, K_f in axis.yaml: {}, B_a and the friction {} scale with it",
+                      quantity("M").name, say("forces")));
   }
 
   static bool drives_in_newtons(const Source& source) {
@@ -542,8 +557,8 @@ class Initialiser {
     static const std::vector<std::string> kCandidates{"M",   "B_a", "V_L", "T_p",
                                                       "k_g", "b_g", "F_s", "H"};
     const auto add = [&](const std::string& name, const std::string& entry = "{}") {
-      const QuantityEntry* quantity = find_quantity(name);
-      if (is_used(*quantity, structure_)) candidates_.push_back({name, entry});
+      const QuantityEntry& called = quantity(name);
+      if (is_used(called, structure_)) candidates_.push_back({called.name, entry});
     };
     // Wherever the user's K_f takes them.
     const bool any_gain = starter_ && starter_->gain_guessed;
@@ -551,19 +566,18 @@ class Initialiser {
       return fmt::format("{{bounds: [{}, {}]}}", with_unit(lower, unit), with_unit(upper, unit));
     };
     for (const std::string& name : kCandidates) {
-      const Quantity& q = find_quantity(name)->quantity;
-      add(name, any_gain ? bounds(std::max(q.lower, 1e-3), q.upper, q.unit) : "{}");
+      if (name == "F_s" && force_source()) continue;
+      const Quantity& q = quantity(name).quantity;
+      const double least = joint() == Joint::prismatic ? 1e-3 : 1e-6;
+      add(name, any_gain ? bounds(std::max(q.lower, least), q.upper, q.unit) : "{}");
     }
-    std::erase_if(candidates_,
-                  [&](const Candidate& c) { return force_source() && c.name == "F_s"; });
     for (const QuantityEntry& entry : quantity_list()) {
-      if (!effect_named(entry.group) || !is_used(entry, structure_) || entry.quantity.shape)
-        continue;
+      if (!entry.effect || !is_used(entry, structure_) || entry.quantity.shape) continue;
+      const Quantity& q = quantity(entry.name).quantity;
       const bool force = starter_ && entry.quantity.unit == "N";
       const double most =
-          force ? std::min((any_gain ? 1e4 : 2.0) * starter_->largest_force, entry.quantity.upper)
-                : 0.0;
-      add(entry.name, force ? bounds(entry.quantity.lower < 0.0 ? -most : 0.0, most, "N") : "{}");
+          force ? std::min((any_gain ? 1e4 : 2.0) * starter_->largest_force, q.upper) : 0.0;
+      add(entry.name, force ? bounds(q.lower < 0.0 ? -most : 0.0, most, q.unit) : "{}");
     }
     if (starter_ && !force_source()) add("K_1");
     if (joined_) add_delay();
@@ -572,8 +586,8 @@ class Initialiser {
     const GuessedColumn* position = first.find(Kind::position);
     const bool offset = position && !force_source() && !is_rounded_away(*position, first);
     if (const double resolution = offset ? resolution_of(position->values) : 0.0; resolution > 0.0)
-      add("position.bias",
-          bounds(-round_to_digits(resolution, 2), round_to_digits(resolution, 2), "m"));
+      add("position.bias", bounds(-round_to_digits(resolution, 2), round_to_digits(resolution, 2),
+                                  unit_on(joint(), "m")));
     if (!force_source() || std::ranges::any_of(sources_, drives_in_newtons)) return;
     add("K_f");
     if (starter_) candidates_.back().reason_not_free = kOnlyRatios;
@@ -669,7 +683,7 @@ class Initialiser {
         ++index;
       }
       if (last == nullptr) return;
-      const std::string_view need = excitation_needed(last->name);
+      const std::string_view need = excitation_needed(*find_quantity(last->name, joint()), joint());
       last->reason_not_free =
           unseen ? "no recorded signal depends on it" : "these recordings do not determine it";
       if (!need.empty()) last->reason_not_free += fmt::format("; it needs {}", need);
@@ -740,8 +754,8 @@ class Initialiser {
     for (const GuessedColumn& c : guess.columns) {
       if (&c == &input) continue;
       if (c.idle) {
-        text += reasons_text(c, 6) + fmt::format("      # {}: {}\n", info(*signal_of(c.kind)).name,
-                                                 column_map(c, c.unit));
+        text += reasons_text(c, 6) +
+                fmt::format("      # {}: {}\n", name_of(c.kind), column_map(c, c.unit));
         continue;
       }
       if (!is_measured(c)) {
@@ -752,12 +766,12 @@ class Initialiser {
       const bool compared = c.kind == Kind::position && is_rounded_away(c, guess);
       if (compared)
         written.reasons.push_back(
-            fmt::format("compared only: its resolution of {:.3g} m is not noise, and the velocity "
+            fmt::format("compared only: its resolution of {:.3g} {} is not noise, and the velocity "
                         "carries the same information",
-                        resolution_of(c.values)));
+                        resolution_of(c.values), unit_on(joint(), "m")));
       text += reasons_text(written, 6);
       text +=
-          fmt::format("      {}: {}\n", info(*signal_of(c.kind)).name,
+          fmt::format("      {}: {}\n", name_of(c.kind),
                       compared ? column_map(c, c.unit, {"fit", "false"}) : column_map(c, c.unit));
     }
     if (!unused.empty()) text += comment(fmt::format("Not used: {}", fmt::join(unused, ", ")), 4);
@@ -777,13 +791,14 @@ class Initialiser {
     std::string unit = input.unit;
     if (source.input->unit == "V" && si_unit(input.kind) != "V") {
       // The job's command is in volts, whatever the drive takes.
-      const auto factor = unit_factor(unit, si_unit(input.kind));
+      const auto factor = unit_factor(unit, unit_on(joint(), si_unit(input.kind)));
       written.factor *= std::get<double>(factor);
       unit = "V";
       if (source.input->kind != Kind::velocity)
         written.reasons.push_back(
-            "the command of a force source; a job treats it as V, whatever its unit, and K_f as "
-            "N/V");
+            fmt::format("the command of a {} source; a job treats it as V, whatever its unit, and "
+                        "K_f as {}",
+                        say("force"), quantity("K_f").quantity.unit));
     }
     std::pair<std::string, std::string> hold;
     const bool in_newtons = drives_in_newtons(source),
@@ -798,7 +813,7 @@ class Initialiser {
                                  : is_linear           ? ", as what is measured does"
                                                        : ", as what is commanded does"));
     return reasons_text(written, 6) +
-           fmt::format("      {}: {}\n", source.input->key,
+           fmt::format("      {}: {}\n", say(source.input->key),
                        column_map(written, unit, hold, source.input_file, source.input_offset));
   }
 
@@ -823,7 +838,7 @@ class Initialiser {
       return "    initial_state: data   # from the first samples: the axis is already moving\n";
     if (position == nullptr || position->values.front() == 0.0) return {};
     return fmt::format("    set: {{initial.y0: {}}}   # it starts at rest at this position\n",
-                       with_unit(position->values.front(), "m"));
+                       with_unit(position->values.front(), unit_on(joint(), "m")));
   }
 
   /// Whether the velocity says less than the position, over the time in which an observer follows
@@ -840,6 +855,8 @@ class Initialiser {
     return noise_from_differences(velocity->values) > kClear * kSlope * noise * rate;
   }
 
+  std::string_view name_of(Kind kind) const { return info(*signal_of(kind), joint()).name; }
+
   std::string fit_text() const {
     // A mass that a force drives is an open integral: free running it drifts away from the
     // recording whatever the fit.
@@ -853,14 +870,17 @@ class Initialiser {
         input_of(sources_.front()).values);
     return "fit:\n" +
            comment(
-               "The position is an open-loop integral of the force: a free-running simulation "
-               "drifts away however good the fit. An observer therefore makes the simulation track "
-               "the recording, and the fit minimises the prediction error. At this gain, an "
-               "unmodelled hundredth of the acceleration would show as ten times the noise; a "
-               "higher gain hides more. What is missing bends the estimates, by more at one gain "
-               "than "
-               "at another: if half the gain changes them by more than their standard errors, "
-               "those are too small.",
+               "The position is an open-loop integral of the " + say("force") +
+                   ": a free-running simulation "
+                   "drifts away however good the fit. An observer therefore makes the simulation "
+                   "track "
+                   "the recording, and the fit minimises the prediction error. At this gain, an "
+                   "unmodelled hundredth of the acceleration would show as ten times the noise; a "
+                   "higher gain hides more. What is missing bends the estimates, by more at one "
+                   "gain "
+                   "than "
+                   "at another: if half the gain changes them by more than their standard errors, "
+                   "those are too small.",
                2) +
            fmt::format("  observer: {{fixed: {} 1/s}}\n", round_to_digits(rate, 2));
   }

@@ -39,6 +39,15 @@ bool never_changes(const Values& values) {
   return std::ranges::adjacent_find(values, std::not_equal_to<>()) == values.end();
 }
 
+/// A voltage that hardly changes drives nothing: it is that of the supply.
+bool is_supply(Kind kind, const Values& values) {
+  if (kind != Kind::command && kind != Kind::motor_voltage) return false;
+  const auto [least, most] = std::ranges::minmax(values);
+  constexpr double kPart = 0.3;
+  return most > least && least * most > 0.0 &&
+         most - least < kPart * std::min(std::abs(least), std::abs(most));
+}
+
 /// What may be of one value throughout, as that of a step or of a free run.
 bool may_be_constant(Kind kind) {
   return kind == Kind::command || kind == Kind::set_velocity || kind == Kind::current ||
@@ -96,11 +105,13 @@ struct UnscaledColumn {
   bool answered = false;  ///< by the user
 
   void set_unit(const StoredUnit& unit) {
+    column.stored = unit.text;
     column.unit = unit.written;
     column.factor = unit.factor;
     size = unit.size;
   }
   void set_unit(double any_size) {
+    column.stored.clear();
     column.unit = si_unit(column.kind);
     column.factor = any_size;
     size = any_size;
@@ -261,7 +272,14 @@ class Guesser {
     const std::size_t clock = column.clock.value_or(time_column_);
     const Values& times = file_.columns()[clock].values;
     if (times.size() != column.values.size() || !increases(without_gaps(times))) return {};
-    return interpolated(times, column.values, time_.raw);
+    Values values = column.values;
+    overflow_in(c).undo(values);
+    return interpolated(times, values, time_.raw);
+  }
+
+  Overflow overflow_in(std::size_t c) const {
+    const auto& guess = headings_[c].guess;
+    return guess ? overflow_of(file_.columns()[c].values, guess->kind, guess->unit) : Overflow();
   }
 
   /// What name or answer say of unit and factor.
@@ -275,6 +293,7 @@ class Guesser {
     }
     column.answered = true;
     column.column.answer = heading.answer->column;
+    column.column.stored = heading.answer->stored;
     column.column.unit = heading.answer->unit;
     column.column.factor = heading.answer->factor;
     column.column.of_rating = heading.answer->of_rating;
@@ -305,13 +324,16 @@ class Guesser {
         constant_.push_back(shown(c));
         continue;
       }
-      if (there != columns_.end() && there->second.rank >= heading.guess->rank &&
+      const int rank = heading.guess->rank - (is_supply(key.first, values) ? kSupply : 0);
+      if (there != columns_.end() && there->second.rank >= rank &&
           !never_changes(there->second.raw)) {
         unused_.push_back(shown(c));
         continue;
       }
       if (there != columns_.end()) unused_.push_back(there->second.shown);
-      apply_heading(c, add_column(c, key, std::move(values)));
+      UnscaledColumn& column = add_column(c, key, std::move(values));
+      apply_heading(c, column);
+      column.rank = rank;
     }
   }
 
@@ -327,6 +349,13 @@ class Guesser {
     column.column.kind = key.first;
     column.column.is_setpoint = key.second;
     column.raw = std::move(values);
+    column.column.overflow = overflow_in(c);
+    if (const Overflow& of = column.column.overflow; of.signed_bits > 0)
+      column.guess(fmt::format("its values at the top of {} bits are taken as those below zero",
+                               of.signed_bits));
+    else if (of.wraps_after > 0.0)
+      column.guess(fmt::format("it leaps by about {:.6g}, taken as a turn: made continuous",
+                               of.wraps_after));
     const auto& clock = file_.columns()[c].clock;
     // Columns that go by equal times share them.
     if (clock && *clock != time_column_ &&
@@ -448,7 +477,8 @@ class Guesser {
       if (found && velocity->size > 0.0) {
         from_ratio(*position, velocity->size * std::abs(found->ratio) * time_.size,
                    fmt::format("{} is {:.5g} times its derivative", velocity->column.column,
-                               std::abs(found->ratio)));
+                               std::abs(found->ratio)),
+                   is_of_angles(*velocity));
       } else {
         size_by_range(*position);
       }
@@ -494,21 +524,27 @@ class Guesser {
     if (rate.size > 0.0 && std::abs(std::log(size / rate.size)) < kSameUnit) {
       rate.reason(fmt::format("{}, as expected for {}", measured, rate.named));
     } else if (rate.size > 0.0) {
-      const StoredUnit* unit = unit_of_size(rate.column.kind, size);
+      const StoredUnit* unit = unit_of_size(rate.column.kind, size, is_of_angles(of));
       rate.guess(fmt::format("the header says {}, but it is {}: {}", rate.named, measured,
                              unit ? fmt::format("taken as {}", unit->text)
                                   : fmt::format("a factor of {:.4g} makes them agree", size)));
       unit ? rate.set_unit(*unit) : rate.set_unit(round_to_digits(size, 4));
     } else {
-      from_ratio(rate, size, measured);
+      from_ratio(rate, size, measured, is_of_angles(of));
     }
     if (found.ratio > 0.0) return;
     rate.column.negative = true;
     rate.guess("its sign was inverted; if that is wrong, invert that of " + of.column.column);
   }
 
-  static void from_ratio(UnscaledColumn& column, double size, const std::string& measured) {
-    if (const StoredUnit* unit = unit_of_size(column.column.kind, size)) {
+  static bool is_of_angles(const UnscaledColumn& column) {
+    const StoredUnit* unit = stored_unit(column.column.kind, column.column.stored);
+    return unit != nullptr && axisfit::is_of_angles(*unit);
+  }
+
+  static void from_ratio(UnscaledColumn& column, double size, const std::string& measured,
+                         bool of_angles) {
+    if (const StoredUnit* unit = unit_of_size(column.column.kind, size, of_angles)) {
       column.set_unit(*unit);
       column.reason(fmt::format("{}: taken as {}", measured, unit->text));
     } else {
@@ -524,7 +560,8 @@ class Guesser {
     const double range = largest(column.raw);
     if (position && resolution_of(column.raw) == 1.0 && range > 1e4) {
       column.set_unit(*stored_unit(Kind::position, "counts"));
-      column.guess("whole numbers, taken as encoder counts: set the factor to metres per count");
+      column.column.remark =
+          "whole numbers, taken as encoder counts: set the factor to metres per count";
       return;
     }
     const char* text = position ? (range < 10.0 ? "m" : "mm") : (range < 10.0 ? "m/s" : "mm/s");
@@ -537,6 +574,7 @@ class Guesser {
     const Kind kind = column.column.kind;
     const UnscaledColumn* measured = column.column.is_setpoint ? find(kind) : nullptr;
     if (measured != nullptr && measured->size > 0.0) {
+      column.column.stored = measured->column.stored;
       column.column.unit = measured->column.unit;
       column.column.factor = measured->column.factor;
       column.size = measured->size;
@@ -555,29 +593,31 @@ class Guesser {
   static void explain(UnscaledColumn& column) {
     const StoredUnit* unit = stored_unit(column.column.kind, column.named);
     if (unit == nullptr || unit->written == unit->text || column.size != unit->size) return;
+    std::string& remark = column.column.remark;
     if (unit->text == "counts") {
-      column.guess("encoder counts: set the factor to metres per count");
+      remark = "encoder counts: set the factor to metres per count";
     } else if (is_part_of_rating(unit->text) && column.column.kind != Kind::command) {
       column.column.of_rating = true;
-      column.guess(
-          fmt::format("in per cent of the rated {}, taken as {} here: multiply the factor "
-                      "by a hundredth of the rating",
-                      column.column.kind == Kind::force ? "torque or force" : "current",
-                      si_unit(column.column.kind)));
+      remark = fmt::format(
+          "in per cent of the rated {}, taken as {} here: multiply the factor "
+          "by a hundredth of the rating",
+          column.column.kind == Kind::force ? "torque or force" : "current",
+          si_unit(column.column.kind));
     } else if (column.column.kind == Kind::force)
-      column.guess(fmt::format("in {}: converted with a lever of 1 m; divide the factor by r_g",
-                               unit->text));
+      remark =
+          fmt::format("in {}: converted with a lever of 1 m; divide the factor by r_g", unit->text);
     else if (column.column.kind == Kind::command)
-      column.guess(fmt::format("in {}, treated as V here", unit->text));
+      remark = fmt::format("in {}, treated as V here", unit->text);
     else if (column.column.kind != Kind::acceleration || unit->text != "g")
-      column.guess(fmt::format("in {}: 1 rad is treated as 1 m; multiply the factor by the radius",
-                               unit->text));
+      remark = fmt::format("in {}: 1 rad is treated as 1 m; multiply the factor by the radius",
+                           unit->text);
   }
 
   static GuessedColumn finished(UnscaledColumn& column) {
     if (column.answered) {
       column.column.guessed = false;
       column.column.reasons.clear();
+      column.column.remark.clear();
     }
     GuessedColumn result = std::move(column.column);
     const double size = column.size * (result.negative ? -1.0 : 1.0);
@@ -586,6 +626,7 @@ class Guesser {
   }
 
   static constexpr int kAnswered = 1000;  ///< rank of what the user says
+  static constexpr int kSupply = 100;     ///< by which a supply ranks lower
 
   const RecordingFile& file_;
   const std::string& path_;
@@ -642,8 +683,10 @@ ColumnAnswer read_answer(const std::string& text) {
     throw refuse(
         fmt::format("there is no signal '{}', but {}", sanitized(signal), fmt::join(names, ", ")));
   }
-  ColumnAnswer answer{known->second, text.substr(equals + 1, colon - equals - 1),
-                      text.substr(colon + 1)};
+  ColumnAnswer answer;
+  answer.kind = known->second;
+  answer.column = text.substr(equals + 1, colon - equals - 1);
+  answer.unit = text.substr(colon + 1);
   // A factor, or a divisor, is a number behind the last sign.
   const std::size_t sign = answer.unit.find_last_of("*/");
   if (sign != std::string::npos) {
@@ -659,6 +702,7 @@ ColumnAnswer read_answer(const std::string& text) {
   }
   if (const StoredUnit* unit = stored_unit(answer.kind, answer.unit)) {
     answer.of_rating = is_part_of_rating(unit->text);
+    answer.stored = unit->text;
     answer.unit = unit->written;
     answer.factor *= unit->factor;
   }
@@ -670,6 +714,54 @@ ColumnAnswer read_answer(const std::string& text) {
 RecordingGuess guess_recording(const RecordingFile& file, const std::string& path,
                                const std::vector<ColumnAnswer>& answers) {
   return Guesser(file, path, answers).guess();
+}
+
+namespace {
+
+bool is_unit_of(std::string_view unit, std::string_view si_unit) {
+  return std::holds_alternative<double>(unit_factor(unit, si_unit));
+}
+
+/// The same values in units of a turning load.
+void write_turning_units(GuessedColumn& column) {
+  const std::string_view wanted = unit_on(Joint::revolute, si_unit(column.kind));
+  const StoredUnit* stored = stored_unit(column.kind, column.stored);
+  if (stored == nullptr) {
+    if (!is_unit_of(column.unit, wanted)) column.unit = wanted;
+  } else if (is_unit_of(stored->text, wanted)) {
+    column.unit = stored->text;
+    column.factor /= stored->factor;
+    column.remark.clear();
+  } else {
+    column.unit = wanted;
+    column.factor *= stored->size / stored->factor;
+    column.remark = words_on(Joint::revolute, column.remark);
+  }
+}
+
+}  // namespace
+
+bool is_of_angles(const RecordingGuess& recording) {
+  bool any = false;
+  for (const Kind kind : {Kind::position, Kind::velocity}) {
+    const GuessedColumn* column = recording.find(kind);
+    const StoredUnit* unit = column ? stored_unit(kind, column->stored) : nullptr;
+    if (unit == nullptr || unit->text.starts_with("counts")) continue;
+    if (!is_of_angles(*unit)) return false;
+    any = true;
+  }
+  return any;
+}
+
+void write_units(RecordingGuess& recording, Joint joint) {
+  const auto write = [&](GuessedColumn& column) {
+    if (joint == Joint::revolute) write_turning_units(column);
+    if (column.remark.empty()) return;
+    column.reasons.push_back(std::exchange(column.remark, {}));
+    column.guessed = true;
+  };
+  write(recording.time);
+  std::ranges::for_each(recording.columns, write);
 }
 
 }  // namespace axisfit

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "init/column_guess.h"
+#include "init/overflow.h"
 #include "io/recording/recording_file.h"
 
 namespace axisfit {
@@ -17,13 +18,16 @@ struct GuessedColumn {
   std::string column;  ///< its name, or its number
   Kind kind = Kind::command;
   bool is_setpoint = false;  ///< see ColumnGuess
-  std::string unit;          ///< as written in the job
+  std::string stored;        ///< the unit, where it is one of stored_units(); else empty
+  std::string unit;          ///< as written in the job, see write_units()
   double factor = 1.0;
   bool of_rating = false;            ///< in per cent of a rating, whatever `unit` says
+  Overflow overflow;                 ///< of the stored values
   bool negative = false;             ///< its sign is to be turned
   std::vector<std::string> reasons;  ///< what was measured, sentences without a full stop
   bool idle = false;                 ///< told by another one, and more precisely
   bool guessed = false;              ///< something of it neither name nor measurement says
+  std::string remark;                ///< on a unit that a job cannot write, as a reason; a guess
   std::vector<double> values;        ///< in the SI unit of its kind, at the times of the recording
   std::string clock;                 ///< column of times of its own; empty: those of the recording
   std::string clock_unit;
@@ -36,6 +40,7 @@ struct GuessedColumn {
 struct ColumnAnswer {
   Kind kind = Kind::command;
   std::string column;  ///< its name, or its number from 1
+  std::string stored;  ///< its unit, as of GuessedColumn
   std::string unit;    ///< as a job takes it
   double factor = 1.0;
   bool of_rating = false;
@@ -61,11 +66,19 @@ struct RecordingGuess {
 /// signs; last the size of the values. What never changes measures nothing, but it may drive: the
 /// command of a step. Where no column has a name, the values alone tell what moves, and what drives
 /// it. An answer comes before all that. Columns with a clock of their own, or gaps, are compared at
-/// the times of the recording.
+/// the times of the recording. Units are those of a job for a prismatic joint, and what it cannot
+/// write of them is in the remarks.
 ///
 /// Throws RecordingError where nothing can be the time, and where a column of an answer cannot be
 /// used; one that is not there counts for other files.
 RecordingGuess guess_recording(const RecordingFile& file, const std::string& path,
                                const std::vector<ColumnAnswer>& answers = {});
+
+/// Whether the motion was recorded in units of angles, and none of it in units of lengths.
+bool is_of_angles(const RecordingGuess& recording);
+
+/// Writes the units as a job for an axis with that joint takes them, and makes reasons of the
+/// remarks that remain.
+void write_units(RecordingGuess& recording, Joint joint);
 
 }  // namespace axisfit

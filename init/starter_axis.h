@@ -31,12 +31,13 @@ struct DrivenMass {
   double largest_input = 0.0;  ///< either way
   double largest_speed = 1.0;  ///< m/s
   std::optional<ForceBalance> balance;
-  std::optional<double> gain{};  ///< N/V, of an input that is no force, where the user knows it
+  std::optional<double> gain{};    ///< N/V, of an input that is no force, where the user knows it
+  Joint joint = Joint::prismatic;  ///< a revolute one has an inertia that a torque turns
 };
 
 /// A force source that moves one mass with viscous and Coulomb friction and a constant force. Where
 /// the input is no force and its gain not known, that is the power of ten, at least 1 N/V, that
-/// makes the mass 0.1 kg or more: motion does not show the gain.
+/// makes the mass 0.1 kg or more: motion does not show the gain. On a revolute joint it is 1 N m/V.
 StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen);
 
 }  // namespace axisfit

@@ -68,7 +68,7 @@ void visit_axis(AxisOfT& a, Visitor&& visit) {
   visit(Q{"b_g", "N s/m", "gear friction", 0, 1e8, kRequired, backlash}, a.b_g);
   visit(Q{"k_g", "N/m", "gear stiffness", 1, 1e12, kRequired, backlash}, a.k_g);
   visit(Q{"F_s", "N", "static friction of the arm", 0, 1e5, 0.0}, a.F_s);
-  visit(Q{"w", "m/s", "speed above which F_s vanishes", 1e-6, 1, 0.002}, a.w);
+  visit(Q{"w", "m/s", "speed above which the static friction vanishes", 1e-6, 1, 0.002}, a.w);
   visit(Q{"K_v", "V/V", "power-unit forward gain", 10, 1e6, kRequired, velocity_loop}, a.K_v);
   visit(Q{"K_f", "N/V", "force per drive signal", 1e-6, 1e9, kRequired, force_source}, a.K_f);
   visit(Q{"T_d", "s", "dead time of the command", -1, 1, 0.0}, a.T_d);

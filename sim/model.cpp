@@ -1,23 +1,33 @@
 #include "sim/model.h"
 
 #include <algorithm>
+#include <array>
 
 namespace axisfit {
 
-const std::vector<QuantityEntry>& quantity_list() {
-  static const std::vector<QuantityEntry> list = [] {
-    std::vector<QuantityEntry> entries;
-    const Model<double> model;
-    visit_quantities(model, [&](std::string_view group, const Quantity& quantity, double) {
-      entries.push_back({full_name(group, quantity), std::string(group), quantity, entries.size()});
-    });
-    return entries;
-  }();
-  return list;
+namespace {
+
+std::vector<QuantityEntry> make_list(Joint joint) {
+  std::vector<QuantityEntry> entries;
+  const Model<double> model;
+  visit_quantities(model, [&](std::string_view group, const Quantity& quantity, double) {
+    const std::string_view group_on = words_on(joint, group);
+    const Quantity on = quantity_on(joint, quantity);
+    entries.push_back({full_name(group_on, on), std::string(group_on), on, entries.size(),
+                       effect_named(group), signal_by_name(group)});
+  });
+  return entries;
 }
 
-const QuantityEntry* find_quantity(std::string_view name) {
-  const auto& list = quantity_list();
+}  // namespace
+
+const std::vector<QuantityEntry>& quantity_list(Joint joint) {
+  static const std::array lists{make_list(Joint::prismatic), make_list(Joint::revolute)};
+  return lists[static_cast<std::size_t>(joint)];
+}
+
+const QuantityEntry* find_quantity(std::string_view name, Joint joint) {
+  const auto& list = quantity_list(joint);
   const auto found = std::ranges::find(list, name, &QuantityEntry::name);
   return found == list.end() ? nullptr : &*found;
 }
@@ -44,8 +54,7 @@ bool is_used(UsedBy used_by, const Structure& structure) {
 }
 
 bool is_used(const QuantityEntry& entry, const Structure& structure) {
-  const auto effect = effect_named(entry.group);
-  if (effect && !structure.effects[*effect]) return false;
+  if (entry.effect && !structure.effects[*entry.effect]) return false;
   return is_used(entry.quantity.used_by, structure);
 }
 
@@ -71,7 +80,7 @@ void normalize(Model<double>& model) {
   for (const QuantityEntry& entry : quantity_list()) {
     const bool of_axis = entry.group.empty() || entry.group == "initial";
     if (of_axis && !is_used(entry, model.structure))
-      *member[entry.index] = entry.name == "r_g" ? 1.0 : 0.0;
+      *member[entry.index] = entry.quantity.symbol == "r_g" ? 1.0 : 0.0;
   }
 }
 

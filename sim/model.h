@@ -9,6 +9,7 @@
 
 #include "sim/axis.h"
 #include "sim/effects/effects.h"
+#include "sim/joint.h"
 #include "sim/scalar.h"
 #include "sim/signal.h"
 
@@ -18,7 +19,8 @@ namespace axisfit {
 struct Structure {
   Drive drive = Drive::velocity_loop;
   Transmission transmission = Transmission::backlash;
-  EffectSet effects;
+  EffectSet effects{};
+  Joint joint = Joint::prismatic;
 };
 
 /// What an axis has by its drive and its transmission.
@@ -65,7 +67,8 @@ State<T> initial_state(const Model<T>& model) {
 }
 
 /// Calls visit(group, quantity, member) for every quantity of the model, always in the same order.
-/// Groups: "" for the axis, the effect's name, the signal's name, "initial".
+/// Groups: "" for the axis, the effect's name, the signal's name, "initial". All are named as on a
+/// prismatic joint.
 template <class ModelOfT, class Visitor>
 void visit_quantities(ModelOfT& model, Visitor&& visit) {
   visit_axis(model.axis, [&](const Quantity& quantity, auto& member) {
@@ -108,13 +111,16 @@ struct QuantityEntry {
   std::string group;
   Quantity quantity;
   std::size_t index;
+  std::optional<std::size_t> effect;  ///< that it belongs to, in the list of effects
+  std::optional<Signal> signal;       ///< the instrument of which it is part
 };
 
-/// The list of all quantities, in the order of visit_quantities.
-const std::vector<QuantityEntry>& quantity_list();
+/// The list of all quantities, in the order of visit_quantities, with the names, units and ranges
+/// that they have on the joint. Without one: those by which the sources call them.
+const std::vector<QuantityEntry>& quantity_list(Joint joint = Joint::prismatic);
 
 /// The entry with this name, or null.
-const QuantityEntry* find_quantity(std::string_view name);
+const QuantityEntry* find_quantity(std::string_view name, Joint joint = Joint::prismatic);
 
 /// The model in another scalar type, without derivatives.
 template <class To, class From>

@@ -38,14 +38,20 @@ std::vector<double> sampling_times(const RecordingOptions& options) {
 
 }  // namespace
 
-std::string column_name(Signal signal) {
-  std::string unit;
-  for (const char c : info(signal).unit) {
-    if (c == '/') unit += 'p';
+std::string column_name(std::string_view name, std::string_view unit) {
+  std::string text(name);
+  text += '_';
+  for (const char c : unit) {
+    if (c == '/') text += 'p';
     if (std::isalnum(static_cast<unsigned char>(c)) != 0)
-      unit += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
-  return std::string(info(signal).name) + "_" + unit;
+  return text;
+}
+
+std::string column_name(Signal signal, Joint joint) {
+  const SignalInfo on = info(signal, joint);
+  return column_name(on.name, on.unit);
 }
 
 std::vector<Column> record(const Rig& rig, const Motion& motion, const RecordingOptions& options) {
@@ -86,7 +92,7 @@ std::vector<Column> record(const Rig& rig, const Motion& motion, const Recording
   }
   for (std::size_t s = 0; s < options.signals.size(); ++s) {
     const Signal signal = options.signals[s];
-    Column column{column_name(signal), recorder.readings(s)};
+    Column column{column_name(signal, rig.model.structure.joint), recorder.readings(s)};
     NormalStream stream(options.seed, info(signal).name);
     for (double& x : column.values) {
       if (!options.noise) break;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/column.h"
@@ -37,7 +38,9 @@ struct RecordingOptions {
 /// Throws std::runtime_error when the motion cannot be simulated to its end.
 std::vector<Column> record(const Rig& rig, const Motion& motion, const RecordingOptions& options);
 
-/// "velocity_mps": the signal's name and its unit in plain letters.
-std::string column_name(Signal signal);
+/// A name and a unit in plain letters: "velocity_mps".
+std::string column_name(std::string_view name, std::string_view unit);
+/// Of a signal on the joint.
+std::string column_name(Signal signal, Joint joint = Joint::prismatic);
 
 }  // namespace axisfit

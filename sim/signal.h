@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "sim/joint.h"
 #include "sim/quantity.h"
 
 namespace axisfit {
@@ -46,9 +47,16 @@ constexpr std::size_t index_of(Signal signal) { return static_cast<std::size_t>(
 
 constexpr const SignalInfo& info(Signal signal) { return kSignalTable[index_of(signal)]; }
 
-inline std::optional<Signal> signal_by_name(std::string_view name) {
+/// As it is called on the joint.
+inline SignalInfo info(Signal signal, Joint joint) {
+  const SignalInfo& entry = info(signal);
+  return {signal, words_on(joint, entry.name), unit_on(joint, entry.unit),
+          words_on(joint, entry.meaning)};
+}
+
+inline std::optional<Signal> signal_by_name(std::string_view name, Joint joint = Joint::prismatic) {
   for (const SignalInfo& entry : kSignalTable)
-    if (entry.name == name) return entry.signal;
+    if (words_on(joint, entry.name) == name) return entry.signal;
   return std::nullopt;
 }
 

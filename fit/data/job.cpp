@@ -46,9 +46,13 @@ bool share_samples(const Recording& a, const Recording& b) {
 FreeParameter free_parameter(std::string_view name, double initial) {
   const QuantityEntry* entry = find_quantity(name);
   if (entry == nullptr) throw std::invalid_argument("unknown quantity '" + std::string(name) + "'");
-  const Quantity& q = entry->quantity;
+  return free_parameter(*entry, initial);
+}
+
+FreeParameter free_parameter(const QuantityEntry& entry, double initial) {
+  const Quantity& q = entry.quantity;
   FreeParameter p;
-  p.quantity = entry->index;
+  p.quantity = entry.index;
   p.initial = initial;
   p.logarithmic = initial > 0.0;
   p.lower = p.logarithmic ? std::max(q.lower, initial / 100.0) : q.lower;

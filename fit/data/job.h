@@ -124,9 +124,10 @@ struct FreeParameter {
   std::optional<Prior> prior;
 };
 
-/// The quantity of that name, shared by all recordings, from this initial value within a factor of
-/// a hundred, as far as its range goes; on a linear scale within its whole range if the value is
-/// not positive. Throws std::invalid_argument for an unknown name.
+/// The quantity, shared by all recordings, from this initial value within a factor of a hundred, as
+/// far as its range goes; on a linear scale within its whole range if the value is not positive.
+FreeParameter free_parameter(const QuantityEntry& entry, double initial);
+/// That of this name on a prismatic joint. Throws std::invalid_argument for an unknown one.
 FreeParameter free_parameter(std::string_view name, double initial);
 
 /// How the simulation is made to track the data while it is fitted, see observer.h.
@@ -173,6 +174,12 @@ struct Job {
   std::vector<FreeParameter> free;
   std::vector<std::size_t> guessed{};  ///< quantities whose values are guesses, in quantity_list()
   FitOptions options;
+
+  Joint joint() const { return model.structure.joint; }
+  /// What a quantity is on the job's axis.
+  const QuantityEntry& entry(std::size_t quantity) const {
+    return quantity_list(joint())[quantity];
+  }
 };
 
 }  // namespace axisfit

@@ -218,7 +218,7 @@ std::vector<double> next_sampling_times(const Job& job) {
 std::optional<std::size_t> held_by_bound(const Job& job, const FitResult& fit) {
   for (std::size_t i = 0; i < job.free.size(); ++i) {
     const FreeParameter& free = job.free[i];
-    const Quantity& quantity = quantity_list()[free.quantity].quantity;
+    const Quantity& quantity = job.entry(free.quantity).quantity;
     const double middle = 0.5 * (free.lower + free.upper);
     const bool is_range = fit.parameters[i].value > middle ? free.upper == quantity.upper
                                                            : free.lower == quantity.lower;

@@ -32,7 +32,7 @@ Forecast forecast(const Job& job, const std::vector<double>& values) {
   return result;
 }
 
-std::string_view excitation_needed(std::string_view quantity) {
+std::string_view excitation_needed(const QuantityEntry& quantity, Joint joint) {
   constexpr std::string_view kReversal =
       "the pinion to change flanks: commands of both signs, or strong braking";
   constexpr std::string_view kRinging =
@@ -62,9 +62,9 @@ std::string_view excitation_needed(std::string_view quantity) {
       {"T_r", kFastChanges},
       {"T_d", motions::kSwitches}};
   for (const auto& [name, need] : kNeeds)
-    if (name == quantity) return need;
-  const auto effect = effect_named(quantity.substr(0, quantity.find('.')));
-  return effect ? kEffectTable[*effect].excitation : std::string_view();
+    if (name == quantity_list()[quantity.index].name) return words_on(joint, need);
+  return quantity.effect ? words_on(joint, kEffectTable[*quantity.effect].excitation)
+                         : std::string_view();
 }
 
 }  // namespace axisfit

@@ -156,9 +156,8 @@ double final_observer_gain(const Job& job) {
 }
 
 bool is_ignored(const QuantityEntry& entry, ObserverMode observer) {
-  const auto signal = signal_by_name(entry.group);
   return observer == ObserverMode::fixed &&
-         (signal == Signal::position || signal == Signal::velocity) &&
+         (entry.signal == Signal::position || entry.signal == Signal::velocity) &&
          (entry.quantity.symbol == "lag" || entry.quantity.symbol == "delay" ||
           entry.quantity.symbol == "drift");
 }

@@ -326,8 +326,7 @@ bool is_free(const Job& job, std::string_view name) {
 
 /// Whether the balance of forces can tell a quantity of the job.
 bool is_balanced(const Job& job, const QuantityEntry& entry) {
-  const auto effect = effect_named(entry.group);
-  if (entry.group == "elastic_mode" || (!entry.group.empty() && !effect)) return false;
+  if (entry.group == "elastic_mode" || (!entry.group.empty() && !entry.effect)) return false;
   const bool is_gain = entry.name == "K_f" || entry.name == "K_m" || entry.name == "r_g";
   return !(is_gain && is_free(job, "M"));
 }

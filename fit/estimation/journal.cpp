@@ -57,7 +57,7 @@ class Hash {
 };
 
 void add_model(Hash& hash, const Model<double>& model) {
-  hash << model.structure.drive << model.structure.transmission;
+  hash << model.structure.drive << model.structure.transmission << model.structure.joint;
   for (std::size_t i = 0; i < model.structure.effects.size(); ++i)
     hash << model.structure.effects[i];
   visit_quantities(model, [&](std::string_view, const Quantity&, double value) { hash << value; });

@@ -10,7 +10,7 @@ namespace {
 std::vector<std::string> names_in(const Job& job) {
   std::vector<std::string> names;
   for (const FreeParameter& p : job.free) {
-    names.push_back(quantity_list()[p.quantity].name);
+    names.push_back(job.entry(p.quantity).name);
     if (p.recording) names.back() += "@" + job.recordings[*p.recording].name;
   }
   return names;

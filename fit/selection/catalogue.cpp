@@ -30,8 +30,7 @@ double neutral(const Quantity& quantity) {
 
 /// The structure of a job's model with the effect of a quantity switched on.
 Structure extended(Structure structure, std::size_t quantity) {
-  if (const auto effect = effect_named(quantity_list()[quantity].group))
-    structure.effects.set(*effect);
+  if (const auto effect = quantity_list()[quantity].effect) structure.effects.set(*effect);
   return structure;
 }
 
@@ -41,8 +40,7 @@ bool is_absent(const Job& job, const std::vector<std::size_t>& strengths) {
   const auto member = members(model);
   return std::ranges::all_of(strengths, [&](std::size_t q) {
     const QuantityEntry& entry = quantity_list()[q];
-    const auto effect = effect_named(entry.group);
-    const bool written = effect && !job.model.structure.effects[*effect];
+    const bool written = entry.effect && !job.model.structure.effects[*entry.effect];
     return is_used(entry, extended(job.model.structure, q)) && !has_value(job, q) &&
            (written || *member[q] == neutral(entry.quantity));
   });
@@ -64,17 +62,17 @@ std::vector<std::size_t> quantities_of(std::string_view effect,
   return quantities;
 }
 
-Candidate candidate_of(const EffectInfo& effect, SearchEntry entry) {
+Candidate candidate_of(const EffectInfo& effect, SearchEntry entry, Joint joint) {
   Candidate candidate;
-  candidate.name = effect.name;
-  candidate.acts_on = name_of(effect.acts_on);
-  candidate.meaning = effect.meaning;
+  candidate.name = words_on(joint, effect.name);
+  candidate.acts_on = words_on(joint, name_of(effect.acts_on));
+  candidate.meaning = words_on(joint, effect.meaning);
   candidate.strengths = quantities_of(effect.name, entry.strengths);
   candidate.shapes = quantities_of(effect.name, entry.shapes);
   candidate.settings = std::move(entry.settings);
   candidate.shapes_are_free = !entry.is_curve;
   candidate.probes = std::move(entry.probes);
-  candidate.extends = entry.extends;
+  candidate.extends = words_on(joint, entry.extends);
   candidate.is_curve = entry.is_curve;
   candidate.has_phase = entry.has_phase;
   return candidate;
@@ -94,18 +92,19 @@ Candidate single(const std::string& name, const std::string& acts_on, const Quan
 /// Whether a quantity has a value in the job's axis that somebody declared, not neutral, and that
 /// is not estimated. Where a recording begins is known of each recording, not of the axis.
 bool is_constant(const Job& job, const QuantityEntry& entry, double declared) {
-  const auto signal = signal_by_name(entry.group);
   return is_used(entry, job.model.structure) && !has_value(job, entry.index) &&
          entry.group != "initial" && !entry.quantity.shape && declared != 0.0 &&
          declared != neutral(entry.quantity) && declared > entry.quantity.lower &&
          declared < entry.quantity.upper &&
-         (!signal || (is_recorded(job, *signal) && !is_ignored(entry, job.options.observer)));
+         (!entry.signal ||
+          (is_recorded(job, *entry.signal) && !is_ignored(entry, job.options.observer)));
 }
 
 /// The range of a shape that may be negative, such as a place: it has no scale of its own, and is
 /// sought where its settings lie, and a tenth of their span beyond.
-std::pair<double, double> range_of_place(const Candidate& candidate, std::size_t shape) {
-  const Quantity& q = quantity_list()[candidate.shapes[shape]].quantity;
+std::pair<double, double> range_of_place(const Job& job, const Candidate& candidate,
+                                         std::size_t shape) {
+  const Quantity& q = job.entry(candidate.shapes[shape]).quantity;
   double least = INFINITY, most = -INFINITY;
   for (const auto& setting : candidate.settings) {
     least = std::min(least, setting[shape]);
@@ -128,12 +127,15 @@ double shape_named(std::string_view name, const Candidate& candidate,
 
 bool is_part_of(const Candidate& part, const Candidate& whole) {
   return part.extends == whole.name && whole.extends.empty() &&
-         (whole.gives_backlash || quantity_list()[part.strengths.front()].group == whole.name);
+         (whole.gives_backlash || quantity_list()[part.strengths.front()].effect ==
+                                      quantity_list()[whole.strengths.front()].effect);
 }
 
 std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
   scales.pinion_radius = job.model.axis.r_g;
+  if (job.joint() == Joint::revolute) scales.short_travel *= 10.0;  // at a radius of 0.1 m
   const Structure& structure = job.model.structure;
+  const Joint joint = job.joint();
   Model<double> model = job.model;
   std::vector<Candidate> list;
   const auto add_if_absent = [&](Candidate candidate) {
@@ -150,7 +152,7 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
         if (entry.is_curve == curves && is_used(entry.used_by, structure) &&
             (entry.extends.empty() || structure.effects[*effect_named(entry.extends)]) &&
             (!entry.changes_dry_friction || rubs))
-          add_if_absent(candidate_of(kEffectTable[e], std::move(entry)));
+          add_if_absent(candidate_of(kEffectTable[e], std::move(entry), joint));
     }
   };
   for (const ActsOn place : kPlacesToAct) add_effects(place, false);
@@ -164,10 +166,10 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
   for (const SignalInfo& signal : kSignalTable) {
     if (!is_recorded(job, signal.signal)) continue;
     for (const std::string_view part : {"bias", "gain", "lag", "delay", "drift"}) {
-      const std::string name = std::string(signal.name) + "." + std::string(part);
-      const QuantityEntry* entry = find_quantity(name);
-      if (is_ignored(*entry, job.options.observer)) continue;
-      Candidate candidate = single(name, "sensor", *entry);
+      const QuantityEntry& entry =
+          job.entry(index_of_quantity(std::string(signal.name) + "." + std::string(part)));
+      if (is_ignored(entry, job.options.observer)) continue;
+      Candidate candidate = single(entry.name, "sensor", entry);
       if (part == "lag") candidate.probes = later(scales);
       candidate.is_timing = part == "delay" || part == "drift";
       if (part == "delay") candidate.probes = both_signs;
@@ -177,10 +179,12 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
       add_if_absent(std::move(candidate));
     }
   }
-  const bool offers_mass = std::ranges::find(list, "added_mass", &Candidate::name) != list.end();
-  for (const QuantityEntry& entry : quantity_list())
+  const std::size_t mass = index_of_quantity("M"), added_mass = index_of_quantity("added_mass.dM");
+  const bool offers_mass =
+      std::ranges::any_of(list, [&](const Candidate& c) { return c.strengths[0] == added_mass; });
+  for (const QuantityEntry& entry : quantity_list(joint))
     if (const double declared = *members(model)[entry.index]; is_constant(job, entry, declared)) {
-      if (entry.name == "M" && offers_mass) continue;  // they say the same
+      if (entry.index == mass && offers_mass) continue;  // they say the same
       Candidate candidate = single(entry.name, "axis file", entry);
       candidate.is_constant = true;
       candidate.neutral = {declared};
@@ -205,12 +209,12 @@ Job with_candidate(const Job& job, const Candidate& candidate, std::span<const d
       *member[entry.index] = neutral(entry.quantity);
   }
   for (std::size_t i = 0; i < candidate.strengths.size(); ++i) {
-    const QuantityEntry& entry = quantity_list()[candidate.strengths[i]];
+    const QuantityEntry& entry = job.entry(candidate.strengths[i]);
     FreeParameter p;
     if (candidate.is_constant) {
-      p = free_parameter(entry.name, candidate.neutral[i]);
+      p = free_parameter(entry, candidate.neutral[i]);
     } else if (std::isinf(candidate.neutral[i])) {
-      p = free_parameter(entry.name, strengths[i]);
+      p = free_parameter(entry, strengths[i]);
     } else {
       p.quantity = entry.index;
       p.lower = entry.quantity.lower;
@@ -223,9 +227,9 @@ Job with_candidate(const Job& job, const Candidate& candidate, std::span<const d
   for (std::size_t i = 0; i < candidate.shapes.size(); ++i) {
     *member[candidate.shapes[i]] = shapes[i];
     if (!candidate.shapes_are_free) continue;
-    const QuantityEntry& entry = quantity_list()[candidate.shapes[i]];
+    const QuantityEntry& entry = job.entry(candidate.shapes[i]);
     if (candidate.gives_backlash) {
-      FreeParameter p = free_parameter(entry.name, shapes[i]);
+      FreeParameter p = free_parameter(entry, shapes[i]);
       p.lower *= 1e-4;  // hardly any damping is as good as none, and no bound
       extended_job.free.push_back(p);
       continue;
@@ -235,7 +239,7 @@ Job with_candidate(const Job& job, const Candidate& candidate, std::span<const d
     p.quantity = candidate.shapes[i];
     p.logarithmic = q.lower > 0.0;
     std::tie(p.lower, p.upper) =
-        p.logarithmic ? std::pair(q.lower, q.upper) : range_of_place(candidate, i);
+        p.logarithmic ? std::pair(q.lower, q.upper) : range_of_place(job, candidate, i);
     p.initial = std::clamp(shapes[i], p.lower, p.upper);
     extended_job.free.push_back(p);
   }

@@ -47,25 +47,30 @@ std::string power_unit(const Variable& x, int power) {
 }
 
 /// All terms over a range of the variable. Of what is inside a term, steps of a twentieth.
-std::vector<Form> forms_over(const Variable& x, double from, double to) {
+std::vector<Form> forms_over(const Variable& x, Joint joint, double from, double to) {
   std::vector<Form> list;
+  const std::string force(unit_on(joint, "N"));
+  const std::string_view unit = unit_on(joint, x.unit);
   const std::string_view s = x.symbol;
   const double range = to - from;
   if (x.unit == "rad") {
     for (int k = 1; k <= 6; ++k) {
       list.push_back(
-          {fmt::format("sin({} {})", k, s), "N", 0, [k](double q) { return std::sin(k * q); }});
+          {fmt::format("sin({} {})", k, s), force, 0, [k](double q) { return std::sin(k * q); }});
       list.push_back(
-          {fmt::format("cos({} {})", k, s), "N", 0, [k](double q) { return std::cos(k * q); }});
+          {fmt::format("cos({} {})", k, s), force, 0, [k](double q) { return std::cos(k * q); }});
     }
     return list;
   }
   for (int n = x.has_line_elsewhere ? 2 : 1; n <= 3; ++n)
-    list.push_back({n == 1 ? std::string(s) : fmt::format("{}^{}", s, n), power_unit(x, n), 0,
+    list.push_back({n == 1 ? std::string(s) : fmt::format("{}^{}", s, n),
+                    std::string(unit_on(joint, power_unit(x, n))), 0,
                     [n](double q) { return std::pow(q, n); }});
   if (x.effect == "force_over_velocity") {
-    list.push_back({"|v|", "N s/m", 0, [](double q) { return std::abs(q); }});
-    list.push_back({"v |v|", power_unit(x, 2), 0, [](double q) { return q * std::abs(q); }});
+    list.push_back(
+        {"|v|", std::string(unit_on(joint, "N s/m")), 0, [](double q) { return std::abs(q); }});
+    list.push_back({"v |v|", std::string(unit_on(joint, power_unit(x, 2))), 0,
+                    [](double q) { return q * std::abs(q); }});
   }
   constexpr int kWidths = 40;
   std::vector<double> widths;
@@ -73,25 +78,26 @@ std::vector<Form> forms_over(const Variable& x, double from, double to) {
     widths.push_back(setting.front());
   if (x.is_speed || x.unit == "s")
     for (const double w : widths)
-      list.push_back({fmt::format("exp(-{} / {:.3g} {})", s, w, x.unit), "N", 1,
+      list.push_back({fmt::format("exp(-{} / {:.3g} {})", s, w, unit), force, 1,
                       [w, from](double q) { return std::exp(-(q - from) / w); }});
   if (x.is_speed)
     for (const double w : widths)
-      list.push_back({fmt::format("exp(-({} / {:.3g} {})^2)", s, w, x.unit), "N", 1,
+      list.push_back({fmt::format("exp(-({} / {:.3g} {})^2)", s, w, unit), force, 1,
                       [w](double q) { return std::exp(-std::pow(q / w, 2)); }});
   if (x.unit == "m") {
     for (const double w : widths)
       for (int i = 0; i <= 40; ++i) {
         const double at = from + range * i / 40.0;
-        list.push_back({fmt::format("exp(-(({} - {:.3g} m) / {:.3g} m)^2)", s, at, w), "N", 2,
+        list.push_back({fmt::format("exp(-(({0} - {1:.3g} {3}) / {2:.3g} {3})^2)", s, at, w, unit),
+                        force, 2,
                         [at, w](double q) { return std::exp(-std::pow((q - at) / w, 2)); }});
       }
     for (const auto& setting : geometric(0.2 * range, range, kWidths))
       for (int i = 0; i < 24; ++i) {
         const double period = setting.front();
         const double phase = std::numbers::pi * i / 24.0;
-        list.push_back({fmt::format("sin(2 pi {} / {:.3g} m + {:.3g})", s, period, phase), "N", 2,
-                        [period, phase](double q) {
+        list.push_back({fmt::format("sin(2 pi {} / {:.3g} {} + {:.3g})", s, period, unit, phase),
+                        force, 2, [period, phase](double q) {
                           return std::sin(2 * std::numbers::pi * q / period + phase);
                         }});
       }
@@ -219,7 +225,8 @@ std::size_t best_beside(const Eigen::MatrixXd& terms, const Eigen::VectorXd& lef
 
 std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
                                       const Candidate& curve) {
-  const auto* x = std::ranges::find(kVariables, curve.name, &Variable::effect);
+  const auto* x = std::ranges::find(kVariables, quantity_list()[curve.strengths.front()].group,
+                                    &Variable::effect);
   if (x == std::end(kVariables)) return std::nullopt;
   const auto known = KnownCoefficients::of(job, fit, curve);
   if (!known) return std::nullopt;
@@ -234,7 +241,7 @@ std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
   const auto column_of = [&](const std::function<double(double)>& f) {
     return known->whitened(spline.with_held_ends(f));
   };
-  const std::vector<Form> forms = forms_over(*x, from, to);
+  const std::vector<Form> forms = forms_over(*x, job.joint(), from, to);
   Eigen::MatrixXd columns(known->count(), static_cast<Eigen::Index>(forms.size()));
   for (std::size_t g = 0; g < forms.size(); ++g)
     columns.col(static_cast<Eigen::Index>(g)) = column_of(forms[g].value);

@@ -14,7 +14,7 @@ namespace {
 
 /// The effect that a quantity belongs to, if it does.
 std::optional<std::size_t> effect_of(std::size_t quantity) {
-  return effect_named(quantity_list()[quantity].group);
+  return quantity_list()[quantity].effect;
 }
 
 /// Whether a quantity acts by the affine slots of its effect, or has none.
@@ -39,8 +39,7 @@ bool is_smooth_force(const Candidate& candidate) {
 /// Of an instrument that is late the readings are taken more densely.
 bool is_late_instrument(std::size_t quantity) {
   const QuantityEntry& entry = quantity_list()[quantity];
-  return signal_by_name(entry.group) &&
-         (entry.quantity.symbol == "lag" || entry.quantity.symbol == "delay");
+  return entry.signal && (entry.quantity.symbol == "lag" || entry.quantity.symbol == "delay");
 }
 
 /// From derivatives with respect to u to those per unit, but of logarithmic parameters.

@@ -184,7 +184,8 @@ class RoundTrial {
     if (!e.rejection || e.rejection->test != Rejection::Test::power) return;
     // A disturbance goes on from one stretch to the next: only another recording tells it from a
     // law.
-    if (e.candidate.name == ForceOverTime<double>::name) return;
+    static const std::size_t kOverTime = *effect_named(ForceOverTime<double>::name);
+    if (quantity_list()[e.candidate.strengths.front()].effect == kOverTime) return;
     report_progress("do held-out stretches show " + e.candidate.name + "?");
     const auto held_out = [&](SelectionStep model) {
       model = with_held_out_blocks(std::move(model), context_);

@@ -82,9 +82,10 @@ SearchScales scales_of(const Job& job, const ParameterSpace& space, const Eigen:
 /// What one step of least squares makes of a candidate's columns.
 class Scorer {
  public:
-  Scorer(const ParameterSpace& space, const Eigen::VectorXd& u, const Linearization& base,
-         const Eigen::MatrixXd& basis, const Eigen::VectorXd& residual)
-      : space_(space),
+  Scorer(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
+         const Linearization& base, const Eigen::MatrixXd& basis, const Eigen::VectorXd& residual)
+      : job_(job),
+        space_(space),
         u_(u),
         base_(base),
         basis_(basis),
@@ -100,7 +101,7 @@ class Scorer {
     if (!step.allFinite()) return;
     std::vector<double> reached;
     for (std::size_t k = 0; k < setting.strengths.size(); ++k) {
-      const Quantity& q = quantity_list()[setting.candidate->strengths[k]].quantity;
+      const Quantity& q = job_.entry(setting.candidate->strengths[k]).quantity;
       reached.push_back(
           moved(*setting.candidate, setting.strengths[k], step[static_cast<Eigen::Index>(k)]));
       if (setting.strengths.size() == 1 && (reached[k] < q.lower || reached[k] > q.upper)) return;
@@ -158,6 +159,7 @@ class Scorer {
     return columns;
   }
 
+  const Job& job_;
   const ParameterSpace& space_;
   const Eigen::VectorXd& u_;
   const Linearization& base_;
@@ -299,7 +301,7 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
 
   const Job fixed = fixed_at(job, tracking_values);
   const EffectColumns columns(fixed, rate, context);
-  Scorer scorer(space, tracking.u, base, basis, residual);
+  Scorer scorer(fixed, space, tracking.u, base, basis, residual);
   std::vector<EffectSetting> settings;
   std::vector<Score*> of_setting;
   for (Score& score : test.scores) {

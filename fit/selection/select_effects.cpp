@@ -384,8 +384,8 @@ class EffectSelector {
   }
 
   /// At a bound that is not the natural end of the quantity, where it has no part in the axis.
-  static bool is_stuck(const FreeParameter& free, const ParameterResult& found) {
-    const double natural = quantity_list()[free.quantity].quantity.lower;
+  bool is_stuck(const FreeParameter& free, const ParameterResult& found) const {
+    const double natural = declared_job().entry(free.quantity).quantity.lower;
     const bool none = free.lower == natural && natural == 0.0 &&
                       found.value - free.lower < 0.5 * (free.upper - free.lower);
     return found.uncertainty.at_bound && !none;

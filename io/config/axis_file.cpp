@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -12,33 +13,40 @@
 namespace axisfit {
 namespace {
 
-/// Keys for the quantities of a group.
-Section quantity_keys(std::string_view group) {
+/// The key of a quantity, and those of a group of them.
+Key key_of(Joint joint, const Quantity& quantity, std::string name) {
+  Key key = Key::of(quantity, std::move(name));
+  key.used_by = words_on(joint, key.used_by);
+  return key;
+}
+Section quantity_keys(Joint joint, std::string_view group) {
   Section keys;
-  for (const QuantityEntry& entry : quantity_list())
-    if (entry.group == group) keys.push_back(Key::of(entry.quantity));
+  for (const QuantityEntry& entry : quantity_list(joint))
+    if (entry.group == group)
+      keys.push_back(key_of(joint, entry.quantity, std::string(entry.quantity.symbol)));
   return keys;
 }
 
-Section effect_keys() {
+Section effect_keys(Joint joint) {
   Section keys;
-  const Effects<double> effects{};
-  visit_effects(effects, [&](std::size_t, const auto& effect) {
-    Section parameters = quantity_keys(effect.name);
+  for (const EffectInfo& effect : kEffectTable) {
+    const std::string name(words_on(joint, effect.name));
+    Section parameters = quantity_keys(joint, name);
     // An effect that is not used is refused as a whole.
     const std::string used = parameters.front().used_by;
     for (Key& parameter : parameters) parameter.used_by.clear();
-    keys.push_back(Key::optional(std::string(effect.name), Map{std::move(parameters)},
-                                 DefaultText{"effect absent"}, std::string(effect.meaning)));
+    keys.push_back(Key::optional(name, Map{std::move(parameters)}, DefaultText{"effect absent"},
+                                 std::string(words_on(joint, effect.meaning))));
     keys.back().used_by = used;
-  });
+  }
   return keys;
 }
 
-Section instrument_keys() {
+Section instrument_keys(Joint joint) {
   Section keys;
-  for (const SignalInfo& signal : kSignalTable) {
-    Section settings = quantity_keys(signal.name);
+  for (const SignalInfo& of_sliding : kSignalTable) {
+    const SignalInfo signal = info(of_sliding.signal, joint);
+    Section settings = quantity_keys(joint, signal.name);
     settings.push_back(Key::optional(
         "noise", NumberWithUnit{std::string(signal.unit), 0.0, 1e6},
         Rig().noise[index_of(signal.signal)],
@@ -49,24 +57,25 @@ Section instrument_keys() {
   return keys;
 }
 
-Section controller_keys() {
+Section controller_keys(Joint joint) {
   Section keys;
   ControllerSettings settings;
-  visit_settings(settings,
-                 [&](const Quantity& quantity, double) { keys.push_back(Key::of(quantity)); });
+  visit_settings(settings, [&](const Quantity& quantity, double) {
+    keys.push_back(Key::of(quantity_on(joint, quantity)));
+  });
   return keys;
 }
 
 std::string describe(const Structure& structure) {
   return fmt::format("drive {} and transmission {}",
-                     drive_names()[static_cast<std::size_t>(structure.drive)],
+                     drive_names(structure.joint)[static_cast<std::size_t>(structure.drive)],
                      transmission_names()[static_cast<std::size_t>(structure.transmission)]);
 }
 
 void read_parameters(const ConfigNode& node, Model<double>& model) {
-  ConfigMap map(node, keys_below(axis_keys(), "parameters"));
+  ConfigMap map(node, keys_below(axis_keys(model.structure.joint), "parameters"));
   const std::vector<double*> member = members(model);
-  for (const QuantityEntry& entry : quantity_list()) {
+  for (const QuantityEntry& entry : quantity_list(model.structure.joint)) {
     if (!entry.group.empty()) continue;
     const Quantity& quantity = entry.quantity;
     double& value = *member[entry.index];
@@ -83,32 +92,35 @@ void read_parameters(const ConfigNode& node, Model<double>& model) {
 }
 
 void read_initial(const ConfigNode& node, Model<double>& model) {
-  ConfigMap map(node, keys_below(axis_keys(), "initial"));
+  ConfigMap map(node, keys_below(axis_keys(model.structure.joint), "initial"));
   const std::vector<double*> member = members(model);
-  for (const QuantityEntry& entry : quantity_list())
+  for (const QuantityEntry& entry : quantity_list(model.structure.joint))
     if (entry.group == "initial" && is_used(entry, model.structure))
       map.read(entry.quantity.symbol, *member[entry.index]);
   map.finish();
 }
 
 void read_instruments(const ConfigNode& node, Rig& rig) {
-  const Section& keys = keys_below(axis_keys(), "instruments");
+  const Joint joint = rig.model.structure.joint;
+  const Section& keys = keys_below(axis_keys(joint), "instruments");
   ConfigMap map(node, keys);
   const std::vector<double*> member = members(rig.model);
   for (const SignalInfo& signal : kSignalTable) {
-    const auto given = map.optional(signal.name);
+    const std::string_view name = info(signal.signal, joint).name;
+    const auto given = map.optional(name);
     if (!given) continue;
-    ConfigMap instrument(*given, keys_below(keys, signal.name));
-    for (const QuantityEntry& entry : quantity_list())
-      if (entry.group == signal.name) instrument.read(entry.quantity.symbol, *member[entry.index]);
+    ConfigMap instrument(*given, keys_below(keys, name));
+    for (const QuantityEntry& entry : quantity_list(joint))
+      if (entry.signal == signal.signal)
+        instrument.read(entry.quantity.symbol, *member[entry.index]);
     instrument.read("noise", rig.noise[index_of(signal.signal)]);
     instrument.finish();
   }
   map.finish();
 }
 
-void read_controller(const ConfigNode& node, ControllerSettings& settings) {
-  ConfigMap map(node, keys_below(axis_keys(), "controller"));
+void read_controller(const ConfigNode& node, Joint joint, ControllerSettings& settings) {
+  ConfigMap map(node, keys_below(axis_keys(joint), "controller"));
   visit_settings(settings,
                  [&](const Quantity& setting, double& value) { map.read(setting.symbol, value); });
   map.finish();
@@ -129,43 +141,97 @@ void read_guessed(const ConfigNode& node, Rig& rig) {
 
 }  // namespace
 
-const Section& axis_keys() {
-  static const Section keys{
+namespace {
+
+Section make_axis_keys(Joint joint) {
+  const auto say = [&](const char* text) { return std::string(words_on(joint, text)); };
+  return {
       Key::optional("name", Text{}, DefaultText{"none"}, "shown in reports"),
+      Key::optional("joint",
+                    Choice{{{"prismatic", "the load slides: m, N and kg"},
+                            {"revolute", "it turns: rad, N m and kg m^2"}}},
+                    Joint::prismatic,
+                    "what the load does; it decides on the names and units of the other keys"),
       Key::required("drive",
                     Choice{{{"velocity_loop", "the paper's controller and current loop"},
                             {"current_source", "an ideal power stage"},
-                            {"force_source", "the command is a force"}}},
-                    "what turns the command into a force"),
-      Key::required("transmission",
-                    Choice{{{"backlash", "rack and pinion with backlash, stiffness and damping"},
-                            {"rigid", "motor and arm move as one mass"}}},
-                    "what transmits the force to the arm"),
+                            {say("force_source"), say("the command is a force")}}},
+                    say("what turns the command into a force")),
+      Key::required(
+          "transmission",
+          Choice{{{"backlash", say("rack and pinion with backlash, stiffness and damping")},
+                  {"rigid", say("motor and arm move as one mass")}}},
+          say("what transmits the force to the arm")),
       Key::optional("guessed", List{{Text{}}}, DefaultText{"none"},
                     "quantities whose values here are guesses, such as `[K_f]`; the report names "
                     "the estimates that rest on them"),
-      Key::required("parameters", Map{quantity_keys("")}, "parameters of the paper's model"),
+      Key::required("parameters", Map{quantity_keys(joint, "")}, "parameters of the paper's model"),
       Key::optional(
-          "effects", Map{effect_keys()}, DefaultText{"none"},
+          "effects", Map{effect_keys(joint)}, DefaultText{"none"},
           "effects beyond the paper's model, by name; an effect is active if it is listed"),
-      Key::optional("initial", Map{quantity_keys("initial")}, DefaultText{"all 0"},
+      Key::optional("initial", Map{quantity_keys(joint, "initial")}, DefaultText{"all 0"},
                     "initial state"),
-      Key::optional("instruments", Map{instrument_keys()}, DefaultText{"ideal"},
+      Key::optional("instruments", Map{instrument_keys(joint)}, DefaultText{"ideal"},
                     "gain, bias, lag, delay, drift and noise of each signal"),
-      Key::optional("controller", Map{controller_keys()}, DefaultText{"those of its keys"},
+      Key::optional("controller", Map{controller_keys(joint)}, DefaultText{"those of its keys"},
                     "the slave control unit: limits, moves and the encoder; a fit uses it only to "
                     "compute the command from a `position_reference`")};
-  return keys;
 }
 
-const std::vector<std::string>& drive_names() {
-  static const auto names = std::get<Choice>(find_key(axis_keys(), "drive").form).names();
+std::vector<std::string> choices_of(Joint joint, std::string_view key) {
+  return std::get<Choice>(find_key(axis_keys(joint), key).form).names();
+}
+
+}  // namespace
+
+const Section& axis_keys(Joint joint) {
+  static const std::array keys{make_axis_keys(Joint::prismatic), make_axis_keys(Joint::revolute)};
+  return keys[static_cast<std::size_t>(joint)];
+}
+
+const std::vector<std::string>& joint_names() {
+  static const auto names = choices_of(Joint::prismatic, "joint");
   return names;
+}
+
+const std::vector<std::string>& drive_names(Joint joint) {
+  static const std::array names{choices_of(Joint::prismatic, "drive"),
+                                choices_of(Joint::revolute, "drive")};
+  return names[static_cast<std::size_t>(joint)];
 }
 
 const std::vector<std::string>& transmission_names() {
-  static const auto names = std::get<Choice>(find_key(axis_keys(), "transmission").form).names();
+  static const auto names = choices_of(Joint::prismatic, "transmission");
   return names;
+}
+
+Section quantity_keys() {
+  Section keys;
+  for (const Joint joint : kJoints)
+    for (const QuantityEntry& entry : quantity_list(joint)) {
+      Key key = key_of(joint, entry.quantity, entry.name);
+      const auto known = std::ranges::find(keys, entry.name, &Key::name);
+      if (known == keys.end()) {
+        keys.push_back(std::move(key));
+      } else if (auto& amount = std::get<NumberWithUnit>(known->form);
+                 amount.unit != entry.quantity.unit) {
+        amount.description =
+            fmt::format("{}; revolute: {}", value_text(known->form), value_text(key.form));
+      }
+    }
+  return keys;
+}
+
+Section effect_keys() {
+  Section keys = effect_keys(Joint::prismatic);
+  for (Key& turning : effect_keys(Joint::revolute)) {
+    const auto sliding = std::ranges::find(keys, turning.name, &Key::name);
+    if (sliding == keys.end())
+      keys.push_back(std::move(turning));
+    else
+      sliding->form = AnyOf{{std::move(turning.form), std::move(sliding->form)}};
+  }
+  return keys;
 }
 
 std::optional<double> read_value(const ConfigNode& node, const Quantity& quantity) {
@@ -174,7 +240,7 @@ std::optional<double> read_value(const ConfigNode& node, const Quantity& quantit
 
 const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& structure) {
   const std::string name = key.text();
-  const QuantityEntry* entry = find_quantity(name);
+  const QuantityEntry* entry = find_quantity(name, structure.joint);
   if (entry != nullptr && is_used(*entry, structure)) return entry;
   if (entry != nullptr) {
     const bool parameter = entry->group.empty() || entry->group == "initial";
@@ -188,7 +254,7 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
     return nullptr;
   }
   std::vector<std::string> names;
-  for (const QuantityEntry& e : quantity_list())
+  for (const QuantityEntry& e : quantity_list(structure.joint))
     if (is_used(e, structure)) names.push_back(e.name);
   const std::string suggestion = closest_match(name, names);
   key.error(
@@ -201,22 +267,24 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
 }
 
 void read_effects(const ConfigNode& node, Model<double>& model) {
-  const Section& keys = keys_below(axis_keys(), "effects");
+  const Joint joint = model.structure.joint;
+  const Section& keys = keys_below(axis_keys(joint), "effects");
   ConfigMap map(node, keys);
   visit_effects(model.effects, [&](std::size_t index, auto& effect) {
-    const auto given = map.optional(effect.name);
+    const std::string_view name = words_on(joint, effect.name);
+    const auto given = map.optional(name);
     if (!given) return;
     model.structure.effects.set(index);
-    ConfigMap parameters(*given, keys_below(keys, effect.name));
+    ConfigMap parameters(*given, keys_below(keys, name));
     bool used = false;
     effect.visit(effect, [&](const Quantity& quantity, double& value) {
       used = used || is_used(*find_quantity(full_name(effect.name, quantity)), model.structure);
       value = std::isnan(quantity.default_value) ? 0.0 : quantity.default_value;
-      parameters.read(quantity.symbol, value);
+      parameters.read(quantity_on(joint, quantity).symbol, value);
     });
     parameters.finish();
     if (!used)
-      given->error(fmt::format("{} is not used by an axis with {}: remove it", effect.name,
+      given->error(fmt::format("{} is not used by an axis with {}: remove it", name,
                                describe(model.structure)));
   });
   map.finish();
@@ -233,6 +301,8 @@ std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.count();
   Rig rig;
   ConfigMap map(root, axis_keys());
+  map.read("joint", rig.model.structure.joint);
+  map.describe(axis_keys(rig.model.structure.joint));
   map.read("name", rig.name);
   std::optional<Drive> drive;
   std::optional<Transmission> transmission;
@@ -254,7 +324,7 @@ std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
   // Without a pinion there is no telling how far a count is, unless it is said.
   if (!capabilities(rig.model.structure).has_motor) rig.controller.counts_per_revolution = 0.0;
   if (const auto controller = map.optional("controller"))
-    read_controller(*controller, rig.controller);
+    read_controller(*controller, rig.model.structure.joint, rig.controller);
   map.finish();
   if (diagnostics.count() > before) return std::nullopt;
   if (const std::string reason = model_error(rig.model); !reason.empty()) {
@@ -269,13 +339,16 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
   out << YAML::BeginMap;
   if (!rig.name.empty()) out << YAML::Key << "name" << YAML::Value << rig.name;
   const Structure& structure = rig.model.structure;
+  const Joint joint = structure.joint;
+  if (joint != Joint::prismatic)
+    out << YAML::Key << "joint" << YAML::Value << joint_names()[static_cast<std::size_t>(joint)];
   out << YAML::Key << "drive" << YAML::Value
-      << drive_names()[static_cast<std::size_t>(structure.drive)];
+      << drive_names(joint)[static_cast<std::size_t>(structure.drive)];
   out << YAML::Key << "transmission" << YAML::Value
       << transmission_names()[static_cast<std::size_t>(structure.transmission)];
   if (!rig.guessed.empty()) {
     out << YAML::Key << "guessed" << YAML::Value << YAML::Flow << YAML::BeginSeq;
-    for (const std::size_t g : rig.guessed) out << quantity_list()[g].name;
+    for (const std::size_t g : rig.guessed) out << quantity_list(joint)[g].name;
     out << YAML::EndSeq;
   }
 
@@ -284,13 +357,15 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
   std::map<std::string, std::vector<std::pair<std::string, std::string>>> groups;
   Model<double> model = rig.model;
   const std::vector<double*> member = members(model);
-  for (const QuantityEntry& entry : quantity_list()) {
+  for (const QuantityEntry& entry : quantity_list(joint)) {
     const double value = *member[entry.index];
-    const bool custom = entry.group == "initial" || signal_by_name(entry.group).has_value();
+    const bool custom = entry.group == "initial" || entry.signal;
     if (!is_used(entry, structure) || (custom && value == entry.quantity.default_value)) continue;
     groups[entry.group].emplace_back(entry.quantity.symbol, with_unit(value, entry.quantity.unit));
   }
-  for (const SignalInfo& signal : kSignalTable)
+  std::vector<SignalInfo> signals;
+  for (const SignalInfo& signal : kSignalTable) signals.push_back(info(signal.signal, joint));
+  for (const SignalInfo& signal : signals)
     if (const double noise = rig.noise[index_of(signal.signal)]; noise > 0.0)
       groups[std::string(signal.name)].emplace_back("noise", with_unit(noise, signal.unit));
 
@@ -304,24 +379,25 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
   if (structure.effects.any()) {
     out << YAML::Key << "effects" << YAML::Value << YAML::BeginMap;
     visit_effects(model.effects, [&](std::size_t index, const auto& effect) {
-      if (structure.effects[index]) emit(std::string(effect.name), std::string(effect.name));
+      const std::string name(words_on(joint, effect.name));
+      if (structure.effects[index]) emit(name, name);
     });
     out << YAML::EndMap;
   }
   if (groups.contains("initial")) emit("initial", "initial");
   bool instruments = false;
-  for (const SignalInfo& signal : kSignalTable)
+  for (const SignalInfo& signal : signals)
     instruments = instruments || groups.contains(std::string(signal.name));
   if (instruments) {
     out << YAML::Key << "instruments" << YAML::Value << YAML::BeginMap;
-    for (const SignalInfo& signal : kSignalTable)
+    for (const SignalInfo& signal : signals)
       if (const std::string name(signal.name); groups.contains(name)) emit(name, name);
     out << YAML::EndMap;
   }
   out << YAML::Key << "controller" << YAML::Value << YAML::BeginMap;
   visit_settings(rig.controller, [&](const Quantity& setting, double value) {
     out << YAML::Key << std::string(setting.symbol) << YAML::Value
-        << with_unit(value, setting.unit);
+        << with_unit(value, unit_on(joint, setting.unit));
   });
   out << YAML::EndMap << YAML::EndMap;
   return with_comment(comment, out.c_str());

@@ -11,12 +11,17 @@
 namespace axisfit {
 
 /// The keys of an axis file. Among the parameters, effects and initial states are all that an axis
-/// can have; which of them one has depends on its drive and transmission.
-const Section& axis_keys();
+/// with that joint can have; which of them one has depends on its drive and transmission.
+const Section& axis_keys(Joint joint = Joint::prismatic);
 
-/// The words for drives and transmissions, in the order of their enumerations.
-const std::vector<std::string>& drive_names();
+/// The words for joints, drives and transmissions, in the order of their enumerations.
+const std::vector<std::string>& joint_names();
+const std::vector<std::string>& drive_names(Joint joint = Joint::prismatic);
 const std::vector<std::string>& transmission_names();
+
+/// The keys for all quantities under their full names, and for all effects, of both joints.
+Section quantity_keys();
+Section effect_keys();
 
 /// Reads an axis file. Nothing, with diagnostics, when anything in it is wrong.
 std::optional<Rig> read_axis_file(const std::string& path, Diagnostics& diagnostics);

@@ -56,12 +56,13 @@ Section fit_keys() {
                     "event checks")};
 }
 
-Section limit_keys() {
+Section limit_keys(Joint joint) {
   const DefaultText covered{"range covered by the recordings"};
-  return {Key::optional("travel", Bounds{{"m"}}, covered,
+  const std::string m(unit_on(joint, "m")), speed(unit_on(joint, "m/s"));
+  return {Key::optional("travel", Bounds{{m}}, covered,
                         "allowed positions of the arm, such as `[0 m, 1.2 m]`"),
-          Key::optional("speed", NumberWithUnit{"m/s", 1e-6, 1e3}, covered,
-                        "largest speed of the arm in either direction"),
+          Key::optional("speed", NumberWithUnit{speed, 1e-6, joint == Joint::prismatic ? 1e3 : 1e6},
+                        covered, "largest speed of the arm in either direction"),
           Key::optional("voltage", NumberWithUnit{"V", 1e-6, 1e6},
                         DefaultText{"the controller's `limit` for an electric drive; otherwise "
                                     "what the recordings covered"},
@@ -194,9 +195,11 @@ class JobReader {
 
   void read_limits(const ConfigNode& node) {
     MachineLimits& limits = result_.job.limits;
-    ConfigMap map(node, keys_below(job_keys(), "limits"));
+    const Joint joint = result_.job.joint();
+    const Section keys = limit_keys(joint);
+    ConfigMap map(node, keys);
     if (const auto travel = map.optional("travel"))
-      if (const auto range = travel->as_bounds("m", -kUnlimited, kUnlimited))
+      if (const auto range = travel->as_bounds(unit_on(joint, "m"), -kUnlimited, kUnlimited))
         std::tie(limits.lowest, limits.highest) = *range;
     map.read("speed", limits.speed);
     map.read("voltage", limits.voltage);
@@ -287,13 +290,13 @@ const Section& job_keys() {
   static const Section keys{
       Key::required("axis", Text{}, "the axis file"),
       Key::optional(
-          "effects", Map{keys_below(axis_keys(), "effects")}, DefaultText{"none"},
+          "effects", Map{effect_keys()}, DefaultText{"none"},
           "effects that are added to those of the axis file or replace them; same syntax"),
       Key::required("recordings", List{{Map{recording_keys()}}},
                     "the recordings; at least one must have the role `fit`"),
       Key::required("free", Map{free_quantities(), 1}, "the quantities to fit; at least one"),
       Key::optional("fit", Map{fit_keys()}, DefaultText{"those of its keys"}, "options of the fit"),
-      Key::optional("limits", Map{limit_keys()}, DefaultText{"those of its keys"},
+      Key::optional("limits", Map{limit_keys(Joint::prismatic)}, DefaultText{"those of its keys"},
                     "limits of the machine for the next experiment")};
   return keys;
 }

@@ -105,8 +105,8 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
           node.error(
               entry.name == "K_f"
                   ? fmt::format(
-                        "K_f cannot be fitted to '{}', whose drive_force is already in newtons",
-                        r.name)
+                        "K_f cannot be fitted to '{}', which has no command: its {} acts as it is",
+                        r.name, words_on(job.joint(), "drive_force"))
                   : fmt::format("{} is fitted for all recordings but set for '{}': remove one, or "
                                 "use per_recording: true",
                                 entry.name, r.name));
@@ -136,10 +136,9 @@ Section free_quantities() {
   const Map number{free_keys({"1", -kUnlimited, kUnlimited, "a value of the quantity"}), 0, true,
                    "free_number"};
   Section keys;
-  for (const QuantityEntry& entry : quantity_list()) {
-    const Key quantity = Key::of(entry.quantity, entry.name);
-    Key key = Key::optional(entry.name, is_dimensionless(entry.quantity.unit) ? number : amount,
-                            DefaultText{"not fitted"},
+  for (const Key& quantity : quantity_keys()) {
+    const bool is_number = is_dimensionless(std::get<NumberWithUnit>(quantity.form).unit);
+    Key key = Key::optional(quantity.name, is_number ? number : amount, DefaultText{"not fitted"},
                             fmt::format("{}; {}", quantity.meaning, value_text(quantity.form)));
     key.used_by = quantity.used_by;
     keys.push_back(std::move(key));

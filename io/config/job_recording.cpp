@@ -35,13 +35,11 @@ constexpr std::int64_t kMostHeld = 100000;
 
 /// Every quantity of the list, as a value that differs from the axis file's.
 Section override_keys() {
-  Section keys;
-  for (const QuantityEntry& entry : quantity_list()) {
-    Key key = Key::of(entry.quantity, entry.name);
+  Section keys = quantity_keys();
+  for (Key& key : keys) {
     key.is_required = false;
     key.default_value.clear();
     key.default_text = "value in the axis file or job";
-    keys.push_back(std::move(key));
   }
   return keys;
 }
@@ -82,6 +80,26 @@ Key input_hold_key() {
                        "what it does between two samples");
 }
 
+/// All signals, first those of a prismatic joint, under each name once.
+std::vector<SignalInfo> signals_of_both() {
+  std::vector<SignalInfo> list;
+  for (const Joint joint : kJoints)
+    for (const SignalInfo& of_sliding : kSignalTable) {
+      const SignalInfo signal = info(of_sliding.signal, joint);
+      if (std::ranges::find(list, signal.name, &SignalInfo::name) == list.end())
+        list.push_back(signal);
+    }
+  return list;
+}
+
+/// "m or rad"
+std::string units_of_both(const SignalInfo& signal) {
+  const std::string_view turning = info(signal.signal, Joint::revolute).unit;
+  const bool is_called_so = info(signal.signal, Joint::revolute).name == signal.name;
+  return turning == signal.unit || !is_called_so ? std::string(signal.unit)
+                                                 : fmt::format("{} or {}", signal.unit, turning);
+}
+
 /// The input and all that can be measured.
 Section signal_keys() {
   const Map column{column_keys(), 0, false, "column"};
@@ -96,9 +114,9 @@ Section signal_keys() {
                              DefaultText{"none if another input is given"},
                              "set-velocity voltage U, or the input of a force source, in V"),
                Key::optional("position_reference", column, DefaultText{"not used with a command"},
-                             "in m, in place of the command: the slave control unit of the axis "
-                             "file computes the command from it and the position")};
-  for (const SignalInfo& signal : kSignalTable) {
+                             "in m or rad, in place of the command: the slave control unit of the "
+                             "axis file computes the command from it and the position")};
+  for (const SignalInfo& signal : signals_of_both()) {
     Section measured = series_keys();
     measured.push_back(Key::optional(
         "sigma",
@@ -122,9 +140,10 @@ Section signal_keys() {
     else
       measured.push_back(
           Key::optional("hold", times, static_cast<double>(Measurement().hold), kMeaning));
-    keys.push_back(Key::optional(
-        std::string(signal.name), Map{std::move(measured), 0, false, "measured_column"},
-        DefaultText{"not measured"}, fmt::format("{}, in {}", signal.meaning, signal.unit)));
+    keys.push_back(Key::optional(std::string(signal.name),
+                                 Map{std::move(measured), 0, false, "measured_column"},
+                                 DefaultText{"not measured"},
+                                 fmt::format("{}, in {}", signal.meaning, units_of_both(signal))));
   }
   return keys;
 }
@@ -326,9 +345,9 @@ class RecordingReader {
       measured.shaped->error(
           fmt::format("a filter or hold needs a value of the {} at every sample time, and at some "
                       "there is none: fit the unfiltered samples, or remove it",
-                      info(measurement.signal).name));
+                      measured.node.name()));
     } else if (measured.shaped) {
-      prepare(*measured.shaped, measurement);
+      prepare(*measured.shaped, measured.node.name(), measurement);
     }
     return measurement;
   }
@@ -339,28 +358,30 @@ class RecordingReader {
                                    Recording& recording) {
     const bool force_source = capabilities(rig_.model.structure).is_force_driven;
     const auto command = signals.optional("command");
-    const auto force = force_source ? signals.optional("drive_force") : std::nullopt;
+    const SignalInfo drive_force = info(Signal::drive_force, joint());
+    const auto force = force_source ? signals.optional(drive_force.name) : std::nullopt;
     const auto reference = force_source ? std::nullopt : signals.optional("position_reference");
     if (command && force)
-      force->error("give either the command or the drive force, not both: each drives the axis");
+      force->error(fmt::format("give either the command or the {}, not both: each drives the axis",
+                               words_on(joint(), "drive force")));
     if (command && reference)
       reference->error("the recorded command drives the axis: remove position_reference");
     if (!command && !force && !reference)
-      signals_node.error(force_source
-                             ? "the axis is driven by a command or a drive_force: name one "
-                               "of them"
-                             : "the axis is driven by the command: name its column, or that of the "
-                               "position_reference, from which the slave control unit computes it");
+      signals_node.error(
+          force_source ? fmt::format("the axis is driven by a command or a {}: name one of them",
+                                     drive_force.name)
+                       : "the axis is driven by the command: name its column, or that of the "
+                         "position_reference, from which the slave control unit computes it");
     if (command && force) return std::nullopt;
     if (reference && !command) return read_reference(*reference, signals);
     std::optional<Series> input;
     if (force) {
       recording.command.hold = Hold::linear;
-      input = read_noisy_input(*force, "N", recording);
-      // The source turns U into K_f U newtons; a force in newtons needs no gain.
+      input = read_noisy_input(*force, drive_force.unit, recording);
+      // The source turns U into the force K_f U; a force needs no gain.
       const std::size_t gain = find_quantity("K_f")->index;
       if (std::ranges::any_of(recording.overrides, [&](const auto& o) { return o.first == gain; }))
-        force->error("a drive_force is already in newtons: remove K_f from 'set'");
+        force->error(fmt::format("a {} acts as it is: remove K_f from 'set'", drive_force.name));
       recording.overrides.emplace_back(gain, 1.0);
     } else if (command) {
       input = read_noisy_input(*command, "V", recording);
@@ -424,7 +445,8 @@ class RecordingReader {
 
   /// The command that the axis file's slave control unit makes of a recorded position reference.
   std::optional<Series> read_reference(const ConfigNode& node, ConfigMap& signals) const {
-    const auto reference = read_column(*data_, node, "m");
+    const std::string_view unit = info(Signal::position, joint()).unit;
+    const auto reference = read_column(*data_, node, unit);
     const auto position_node = signals.optional("position");
     if (!position_node) {
       node.error(
@@ -433,7 +455,7 @@ class RecordingReader {
       return std::nullopt;
     }
     ConfigMap map(*position_node, measurement_keys("position"));
-    const auto position = read_column(*data_, map, "m");
+    const auto position = read_column(*data_, map, unit);
     if (!reference || !position || !times_) return std::nullopt;
     if (!same_length(node, *reference, *times_) || !same_length(*position_node, *position, *times_))
       return std::nullopt;
@@ -453,7 +475,8 @@ class RecordingReader {
                                 std::vector<Measured>& measured) {
     const Structure& structure = rig_.model.structure;
     std::size_t named = 0;
-    for (const SignalInfo& signal : kSignalTable) {
+    for (const SignalInfo& of_sliding : kSignalTable) {
+      const SignalInfo signal = info(of_sliding.signal, joint());
       const bool is_input =
           signal.signal == Signal::drive_force && capabilities(structure).is_force_driven;
       const auto given = is_input ? std::nullopt : signals.optional(signal.name);
@@ -499,22 +522,24 @@ class RecordingReader {
     std::optional<ConfigNode> shaped;
     if (is_shaped && series->times.size() >= kLeastSamples)
       shaped = filter ? *filter : hold.value_or(node);
-    if (measurement.noise != NoiseSource::given) take_noise(node, *series, shaped, measurement);
+    if (measurement.noise != NoiseSource::given)
+      take_noise(node, *series, shaped, signal.unit, measurement);
     return Measured{std::move(measurement), std::move(*series), node, std::move(shaped)};
   }
 
   /// From the values as they follow each other in the recording.
   static void take_noise(const ConfigNode& node, const Series& series,
-                         const std::optional<ConfigNode>& shaped, Measurement& measurement) {
+                         const std::optional<ConfigNode>& shaped, std::string_view unit,
+                         Measurement& measurement) {
     Measurement own = measurement;
     own.values = series.values;
     if (shaped) exclude_uninformative(own);
     measurement.sigma = noise_from_differences(own);
     if (!(measurement.sigma >= kMinSigma))
-      node.error(fmt::format(
-          "the noise of {} cannot be estimated from these samples: give its "
-          "sigma, for example 'sigma: {}'",
-          info(measurement.signal).name, with_unit("0.01", info(measurement.signal).unit)));
+      node.error(
+          fmt::format("the noise of {} cannot be estimated from these samples: give its "
+                      "sigma, for example 'sigma: {}'",
+                      node.name(), with_unit("0.01", unit)));
   }
 
   static void keep(const Trim& trim, Series& series) {
@@ -575,8 +600,7 @@ class RecordingReader {
   }
 
   /// Leaves the samples that a filter or a hold leaves, with a diagnostic where that cannot be.
-  static void prepare(const ConfigNode& node, Measurement& measurement) {
-    const std::string_view signal = info(measurement.signal).name;
+  static void prepare(const ConfigNode& node, const std::string& signal, Measurement& measurement) {
     const auto n = static_cast<double>(measurement.values.size());
     constexpr double kLeastCycles = 2.0;  // of the cutoff, in the recording
     const Filter& filter = measurement.filter;
@@ -607,7 +631,8 @@ class RecordingReader {
     const bool can_track = recording.find(Signal::position) || recording.find(Signal::velocity);
     if (named == 0) {
       std::vector<std::string_view> names;
-      for (const SignalInfo& signal : kSignalTable) names.push_back(signal.name);
+      for (const SignalInfo& signal : kSignalTable)
+        names.push_back(info(signal.signal, joint()).name);
       signals_node.error(
           fmt::format("no measured signal: name at least one of {}", fmt::join(names, ", ")));
     } else if (recording.role == Role::fit && recording.measurements.size() == named &&
@@ -621,7 +646,7 @@ class RecordingReader {
     Model<double> model = rig_.model;
     const auto member = members(model);
     for (const auto& [quantity, value] : recording.overrides) *member[quantity] = value;
-    for (const QuantityEntry& entry : quantity_list())
+    for (const QuantityEntry& entry : quantity_list(joint()))
       if (const auto reason = ignored_by_observer(entry, observer_, recording);
           !reason.empty() && *member[entry.index] != 0.0)
         signals_node.error(reason);
@@ -637,7 +662,7 @@ class RecordingReader {
       signals_node.error("initial_state: data needs a recorded position or velocity");
   }
 
-  static void take_noise_from_standstill(const ConfigNode& signals_node, Recording& recording) {
+  void take_noise_from_standstill(const ConfigNode& signals_node, Recording& recording) const {
     for (Measurement& m : recording.measurements) {
       if (m.noise != NoiseSource::standstill) continue;
       if (const double noise = noise_at_standstill(recording, m); noise >= kMinSigma)
@@ -646,7 +671,7 @@ class RecordingReader {
         signals_node.error(
             fmt::format("this recording has no standstill of 50 samples, or no velocity or "
                         "position to detect one: give the sigma of {}, or omit it",
-                        info(m.signal).name));
+                        info(m.signal, joint()).name));
     }
   }
 
@@ -657,6 +682,8 @@ class RecordingReader {
                            times.size()));
     return false;
   }
+
+  Joint joint() const { return rig_.model.structure.joint; }
 
   const Rig& rig_;
   const ObserverMode observer_;
@@ -712,7 +739,7 @@ Recording read_recording(const ConfigNode& node, const Rig& rig, ObserverMode ob
 
 std::string ignored_by_observer(const QuantityEntry& entry, ObserverMode observer,
                                 const Recording& recording) {
-  if (!is_ignored(entry, observer) || !recording.find(*signal_by_name(entry.group))) return {};
+  if (!is_ignored(entry, observer) || !recording.find(*entry.signal)) return {};
   return fmt::format(
       "a fixed observer gain assumes that the recorded {} has no {}: remove {} and {}use observer: "
       "continuation",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -31,54 +32,61 @@ struct MotionType {
   Section keys;
 };
 
-const std::vector<MotionType>& motion_types() {
+std::vector<MotionType> make_types(Joint joint) {
   const NumberWithUnit limited = voltage_up_to("limit");
   const NumberWithUnit frequency{"Hz", 0.0, 1e4};
-  static const std::vector<MotionType> types{
-      {"step",
-       "one level from a given time on",
-       {Key::required("level", limited, "voltage"),
-        Key::optional("start", NumberWithUnit{"s", 0.0, 1e6}, StepMotion().start,
-                      "time of the step")}},
-      {"levels",
-       "a sequence of levels",
-       {Key::required("levels", List{{limited}}, "voltages, the first from time zero"),
-        Key::required("hold", NumberWithUnit{"s", 1e-4, 1e6}, "duration of each level")}},
-      {"sine",
-       "a sine of constant frequency",
-       {Key::required("amplitude", limited, "amplitude of the voltage about the offset"),
-        Key::required("frequency", NumberWithUnit{"Hz", 1e-6, 1e4}, "frequency of the sine"),
-        offset_key(SineMotion().offset)}},
-      {"chirp",
-       "a sine whose frequency changes linearly",
-       {Key::required("amplitude", limited, "amplitude of the voltage about the offset"),
-        Key::required("from", frequency, "frequency at time zero"),
-        Key::required("to", frequency, "frequency at the end of `duration`"),
-        offset_key(SineMotion().offset)}},
-      {"prbs",
-       "a pseudo-random binary sequence",
-       {Key::required("amplitude", limited, "amplitude of the voltage about the offset"),
-        Key::required("bit", NumberWithUnit{"s", 1e-4, 1e6},
-                      "bit period: how long each value is held"),
-        offset_key(PrbsMotion().offset),
-        Key::optional("seed", Integer{}, PrbsMotion().seed,
-                      "seed of the sequence, which is the same on every machine")}},
-      {"move",
-       "a position move under closed-loop control",
-       {Key::required("distance", NumberWithUnit{"m", -1e3, 1e3},
-                      "distance of the arm from position zero"),
-        Key::required("speed", NumberWithUnit{"m/s", 1e-6, 1e3}, "maximum speed"),
-        Key::required("acceleration", NumberWithUnit{"m/s^2", 1e-6, 1e5},
-                      "acceleration and deceleration")}},
-      {"recorded",
-       "the command from a recording",
-       {Key::required("file", Text{},
-                      "CSV or `.mat` file; a relative path is relative to the motion file"),
-        Key::required("time", Map{column_keys()},
-                      "column of the sample times, which must increase"),
-        Key::required("command", Map{column_keys()},
-                      "column of the command; all values within the limit")}}};
-  return types;
+  const auto amount = [&](const char* unit, double lower, double upper) {
+    const Quantity on = quantity_on(joint, {"", unit, "", lower, upper});
+    return NumberWithUnit{std::string(on.unit), on.lower, on.upper};
+  };
+  return {{"step",
+           "one level from a given time on",
+           {Key::required("level", limited, "voltage"),
+            Key::optional("start", NumberWithUnit{"s", 0.0, 1e6}, StepMotion().start,
+                          "time of the step")}},
+          {"levels",
+           "a sequence of levels",
+           {Key::required("levels", List{{limited}}, "voltages, the first from time zero"),
+            Key::required("hold", NumberWithUnit{"s", 1e-4, 1e6}, "duration of each level")}},
+          {"sine",
+           "a sine of constant frequency",
+           {Key::required("amplitude", limited, "amplitude of the voltage about the offset"),
+            Key::required("frequency", NumberWithUnit{"Hz", 1e-6, 1e4}, "frequency of the sine"),
+            offset_key(SineMotion().offset)}},
+          {"chirp",
+           "a sine whose frequency changes linearly",
+           {Key::required("amplitude", limited, "amplitude of the voltage about the offset"),
+            Key::required("from", frequency, "frequency at time zero"),
+            Key::required("to", frequency, "frequency at the end of `duration`"),
+            offset_key(SineMotion().offset)}},
+          {"prbs",
+           "a pseudo-random binary sequence",
+           {Key::required("amplitude", limited, "amplitude of the voltage about the offset"),
+            Key::required("bit", NumberWithUnit{"s", 1e-4, 1e6},
+                          "bit period: how long each value is held"),
+            offset_key(PrbsMotion().offset),
+            Key::optional("seed", Integer{}, PrbsMotion().seed,
+                          "seed of the sequence, which is the same on every machine")}},
+          {"move",
+           "a position move under closed-loop control",
+           {Key::required("distance", amount("m", -1e3, 1e3),
+                          std::string(words_on(joint, "distance of the arm from position zero"))),
+            Key::required("speed", amount("m/s", 1e-6, 1e3), "maximum speed"),
+            Key::required("acceleration", amount("m/s^2", 1e-6, 1e5),
+                          "acceleration and deceleration")}},
+          {"recorded",
+           "the command from a recording",
+           {Key::required("file", Text{},
+                          "CSV or `.mat` file; a relative path is relative to the motion file"),
+            Key::required("time", Map{column_keys()},
+                          "column of the sample times, which must increase"),
+            Key::required("command", Map{column_keys()},
+                          "column of the command; all values within the limit")}}};
+}
+
+const std::vector<MotionType>& motion_types(Joint joint = Joint::prismatic) {
+  static const std::array types{make_types(Joint::prismatic), make_types(Joint::revolute)};
+  return types[static_cast<std::size_t>(joint)];
 }
 
 /// Reads the keys of one type of motion. Values that are wrong are reported.
@@ -93,7 +101,7 @@ class MotionReader {
     const auto type = map_.read("type", choice);
     map_.read("duration", file.duration);
     if (!choice) return file;
-    const auto& [name, meaning, keys] = motion_types()[*choice];
+    const auto& [name, meaning, keys] = motion_types(rig_.model.structure.joint)[*choice];
     map_.describe(keys);
     if (name == "step") {
       StepMotion motion;
@@ -136,8 +144,9 @@ class MotionReader {
       map_.read("acceleration", motion.acceleration);
       file.motion = motion;
       if (!capabilities(rig_.model.structure).is_electric)
-        type->error(
-            "a move needs a set-velocity input, which the force source of this axis does not have");
+        type->error(fmt::format(
+            "a move needs a set-velocity input, which the {} source of this axis does not have",
+            words_on(rig_.model.structure.joint, "force")));
       else if (rig_.model.axis.T_d >= rig_.controller.period)
         type->error("a move needs a command delay T_d below the controller's period");
     } else {
@@ -206,8 +215,8 @@ const Section& motion_keys() {
   return keys;
 }
 
-const Section& motion_keys(const std::string& type) {
-  return std::ranges::find(motion_types(), type, &MotionType::name)->keys;
+const Section& motion_keys(const std::string& type, Joint joint) {
+  return std::ranges::find(motion_types(joint), type, &MotionType::name)->keys;
 }
 
 MotionFile read_motion_file(const std::string& path, const Rig& rig) {
@@ -223,7 +232,8 @@ namespace {
 /// Writes the keys of every type of motion.
 class MotionWriter {
  public:
-  MotionWriter(YAML::Emitter& out, double duration) : out_(out), duration_(duration) {}
+  MotionWriter(YAML::Emitter& out, double duration, Joint joint)
+      : out_(out), duration_(duration), joint_(joint) {}
 
   void operator()(const StepMotion& motion) {
     begin("step");
@@ -267,7 +277,7 @@ class MotionWriter {
     out_ << YAML::Key << "type" << YAML::Value << type;
     keys_ = &motion_keys();
     set("duration", duration_);
-    keys_ = &motion_keys(type);
+    keys_ = &motion_keys(type, joint_);
   }
   void set(const char* key, double value) {
     const std::string& unit = std::get<NumberWithUnit>(find_key(*keys_, key).form).unit;
@@ -276,15 +286,16 @@ class MotionWriter {
 
   YAML::Emitter& out_;
   double duration_;
+  Joint joint_;
   const Section* keys_ = nullptr;
 };
 
 }  // namespace
 
-std::string format_motion_file(const MotionFile& file, const std::string& comment) {
+std::string format_motion_file(const MotionFile& file, const std::string& comment, Joint joint) {
   YAML::Emitter out;
   out << YAML::BeginMap;
-  std::visit(MotionWriter(out, file.duration), file.motion);
+  std::visit(MotionWriter(out, file.duration, joint), file.motion);
   out << YAML::EndMap;
   return with_comment(comment, out.c_str());
 }

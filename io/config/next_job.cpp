@@ -27,8 +27,8 @@ bool is_free(const Job& job, const FreeParameter& p) {
 }
 
 /// What an effect brought, with the bounds that it had.
-YAML::Node free_entry(const FreeParameter& p) {
-  const std::string_view unit = quantity_list()[p.quantity].quantity.unit;
+YAML::Node free_entry(const Job& job, const FreeParameter& p) {
+  const std::string_view unit = job.entry(p.quantity).quantity.unit;
   YAML::Node entry(YAML::NodeType::Map);
   for (const double bound : {p.lower, p.upper}) entry["bounds"].push_back(with_unit(bound, unit));
   if (p.recording) entry["per_recording"] = true;
@@ -55,7 +55,8 @@ std::string next_job_text(const JobFile& declared, const Job& reached, const std
   for (auto entry : job["free"])
     if (entry.second.IsMap()) entry.second.remove("initial");
   for (const FreeParameter& p : reached.free)
-    if (!is_free(declared.job, p)) job["free"][quantity_list()[p.quantity].name] = free_entry(p);
+    if (!is_free(declared.job, p))
+      job["free"][reached.entry(p.quantity).name] = free_entry(reached, p);
   YAML::Emitter out;
   out << job;
   return comment(comment_text, 0) + out.c_str() + "\n";

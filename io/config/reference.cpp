@@ -84,6 +84,28 @@ Section effect_parameters() {
   return all;
 }
 
+/// What a revolute joint has under another name or in another unit.
+Section on_a_revolute_joint() {
+  Section all;
+  for (const QuantityEntry& sliding : quantity_list()) {
+    const QuantityEntry& turning = quantity_list(Joint::revolute)[sliding.index];
+    const bool is_same =
+        turning.name == sliding.name && turning.quantity.unit == sliding.quantity.unit;
+    if (is_same || sliding.signal) continue;
+    Key key = Key::of(turning.quantity, turning.name);
+    key.used_by.clear();
+    // Curves have many that are one line.
+    const bool is_curve = sliding.quantity.symbol.starts_with("c1");
+    if (turning.name != sliding.name)
+      key.meaning += fmt::format(", `{}` of a prismatic joint",
+                                 turning.quantity.symbol == sliding.quantity.symbol || is_curve
+                                     ? sliding.group
+                                     : sliding.name);
+    all.push_back(std::move(key));
+  }
+  return all;
+}
+
 /// All tables by the name that the pages call them by.
 std::map<std::string, Section> tables() {
   const Section& axis = axis_keys();
@@ -108,6 +130,7 @@ std::map<std::string, Section> tables() {
       {"axis.instruments.SIGNAL",
        of_the_signal(keys_below(keys_below(axis, "instruments"), "position"))},
       {"axis.controller", keys_below(axis, "controller")},
+      {"axis.revolute", on_a_revolute_joint()},
       {"motion", motion_keys()}};
   for (const std::string& type : std::get<Choice>(find_key(motion_keys(), "type").form).names())
     tables["motion." + type] = motion_keys(type);

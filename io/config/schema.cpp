@@ -36,13 +36,11 @@ class SchemaMaker {
     return top;
   }
 
-  /// Moves the properties of a map to the definitions, for references to "GROUP.NAME".
-  void share(const std::string& group, Json& map) {
-    for (const auto& [name, property] : map["properties"].items())
+  /// Enters the properties of a map in the definitions, for references to "GROUP.NAME".
+  void share(const std::string& group, const Section& keys) {
+    const Json made = map(keys);
+    for (const auto& [name, property] : made["properties"].items())
       definitions_[group + "." + name] = property;
-    map.erase("properties");
-    map.erase("additionalProperties");
-    map.erase("required");
   }
 
   /// To be called last.
@@ -160,17 +158,23 @@ class SchemaMaker {
   Json definitions_ = Json::object();
 };
 
-Json when(const Json& constants, const Json& then) {
+/// A constant that a key has without being given is not demanded.
+Json when(const Json& constants, const Json& then, const std::string& may_be_missing = "") {
   Json properties, required = Json::array();
   for (const auto& [key, value] : constants.items()) {
     properties[key] = {{"const", value}};
-    required.push_back(key);
+    if (key != may_be_missing) required.push_back(key);
   }
   return {{"if", {{"properties", properties}, {"required", required}}}, {"then", then}};
 }
 
 /// The maps of an axis file whose keys depend on the structure.
 constexpr std::array<const char*, 3> kPartsOfStructure{"parameters", "effects", "initial"};
+
+/// What such a part holds on the joint.
+std::string group_of(const std::string& part, Joint joint) {
+  return part + "." + joint_names()[static_cast<std::size_t>(joint)];
+}
 
 /// Which keys they have, and must have, in an axis of this structure.
 Json parts_of(Structure structure) {
@@ -179,9 +183,10 @@ Json parts_of(Structure structure) {
   for (const char* part : kPartsOfStructure)
     parts[part] = {{"properties", Json::object()}, {"additionalProperties", false}};
   const auto add = [&](const std::string& part, const std::string& name) {
-    parts[part]["properties"][name] = SchemaMaker::reference(part + "." + name);
+    parts[part]["properties"][name] =
+        SchemaMaker::reference(group_of(part, structure.joint) + "." + name);
   };
-  for (const QuantityEntry& entry : quantity_list()) {
+  for (const QuantityEntry& entry : quantity_list(structure.joint)) {
     if (!is_used(entry, structure)) continue;
     const std::string symbol(entry.quantity.symbol);
     if (entry.group.empty()) {
@@ -189,7 +194,7 @@ Json parts_of(Structure structure) {
       if (Key::of(entry.quantity).is_required) parts["parameters"]["required"].push_back(symbol);
     } else if (entry.group == "initial") {
       add("initial", symbol);
-    } else if (effect_named(entry.group)) {
+    } else if (entry.effect) {
       add("effects", entry.group);
     }
   }
@@ -206,12 +211,32 @@ nlohmann::ordered_json job_schema() {
 nlohmann::ordered_json axis_schema() {
   SchemaMaker maker;
   Json top = maker.schema("axisfit axis file", axis_keys());
-  for (const char* part : kPartsOfStructure) maker.share(part, top["properties"][part]);
-  for (std::size_t drive = 0; drive < drive_names().size(); ++drive)
-    for (std::size_t transmission = 0; transmission < transmission_names().size(); ++transmission)
-      top["allOf"].push_back(when(
-          {{"drive", drive_names()[drive]}, {"transmission", transmission_names()[transmission]}},
-          parts_of({static_cast<Drive>(drive), static_cast<Transmission>(transmission), {}})));
+  for (const char* part : kPartsOfStructure)
+    for (const char* shared : {"properties", "additionalProperties", "required"})
+      top["properties"][part].erase(shared);
+  for (const char* by_joint : {"instruments", "controller"})
+    top["properties"][by_joint] = {{"type", "object"}};
+  top["properties"]["drive"] = {{"type", "string"}};
+  for (const Joint joint : kJoints) {
+    const std::string& name = joint_names()[static_cast<std::size_t>(joint)];
+    for (const char* part : kPartsOfStructure)
+      maker.share(group_of(part, joint), keys_below(axis_keys(joint), part));
+    Json whole = maker.map(axis_keys(joint));
+    Json of_joint{{"properties", Json::object()}};
+    for (const char* by_joint : {"drive", "instruments", "controller"})
+      of_joint["properties"][by_joint] = whole["properties"][by_joint];
+    const char* without_joint = joint == Joint::prismatic ? "joint" : "";
+    top["allOf"].push_back(when({{"joint", name}}, of_joint, without_joint));
+    for (std::size_t drive = 0; drive < drive_names(joint).size(); ++drive)
+      for (std::size_t transmission = 0; transmission < transmission_names().size(); ++transmission)
+        top["allOf"].push_back(when(
+            {{"joint", name},
+             {"drive", drive_names(joint)[drive]},
+             {"transmission", transmission_names()[transmission]}},
+            parts_of(
+                {static_cast<Drive>(drive), static_cast<Transmission>(transmission), {}, joint}),
+            without_joint));
+  }
   return maker.with_definitions(std::move(top));
 }
 

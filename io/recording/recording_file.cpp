@@ -11,6 +11,7 @@
 #include "base/plain_text.h"
 #include "base/suggest.h"
 #include "base/units.h"
+#include "io/recording/counters.h"
 #include "io/recording/csv.h"
 #include "io/recording/mat_file.h"
 #include "io/recording/mcap_file.h"
@@ -35,6 +36,34 @@ std::size_t column_number(const std::string& text) {
   std::size_t number = 0;
   const char* const end = text.data() + text.size();
   return std::from_chars(text.data(), end, number).ptr == end ? number : 0;
+}
+
+/// As the keys of a column say.
+void correct_overflow(ConfigMap& map, const RecordingFile& file, std::vector<double>& values) {
+  const auto is_beyond = [&](const ConfigNode& node, double low, double high, const char* what) {
+    const auto beyond = std::ranges::find_if(values, [&](double x) { return x < low || x > high; });
+    if (beyond == values.end()) return false;
+    node.error(fmt::format("{}: {:.12g} {}", file.where(std::size_t(beyond - values.begin())),
+                           *beyond, what));
+    return true;
+  };
+  std::int64_t bits = 0;
+  if (const auto given = map.read("signed_bits", bits); given && bits > 0)
+    if (!is_beyond(*given, 0.0, std::ldexp(1.0, static_cast<int>(bits)) - 1.0,
+                   "is no integer of so many bits without a sign: correct or remove signed_bits"))
+      restore_sign(values, static_cast<int>(bits));
+  double period = 0.0;
+  const auto given = map.read("wraps_after", period);
+  if (!given || period == 0.0) return;
+  const auto first = std::ranges::find_if(values, [](double x) { return !std::isnan(x); });
+  if (first == values.end()) return;
+  const double least = *std::min_element(first, values.end(), [](double a, double b) {
+    return a < b || (std::isnan(b) && !std::isnan(a));
+  });
+  constexpr double kRounding = 1e-6;
+  if (!is_beyond(*given, -INFINITY, least + period * (1.0 + kRounding),
+                 "is more than wraps_after beyond the least value: correct or remove it"))
+    unwrap(values, period);
 }
 
 }  // namespace
@@ -113,7 +142,13 @@ const Section& column_keys() {
       Key::required("unit", Text{}, "unit of the stored values"),
       Key::optional("factor", NumberWithUnit{"1", -1e12, 1e12}, 1.0,
                     "factor applied to the stored values"),
-      Key::optional("sign", Choice{{{"1"}, {"-1"}}}, 0, "sign applied to the stored values")};
+      Key::optional("sign", Choice{{{"1"}, {"-1"}}}, 0, "sign applied to the stored values"),
+      Key::optional("wraps_after", NumberWithUnit{"1", 1e-9, 1e15}, DefaultText{"never"},
+                    "what an encoder or counter shows of so much begins anew, in the unit of the "
+                    "stored values, such as 360 or 65536: it is made continuous"),
+      Key::optional("signed_bits", Integer{2, 52}, DefaultText{"the values have their sign"},
+                    "signed integers of so many bits that were stored without their sign: of 16, "
+                    "65535 is -1")};
   return keys;
 }
 
@@ -139,6 +174,7 @@ std::optional<std::vector<double>> read_column(const RecordingFile& file, Config
   const Column* column = name ? file.column(*name) : nullptr;
   if (column == nullptr) return std::nullopt;
   std::vector<double> values = column->values;
+  correct_overflow(map, file, values);
   for (double& x : values) x *= factor;
   return values;
 }

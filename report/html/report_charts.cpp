@@ -19,11 +19,13 @@ using Values = std::vector<double>;
 /// Of a value that noise of this size hides.
 double resolution(const Measurement& m) { return 0.01 * m.sigma; }
 
-std::string signal_name(const Measurement& m) { return std::string(info(m.signal).name); }
+std::string signal_name(const Measurement& m, Joint joint) {
+  return std::string(info(m.signal, joint).name);
+}
 
 /// "Velocity of step"
-std::string title_of(const Measurement& m, const Recording& recording) {
-  std::string name = signal_name(m);
+std::string title_of(const Measurement& m, const Recording& recording, Joint joint) {
+  std::string name = signal_name(m, joint);
   name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
   return fmt::format("{} of {}", name, recording.name);
 }
@@ -33,7 +35,9 @@ bool spans_a_decade(const std::vector<double>& values) {
   const auto [least, most] = std::ranges::minmax(values);
   return most > 10.0 * least;
 }
-std::string unit_of(const Measurement& m) { return std::string(info(m.signal).unit); }
+std::string unit_of(const Measurement& m, Joint joint) {
+  return std::string(info(m.signal, joint).unit);
+}
 
 /// Stretches of time in which a condition holds, from what holds from each instant on. Those that
 /// nobody could see apart are joined.
@@ -84,17 +88,17 @@ std::vector<ChartRange> phases_of(const Recording& recording,
 
 struct EventTimes {
   std::string_view kind;
-  const char* text;
+  std::string_view text;
   Values times;
 };
 
 /// What happened between one mode and the next.
-std::vector<EventTimes> events_of(const std::vector<ModeChange>& modes) {
+std::vector<EventTimes> events_of(const std::vector<ModeChange>& modes, Joint joint) {
   std::vector<EventTimes> list{{"contact", "teeth touch", {}},
                                {"separation", "teeth separate", {}},
                                {"limit", "a limit is reached or left", {}},
-                               {"stick", "the arm sticks", {}},
-                               {"slip", "the arm breaks away", {}}};
+                               {"stick", words_on(joint, "the arm sticks"), {}},
+                               {"slip", words_on(joint, "the arm breaks away"), {}}};
   for (std::size_t i = 1; i < modes.size(); ++i) {
     const Mode &from = modes[i - 1].mode, &to = modes[i].mode;
     const bool happened[] = {
@@ -138,16 +142,19 @@ struct Variable {
 /// What a residual is shown against, besides time: what the axis has.
 std::vector<Variable> variables(const Structure& structure) {
   const Capabilities& has = capabilities(structure);
+  const auto on = [&](const char* unit) { return std::string(unit_on(structure.joint, unit)); };
   std::vector<Variable> list{
-      {"velocity", {"velocity", "m/s"}, [](const Sample& s) { return s.velocity; }},
-      {"position", {"position", "m"}, [](const Sample& s) { return s.position; }}};
+      {"velocity", {"velocity", on("m/s")}, [](const Sample& s) { return s.velocity; }},
+      {"position", {"position", on("m")}, [](const Sample& s) { return s.position; }}};
   if (has.has_motor)
     list.push_back({"angle", {"motor angle", "rad"}, [](const Sample& s) {
                       return wrapped_angle(s.motor_angle);
                     }});
-  list.push_back({"force",
-                  {has.has_backlash ? "gear force" : "drive force", "N"},
-                  [](const Sample& s) { return s.gear_force; }});
+  list.push_back(
+      {"force",
+       {std::string(words_on(structure.joint, has.has_backlash ? "gear force" : "drive force")),
+        on("N")},
+       [](const Sample& s) { return s.gear_force; }});
   if (has.is_electric)
     list.push_back({"current", {"current", "A"}, [](const Sample& s) { return s.current; }});
   return list;
@@ -164,9 +171,9 @@ ReportCharts::ReportCharts(const RunResult& run_result) : run_result_(run_result
     charts.times = columns_.add_times(recording.times);
     charts.phases = phases_of(recording, simulation.modes);
     const double duration = recording.times.back() - recording.times.front();
-    for (EventTimes& e : events_of(simulation.modes))
+    for (EventTimes& e : events_of(simulation.modes, job.joint()))
       charts.events.push_back(
-          {e.kind, e.text,
+          {e.kind, std::string(e.text),
            columns_.add(std::move(e.times), 1e-7 * duration, std::floor(recording.times.front()))});
     for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
       const Measurement& measurement = recording.measurements[m];
@@ -214,7 +221,8 @@ Html ReportCharts::overview() {
   const Recording& recording = run_result_.job().recordings[worst.recording];
   const Measurement& m = recording.measurements[worst.measurement];
   const RecordingCharts& r = recordings_[worst.recording];
-  const ChartAxis y{signal_name(m), unit_of(m)};
+  const Joint joint = run_result_.job().joint();
+  const ChartAxis y{signal_name(m, joint), unit_of(m, joint)};
   const auto measured = r.measured[worst.measurement];
   if (run_result_.selection && run_result_.selection->models.size() > 1) {
     const auto judged = [&](const FitResult& fit) {
@@ -232,7 +240,7 @@ Html ReportCharts::overview() {
         {"after", "residual", r.times, measured, LineStyle::line, judged(run_result_.fit())}};
     return add(std::move(chart));
   }
-  Chart chart = over_time(worst.recording, "overview", title_of(m, recording), y);
+  Chart chart = over_time(worst.recording, "overview", title_of(m, recording, joint), y);
   chart.series = {{"measured", "measured", r.times, measured},
                   {"simulated", "simulated", r.times, r.simulated[worst.measurement]}};
   return add(std::move(chart));
@@ -245,9 +253,11 @@ Html ReportCharts::traces(std::size_t recording) {
   Html all;
   for (std::size_t m = 0; m < data.measurements.size(); ++m) {
     const Measurement& measurement = data.measurements[m];
-    const std::string name = signal_name(measurement), unit = unit_of(measurement);
+    const Joint joint = run_result_.job().joint();
+    const std::string name = signal_name(measurement, joint), unit = unit_of(measurement, joint);
     const std::string of = fmt::format("{} of {}", name, data.name);
-    Chart trace = over_time(recording, "trace-" + name, title_of(measurement, data), {name, unit});
+    Chart trace =
+        over_time(recording, "trace-" + name, title_of(measurement, data, joint), {name, unit});
     trace.series = {{"measured", "measured", r.times, r.measured[m]},
                     {"simulated", "simulated", r.times, r.simulated[m]}};
     all += add(std::move(trace));
@@ -293,9 +303,10 @@ Html ReportCharts::views(const SeriesTest& test) {
   const Recording& recording = run_result_.job().recordings[series.recording];
   const Measurement& m = recording.measurements[series.measurement];
   const SimulatedRecording& simulation = run_result_.fit().recordings[series.recording].as_fitted();
-  const std::string id = fmt::format("{}-{}{}", series.recording + 1, info(m.signal).name,
+  const Joint joint = run_result_.job().joint();
+  const std::string id = fmt::format("{}-{}{}", series.recording + 1, signal_name(m, joint),
                                      series.fitted ? "" : "-judged");
-  const ChartAxis y{"residual", unit_of(m)};
+  const ChartAxis y{"residual", unit_of(m, joint)};
   Values residual = series.values;
   for (double& v : residual) v *= m.sigma;
   const auto dots = columns_.add_coarse(thinned(residual));
@@ -363,12 +374,14 @@ Html ReportCharts::missing_force(std::size_t recording) {
     supplied.push_back(before.force[i] - after->force[i]);
 
   const std::string name = run_result_.job().recordings[recording].name;
-  const ChartAxis y{"missing force", "N"};
+  const Joint joint = run_result_.job().joint();
+  const auto say = [&](const char* text) { return std::string(words_on(joint, text)); };
+  const ChartAxis y{say("missing force"), std::string(unit_on(joint, "N"))};
   const double resolution = 0.01 * std::max(before.noise, 1e-6 * before.rms) + 1e-12;
   Html all;
-  Chart chart = over_time(recording, "force", "Missing force on the arm in " + name, y);
+  Chart chart = over_time(recording, "force", say("Missing force on the arm") + " in " + name, y);
   const auto times = recordings_[recording].times;
-  chart.series = {{after ? "baseline model" : "missing force", "force", times,
+  chart.series = {{after ? "baseline model" : say("missing force"), "force", times,
                    columns_.add(before.force, resolution)}};
   if (after != nullptr) {
     chart.series.push_back(
@@ -385,7 +398,7 @@ Html ReportCharts::missing_force(std::size_t recording) {
     if (!varies(x)) continue;
     Chart over{
         .id = fmt::format("force-{}-over-{}", recording + 1, variable.id),
-        .title = "Missing force against " + variable.axis.label,
+        .title = say("Missing force against ") + variable.axis.label,
         .x = variable.axis,
         .y = y,
         .series = {{"missing", "force", columns_.add_coarse(thinned(x)), dots, LineStyle::dots}}};
@@ -395,11 +408,11 @@ Html ReportCharts::missing_force(std::size_t recording) {
     all += add(std::move(over));
   }
   Chart spectrum{.id = fmt::format("force-{}-in-space", recording + 1),
-                 .title = "Spatial spectrum of the missing force",
-                 .x = {"cycles per metre", "1/m"},
-                 .y = {"amplitude", "N"},
+                 .title = say("Spatial spectrum of the missing force"),
+                 .x = {say("cycles per metre"), std::string(unit_on(joint, "1/m"))},
+                 .y = {"amplitude", y.unit},
                  .series = {}};
-  const auto line = [&](const char* label, const char* role, const MissingForce& force) {
+  const auto line = [&](const std::string& label, const char* role, const MissingForce& force) {
     Values positions;
     for (const Sample& s : force.samples) positions.push_back(s.position);
     Spectrum found = spatial_spectrum(thinned(force.force), thinned(positions));
@@ -407,7 +420,7 @@ Html ReportCharts::missing_force(std::size_t recording) {
       spectrum.series.push_back({label, role, columns_.add_times(std::move(found.wave)),
                                  columns_.add_coarse(std::move(found.size))});
   };
-  line(after ? "baseline model" : "missing force", "force", before);
+  line(after ? "baseline model" : say("missing force"), "force", before);
   if (after != nullptr) line("remaining", "residual", *after);
   if (!spectrum.series.empty()) all += add(std::move(spectrum));
   return all;
@@ -416,7 +429,7 @@ Html ReportCharts::missing_force(std::size_t recording) {
 Html ReportCharts::profile(const Profile& profile) {
   const ParameterResult& p = run_result_.fit().parameters[profile.parameter];
   const FreeParameter& free = run_result_.job().free[profile.parameter];
-  const std::string unit(quantity_list()[free.quantity].quantity.unit);
+  const std::string unit(run_result_.job().entry(free.quantity).quantity.unit);
   Values x, deviance, parabola;
   for (const ProfilePoint& point : profile.points) {
     x.push_back(point.value);

@@ -129,7 +129,7 @@ class Page {
           residual_verdict(job_, *run_result_.diagnosis, run_result_.options.select_effects));
     Html all = html(R"(<div class="verdict {}">{}</div>)", verdict_class(), summary);
     for (const Discrimination& s : run_result_.discriminations)
-      all += paragraph_of(discrimination_text(s));
+      all += paragraph_of(discrimination_text(s, job_.joint()));
     if (run_result_.interrupted)
       all += paragraph_of(fmt::format("Stopped{} before everything requested was finished.",
                                       stop_reason(run_result_)));
@@ -162,8 +162,9 @@ class Page {
         const bool finished = fit_.recordings[r].free_running.finished;
         const auto or_dash = [&](double value) { return finished ? number(value) : "-"; };
         rows += row(head_cell(job_.recordings[r].name) + cell(role_name(job_.recordings[r], e)) +
-                    cell(std::string(info(e.signal).name)) + number_cell(or_dash(e.rmse)) +
-                    cell(std::string(info(e.signal).unit)) +
+                    cell(std::string(info(e.signal, job_.joint()).name)) +
+                    number_cell(or_dash(e.rmse)) +
+                    cell(std::string(info(e.signal, job_.joint()).unit)) +
                     number_cell(finished ? fmt::format("{:.3g} %", e.nrmse_percent) : "-") +
                     number_cell(number(e.sigma)) + number_cell(or_dash(e.reduced_chi_square)) +
                     number_cell(e.prediction_rmse ? number(*e.prediction_rmse) : ""));
@@ -183,12 +184,13 @@ class Page {
         const SignalScore* score = find_series(run_result_.scores[i].signals, head);
         if (score == nullptr || !score->as_fitted()) continue;
         const SignalErrors& e = *score->as_fitted();
-        rows += row(head_cell(recording.name) + cell(role_name(recording, head.fitted)) +
-                    cell(std::string(info(m.signal).name)) +
-                    cell(i == 0 ? "baseline" : "+ " + run_result_.selection->models[i].added) +
-                    number_cell(number(e.rmse)) + cell(std::string(info(m.signal).unit)) +
-                    number_cell(fmt::format("{:.3g} %", e.nrmse_percent)) +
-                    number_cell(number(e.reduced_chi_square)));
+        rows +=
+            row(head_cell(recording.name) + cell(role_name(recording, head.fitted)) +
+                cell(std::string(info(m.signal, job_.joint()).name)) +
+                cell(i == 0 ? "baseline" : "+ " + run_result_.selection->models[i].added) +
+                number_cell(number(e.rmse)) + cell(std::string(info(m.signal, job_.joint()).unit)) +
+                number_cell(fmt::format("{:.3g} %", e.nrmse_percent)) +
+                number_cell(number(e.reduced_chi_square)));
       }
     }
     return html("<h3>Errors before and after</h3>{}",
@@ -265,7 +267,7 @@ class Page {
     for (std::size_t i = 0; i < fit_.parameters.size(); ++i) {
       const ParameterResult& p = fit_.parameters[i];
       const ParameterUncertainty& u = p.uncertainty;
-      const Quantity& quantity = quantity_list()[job_.free[i].quantity].quantity;
+      const Quantity& quantity = job_.entry(job_.free[i].quantity).quantity;
       const double error = u.determined ? u.standard_error : 0.0;
       rows += row(html(R"(<th scope="row">{} <small>{}</small></th>)", p.name,
                        std::string(quantity.meaning)) +
@@ -327,7 +329,9 @@ class Page {
     for (std::size_t r = 0; r < job_.recordings.size(); ++r)
       if (const Html force = charts_.missing_force(r); !force.empty())
         forces += html("<h4>{}</h4>{}", job_.recordings[r].name, figures(force));
-    if (!forces.empty()) all += html("<h3>Missing force on the arm</h3>{}", forces);
+    if (!forces.empty())
+      all += html("<h3>{}</h3>{}", std::string(words_on(job_.joint(), "Missing force on the arm")),
+                  forces);
     const auto worst =
         std::ranges::max_element(diagnosis.tests, {}, &SeriesTest::reduced_chi_square);
     for (auto test = diagnosis.tests.begin(); test != diagnosis.tests.end(); ++test)
@@ -339,9 +343,10 @@ class Page {
 
   std::string name_of(const SeriesTest& test) const {
     const Recording& recording = job_.recordings[test.series.recording];
-    return fmt::format("{} of {} ({})",
-                       info(recording.measurements[test.series.measurement].signal).name,
-                       recording.name, role_name(recording, test.series.fitted));
+    return fmt::format(
+        "{} of {} ({})",
+        info(recording.measurements[test.series.measurement].signal, job_.joint()).name,
+        recording.name, role_name(recording, test.series.fitted));
   }
 
   Html tests(const Diagnosis& diagnosis) const {
@@ -392,14 +397,15 @@ class Page {
     return all + html(R"(<ol class="rounds">{}</ol>)", rounds);
   }
 
-  static Html trial(const EffectTrial& t) {
+  Html trial(const EffectTrial& t) const {
     const char* decision = decision_name(t.decision);
     const bool judged = t.improvement.comparable;
     return row(
         html(R"(<th scope="row">{} <small>{}</small></th>)", t.candidate.name,
              t.candidate.meaning) +
         number_cell(number(t.score)) +
-        cell(html(R"(<span class="badge {0}">{0}</span>)", decision)) + cell(reason_text(t)) +
+        cell(html(R"(<span class="badge {0}">{0}</span>)", decision)) +
+        cell(reason_text(t, job_.joint())) +
         number_cell(judged ? fmt::format("{:+.3g} %", -t.improvement.validate_percent) : "-") +
         number_cell(judged ? fmt::format("{:.1g}", t.improvement.p_value) : "-"));
   }

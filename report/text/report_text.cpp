@@ -11,21 +11,22 @@
 #include "base/text_table.h"
 #include "io/recording/csv.h"
 #include "report/text/words.h"
+#include "sim/rig.h"
 
 namespace axisfit {
 namespace {
 
 /// What an accelerometer shows at rest, where it has nothing to show and is left out.
-std::string excluded_text(const Recording& recording) {
+std::string excluded_text(const Recording& recording, Joint joint) {
   std::string text;
   for (const Measurement& m : recording.measurements) {
     const auto excluded = excluded_samples(m);
     if (!excluded) continue;
-    const std::string unit(info(m.signal).unit);
+    const SignalInfo signal = info(m.signal, joint);
     text += paragraph(
         fmt::format(
             "{}: {} samples of the {} at standstill are excluded, with a mean of {:.3g} {}{}.",
-            recording.name, excluded->samples, info(m.signal).name, excluded->mean, unit,
+            recording.name, excluded->samples, signal.name, excluded->mean, signal.unit,
             excluded->is_within_noise ? "" : ": a bias or an artefact of the instrument"),
         2);
   }
@@ -38,7 +39,7 @@ std::string recordings_text(const RunResult& run_result) {
   for (const Recording& r : job.recordings) {
     std::string signals;
     for (const Measurement& m : r.measurements)
-      signals += (signals.empty() ? "" : ", ") + std::string(info(m.signal).name);
+      signals += (signals.empty() ? "" : ", ") + std::string(info(m.signal, job.joint()).name);
     rows.push_back({r.name, r.role == Role::fit ? "fit" : "validate",
                     fmt::format("{} samples", r.times.size()),
                     fmt::format("{:.4g} s to {:.4g} s", r.times.front(), r.times.back()), signals});
@@ -47,7 +48,7 @@ std::string recordings_text(const RunResult& run_result) {
       "Recordings\n" + format_table(rows, {Alignment::left, Alignment::left, Alignment::right,
                                            Alignment::left, Alignment::wrapped});
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
-    text += excluded_text(job.recordings[r]);
+    text += excluded_text(job.recordings[r], job.joint());
     for (const std::string& warning :
          warnings_for(run_result.baseline, job.recordings[r], run_result.checks[r]))
       text += paragraph(fmt::format("! {}: {}", job.recordings[r].name, warning), 2);
@@ -72,7 +73,7 @@ std::string parameters_text(const RunResult& run_result) {
   for (std::size_t i = 0; i < job.free.size(); ++i) {
     const ParameterResult& p = result.parameters[i];
     const ParameterUncertainty& u = p.uncertainty;
-    const Quantity& quantity = quantity_list()[job.free[i].quantity].quantity;
+    const Quantity& quantity = job.entry(job.free[i].quantity).quantity;
     const double error = u.determined ? u.standard_error : 0.0;
     const bool undetermined = !u.determined && !u.at_bound;
     std::string other = fmt::format("{:.4g}", job.free[i].initial);
@@ -133,12 +134,12 @@ std::string errors_text(const Job& job, const FitResult& result) {
     const Recording& recording = job.recordings[r];
     for (const SignalError& e : result.recordings[r].signals) {
       const bool finished = result.recordings[r].free_running.finished;
-      rows.push_back({series_name(recording, role_name(recording, e), e.signal),
+      rows.push_back({series_name(recording, role_name(recording, e), e.signal, job.joint()),
                       finished ? fmt::format("{:.4g}", e.rmse) : "-",
                       finished ? fmt::format("{:.3g} %", e.nrmse_percent) : "-",
                       fmt::format("{:.3g}{}", e.sigma, mark_of(e.noise)),
                       finished ? fmt::format("{:.4g}", e.reduced_chi_square) : "-",
-                      std::string(info(e.signal).unit),
+                      std::string(info(e.signal, job.joint()).unit),
                       e.prediction_rmse ? fmt::format("{:.4g}", *e.prediction_rmse) : ""});
     }
   }
@@ -159,8 +160,8 @@ std::string errors_text(const Job& job, const FitResult& result) {
 
 }  // namespace
 
-std::string series_name(const Recording& recording, const char* role, Signal signal) {
-  return fmt::format("{}, {}: {}", recording.name, role, info(signal).name);
+std::string series_name(const Recording& recording, const char* role, Signal signal, Joint joint) {
+  return fmt::format("{}, {}: {}", recording.name, role, info(signal, joint).name);
 }
 
 std::string report_text(const RunResult& run_result, bool colour) {
@@ -186,7 +187,7 @@ std::string report_text(const RunResult& run_result, bool colour) {
       text += "Instruments\n" + faults + "\n";
   text += paragraph(overall_verdict(run_result, colour));
   for (const Discrimination& s : run_result.discriminations)
-    text += paragraph(discrimination_text(s));
+    text += paragraph(discrimination_text(s, job.joint()));
   if (!run_result.selection && run_result.diagnosis)
     text += residual_verdict(job, *run_result.diagnosis, run_result.options.select_effects, colour);
   if (run_result.interrupted) {
@@ -209,19 +210,26 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// The missing force of all recordings, one after the other, and what it may depend on.
 std::vector<Column> force_columns(const Job& job, const Diagnosis& diagnosis) {
-  constexpr std::pair<const char*, double Sample::*> kCourse[]{
-      {"command_v", &Sample::command},         {"arm_position_m", &Sample::position},
-      {"arm_velocity_mps", &Sample::velocity}, {"motor_angle_rad", &Sample::motor_angle},
-      {"motor_current_a", &Sample::current},   {"drive_force_n", &Sample::drive_force},
-      {"gear_force_n", &Sample::gear_force}};
-  std::vector<Column> columns{{"missing_force_n", {}}};
-  for (const auto& [name, member] : kCourse) columns.push_back({name, {}});
+  struct Course {
+    const char *name, *unit;
+    double Sample::*member;
+  };
+  constexpr Course kCourse[]{
+      {"command", "V", &Sample::command},         {"arm_position", "m", &Sample::position},
+      {"arm_velocity", "m/s", &Sample::velocity}, {"motor_angle", "rad", &Sample::motor_angle},
+      {"motor_current", "A", &Sample::current},   {"drive_force", "N", &Sample::drive_force},
+      {"gear_force", "N", &Sample::gear_force}};
+  const auto called = [&](const char* name, const char* unit) {
+    return column_name(words_on(job.joint(), name), unit_on(job.joint(), unit));
+  };
+  std::vector<Column> columns{{called("missing_force", "N"), {}}};
+  for (const Course& course : kCourse) columns.push_back({called(course.name, course.unit), {}});
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     const MissingForce& force = diagnosis.forces[r];
     for (std::size_t i = 0; i < job.recordings[r].times.size(); ++i) {
       columns.front().values.push_back(force.found ? force.force[i] : kNone);
       for (std::size_t c = 0; c < std::size(kCourse); ++c)
-        columns[c + 1].values.push_back(force.found ? force.samples[i].*kCourse[c].second : kNone);
+        columns[c + 1].values.push_back(force.found ? force.samples[i].*kCourse[c].member : kNone);
     }
   }
   return columns;
@@ -239,9 +247,9 @@ std::string residuals_csv(const Job& job, const FitResult& result,
     }
   std::vector<Column> columns{{"recording", number}, {"time_s", time}};
   for (const SignalInfo& signal : kSignalTable) {
-    Column measured{std::string(signal.name) + "_measured", {}},
-        simulated{std::string(signal.name) + "_simulated", {}},
-        residual{std::string(signal.name) + "_residual", {}};
+    const std::string name(info(signal.signal, job.joint()).name);
+    Column measured{name + "_measured", {}}, simulated{name + "_simulated", {}},
+        residual{name + "_residual", {}};
     bool recorded = false;
     for (std::size_t r = 0; r < job.recordings.size(); ++r) {
       const Recording& recording = job.recordings[r];

@@ -13,15 +13,16 @@ namespace axisfit {
 namespace {
 
 /// "F_c = 24.95 +- 0.12 N"; of a curve the range of its coefficients.
-std::string estimates_text(const std::vector<ParameterResult>& parameters, bool is_curve) {
-  const auto unit_of = [](const ParameterResult& p) {
-    return find_quantity(p.name)->quantity.unit;
+std::string estimates_text(const std::vector<ParameterResult>& parameters, bool is_curve,
+                           Joint joint) {
+  const auto quantity_of = [&](const ParameterResult& p) -> const Quantity& {
+    return find_quantity(p.name, joint)->quantity;
   };
   if (parameters.empty()) return "";
   if (is_curve) {
     const auto [low, high] = std::ranges::minmax(parameters, {}, &ParameterResult::value);
     return fmt::format("{} coefficients from {:.3g} to {}", parameters.size(), low.value,
-                       with_unit(fmt::format("{:.3g}", high.value), unit_of(high)));
+                       with_unit(fmt::format("{:.3g}", high.value), quantity_of(high).unit));
   }
   std::vector<std::string> parts;
   for (const ParameterResult& p : parameters) {
@@ -30,8 +31,8 @@ std::string estimates_text(const std::vector<ParameterResult>& parameters, bool 
         u.determined ? fmt::format("{} +- {:.2g}", with_digits_of(p.value, u.standard_error),
                                    u.standard_error)
                      : fmt::format("{:.3g}", p.value);
-    parts.push_back(fmt::format("{} = {}", find_quantity(p.name)->quantity.symbol,
-                                with_unit(number, unit_of(p))));
+    parts.push_back(
+        fmt::format("{} = {}", quantity_of(p).symbol, with_unit(number, quantity_of(p).unit)));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -43,23 +44,24 @@ Tone tone_of(Decision decision) {
 }
 
 /// What other recordings say of an accepted effect.
-std::string elsewhere_text(const EffectTrial& t) {
+std::string elsewhere_text(const EffectTrial& t, Joint joint) {
   if (!t.replication || t.candidate.is_curve) return "";
   return fmt::format("; the recordings to validate, fitted by themselves, {}: {}",
                      t.replication->is_alike ? "tell alike" : "tell otherwise",
-                     estimates_text(t.replication->parameters, false));
+                     estimates_text(t.replication->parameters, false, joint));
 }
 
 std::string effects_text(const EffectSelection& selection, bool colour) {
   if (selection.effects.empty()) return "";
+  const Joint joint = selection.result.job.joint();
   std::vector<std::vector<std::string>> rows;
   for (const Decision decision : {Decision::accepted, Decision::undecided, Decision::rejected})
     for (const EffectTrial& t : selection.effects) {
       if (t.decision != decision) continue;
-      const std::string estimate = estimates_text(t.parameters, t.candidate.is_curve);
-      rows.push_back(
-          {toned(decision_name(decision), tone_of(decision), colour), t.candidate.name,
-           estimate + (estimate.empty() ? "" : ": ") + reason_text(t) + elsewhere_text(t)});
+      const std::string estimate = estimates_text(t.parameters, t.candidate.is_curve, joint);
+      rows.push_back({toned(decision_name(decision), tone_of(decision), colour), t.candidate.name,
+                      estimate + (estimate.empty() ? "" : ": ") + reason_text(t, joint) +
+                          elsewhere_text(t, joint)});
     }
   return "Effects tried\n" +
          format_table(rows, {Alignment::left, Alignment::left, Alignment::wrapped}) + "\n";
@@ -71,6 +73,7 @@ std::string model_name(const SelectionStep& model) {
 
 std::string errors_text(const RunResult& run_result) {
   const EffectSelection& selection = *run_result.selection;
+  const Joint joint = run_result.job().joint();
   const bool tracking =
       std::ranges::any_of(run_result.scores.front().signals,
                           [](const SignalScore& s) { return s.tracking.has_value(); });
@@ -79,8 +82,8 @@ std::string errors_text(const RunResult& run_result) {
   for (const SignalScore& head : run_result.scores.front().signals) {
     const Recording& recording = run_result.job().recordings[head.recording];
     const Measurement& m = recording.measurements[head.measurement];
-    const std::string_view unit = info(m.signal).unit;
-    rows.push_back({series_name(recording, role_name(recording, head.fitted), m.signal)});
+    const std::string_view unit = info(m.signal, joint).unit;
+    rows.push_back({series_name(recording, role_name(recording, head.fitted), m.signal, joint)});
     for (std::size_t i = 0; i < selection.models.size(); ++i) {
       const SignalScore* score = find_series(run_result.scores[i].signals, head);
       std::vector<std::string> row{model_name(selection.models[i]), "-", "-", "-", ""};
@@ -103,15 +106,15 @@ std::string errors_text(const RunResult& run_result) {
 
 std::string forces_text(const RunResult& run_result) {
   const EffectSelection& selection = *run_result.selection;
-  std::vector<std::vector<std::string>> rows{{"", "rms", "from noise", "of drive force", "cutoff"}};
+  const Joint joint = run_result.job().joint();
+  std::vector<std::vector<std::string>> rows;
   for (std::size_t r = 0; r < run_result.job().recordings.size(); ++r) {
     rows.push_back({run_result.job().recordings[r].name});
     for (std::size_t i = 0; i < selection.models.size(); ++i)
-      rows.push_back(force_cells(model_name(selection.models[i]), run_result.scores[i].forces[r]));
+      rows.push_back(
+          force_cells(model_name(selection.models[i]), run_result.scores[i].forces[r], joint));
   }
-  return "Missing force on the arm, before and after\n" +
-         format_table(rows, {Alignment::left, Alignment::right, Alignment::right, Alignment::right,
-                             Alignment::right});
+  return forces_table("Missing force on the arm, before and after", std::move(rows), joint);
 }
 
 }  // namespace

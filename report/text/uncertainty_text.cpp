@@ -14,7 +14,7 @@ namespace axisfit {
 namespace {
 
 std::string_view unit_of(const Job& job, std::size_t parameter) {
-  return quantity_list()[job.free[parameter].quantity].quantity.unit;
+  return job.entry(job.free[parameter].quantity).quantity.unit;
 }
 
 /// "12.3 .. 14.2", or what stands for an interval that there is not.
@@ -63,7 +63,7 @@ std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty
   const ParameterSpace space(job);
   std::vector<std::vector<std::string>> rows;
   for (std::size_t i = 0; i < space.size(); ++i) {
-    std::string description(quantity_list()[space[i].quantity].quantity.meaning);
+    std::string description(job.entry(space[i].quantity).quantity.meaning);
     if (const ParameterVerdict verdict = known[i].verdict();
         verdict != ParameterVerdict::determined)
       description += ": " + toned(verdict_name(verdict),
@@ -103,8 +103,9 @@ std::string second_opinion_text(const RunResult& run_result) {
   std::string text;
   if (run_result.inverse_start == InverseStart::better)
     text += paragraph(
-        "The fit began from an inverse-dynamics estimate, the balance of forces without a "
-        "simulation: from the initial values it ended worse, or nowhere.",
+        fmt::format("The fit began from an inverse-dynamics estimate, the balance of {} without a "
+                    "simulation: from the initial values it ended worse, or nowhere.",
+                    words_on(run_result.job().joint(), "forces")),
         2);
   if (!run_result.second_opinion) return text;
   const auto& [estimate, contradictions] = *run_result.second_opinion;
@@ -115,9 +116,10 @@ std::string second_opinion_text(const RunResult& run_result) {
           fmt::format("{} = {}", e.name, number(e, unit_of(run_result.job(), e.parameter))));
   if (!values.empty())
     text += paragraph(
-        fmt::format("Inverse dynamics, without a simulation: {}. Of the drive force {:.2g} % "
-                    "remain unexplained.",
-                    fmt::join(values, ", "), 100.0 * estimate.residual / estimate.drive_rms),
+        fmt::format("Inverse dynamics, without a simulation: {}. Of the {} {:.2g} % remain "
+                    "unexplained.",
+                    fmt::join(values, ", "), words_on(run_result.job().joint(), "drive force"),
+                    100.0 * estimate.residual / estimate.drive_rms),
         2);
   if (contradictions.empty()) return text;
   std::vector<std::string> differ;
@@ -174,14 +176,16 @@ std::string profiles_text(const RunResult& run_result) {
 }
 
 std::string suggestion_text(const RunResult& run_result) {
+  const Joint joint = run_result.job().joint();
+  const std::string_view metre = unit_on(joint, "m"), speed = unit_on(joint, "m/s");
   for (const Discrimination& discrimination : run_result.discriminations)
     if (discrimination.experiment)
       return "Next experiment\n" +
              paragraph(fmt::format("Record {}, for {:.3g} s, with the {}: it discriminates between "
                                    "the undecided effects.",
-                                   motion_text(discrimination.experiment->motion),
+                                   motion_text(discrimination.experiment->motion, joint),
                                    discrimination.experiment->duration,
-                                   info(*discrimination.signal).name),
+                                   info(*discrimination.signal, joint).name),
                        2);
   const std::string none = "Next experiment: none is suggested, for ";
   if (!run_result.grade.is_usable())
@@ -201,23 +205,24 @@ std::string suggestion_text(const RunResult& run_result) {
   const std::string& name = fit.parameters[s.parameter].name;
   std::string text = fmt::format(
       "Record {}, for {:.3g} s: it does most for {}, the least determined parameter. Of {} motions "
-      "tried, {} stay within {:.4g} .. {:.4g} m, {:.3g} m/s and {:.3g} V.",
-      motion_text(s.experiment.motion), s.experiment.duration, name, s.tried, s.feasible,
-      *s.limits.lowest, *s.limits.highest, *s.limits.speed, *s.limits.voltage);
+      "tried, {} stay within {:.4g} .. {:.4g} {}, {:.3g} {} and {:.3g} V.",
+      motion_text(s.experiment.motion, joint), s.experiment.duration, name, s.tried, s.feasible,
+      *s.limits.lowest, *s.limits.highest, metre, *s.limits.speed, speed, *s.limits.voltage);
   text += fmt::format(
       " For all values within the 95 % intervals, or the bounds of what is not determined, the "
-      "simulated arm stays within {:.4g} .. {:.4g} m and {:.3g} m/s, {:.2g} m and {:.2g} m/s from "
+      "simulated {} stays within {:.4g} .. {:.4g} {} and {:.3g} {}, {:.2g} {} and {:.2g} {} from "
       "the limits.",
-      s.reach.lowest + 0.0, s.reach.highest, s.reach.speed,  // no "-0"
+      words_on(joint, "arm"), s.reach.lowest + 0.0, s.reach.highest, metre,  // no "-0"
+      s.reach.speed, speed,
       std::max(0.0,
                std::min(s.reach.lowest - *s.limits.lowest, *s.limits.highest - s.reach.highest)),
-      std::max(0.0, *s.limits.speed - s.reach.speed));
+      metre, std::max(0.0, *s.limits.speed - s.reach.speed), speed);
   const MachineLimits& given = run_result.baseline.limits;
   if (!given.lowest || !given.speed)
     text += " These limits are what the recordings covered; set 'limits' in the job to allow more.";
   if (!s.predicted.parameters[s.parameter].determined) {
     const std::size_t quantity = run_result.job().free[s.parameter].quantity;
-    const std::string_view need = excitation_needed(quantity_list()[quantity].name);
+    const std::string_view need = excitation_needed(quantity_list()[quantity], joint);
     text += fmt::format(" Even then {} remains undetermined{}{}.", name,
                         need.empty() ? "" : ": it needs ", need);
   }
@@ -249,11 +254,13 @@ std::string forecast_text(const Job& job, const Forecast& forecast, bool colour)
     rows.push_back(
         {space.name(i),
          u.determined ? with_unit(fmt::format("{:.2g}", u.standard_error), unit) : "-",
-         most > 0.0
-             ? fmt::format("{} of {}", info(recording.measurements[series.measurement].signal).name,
-                           recording.name)
-             : "no signal"});
-    const std::string_view need = excitation_needed(quantity_list()[space[i].quantity].name);
+         most > 0.0 ? fmt::format(
+                          "{} of {}",
+                          info(recording.measurements[series.measurement].signal, job.joint()).name,
+                          recording.name)
+                    : "no signal"});
+    const std::string_view need =
+        excitation_needed(quantity_list()[space[i].quantity], job.joint());
     if ((!u.determined || u.weak) && !u.at_bound && !need.empty())
       needs += paragraph(fmt::format("{} needs {}.", space.name(i), need), 2);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/rounding.h"
 #include "base/units.h"
@@ -11,9 +12,16 @@ namespace axisfit {
 namespace {
 
 std::string short_number(double value) { return fmt::format("{:.4g}", value); }
-std::string short_number(double value, Signal signal) {
-  return with_unit(short_number(value), info(signal).unit);
-}
+
+/// What the signals are called.
+struct Names {
+  Joint joint;
+
+  std::string_view operator()(Signal signal) const { return info(signal, joint).name; }
+  std::string value(double value, Signal signal) const {
+    return with_unit(short_number(value), info(signal, joint).unit);
+  }
+};
 
 /// Where a rate that is too large or too small usually comes from, in a job that has no such unit.
 struct Advice {
@@ -22,7 +30,7 @@ struct Advice {
   std::string_view too_large, too_small;  ///< sentences
 };
 
-constexpr Advice kAdvice[]{
+constexpr Advice kOfSliding[]{
     {Signal::velocity, UnitMistake::milli,
      "Use mm/s instead of m/s if the velocity is stored in mm/s, or m instead of mm for the "
      "position.",
@@ -56,22 +64,36 @@ constexpr Advice kAdvice[]{
      "The velocity is per second: use m/s instead of m/min.",
      "The velocity is per minute: use m/min instead of m/s."},
 };
+constexpr Advice kOfTurning[]{
+    {Signal::velocity, UnitMistake::rpm, "Use rpm instead of rad/s if the velocity is stored so.",
+     "Use rad/s instead of rpm if the velocity is stored so."},
+    {Signal::velocity, UnitMistake::degrees,
+     "Use deg/s instead of rad/s if the velocity is stored so, or rad instead of deg for the "
+     "position.",
+     "Use rad/s instead of deg/s if the velocity is stored so, or deg instead of rad for the "
+     "position."},
+    {Signal::velocity, UnitMistake::minute,
+     "The velocity is per minute: use 1/min or rpm instead of 1/s.",
+     "The velocity is per second: use 1/s instead of 1/min or rpm."},
+};
 
-std::string_view advice_on(const warning::WrongRate& w) {
-  const auto* advice = std::ranges::find_if(
-      kAdvice, [&](const Advice& a) { return a.rate == w.rate.rate && a.mistake == w.mistake; });
-  if (advice == std::end(kAdvice)) return "No unit explains this: is there a gear between the two?";
+std::string_view advice_on(const warning::WrongRate& w, Joint joint) {
+  const std::span<const Advice> known =
+      joint == Joint::prismatic ? std::span<const Advice>(kOfSliding) : kOfTurning;
+  const auto advice = std::ranges::find_if(
+      known, [&](const Advice& a) { return a.rate == w.rate.rate && a.mistake == w.mistake; });
+  if (advice == known.end()) return "No unit explains this: is there a gear between the two?";
   return std::abs(w.rate.found.ratio) > 1.0 ? advice->too_large : advice->too_small;
 }
 
-std::string text_of(const warning::Gaps& w) {
+std::string text_of(const warning::Gaps& w, const Names&) {
   return fmt::format(
       "{} {} s at {} s. The command is unknown there: trim the recording, or split it in two.",
       w.count == 1 ? "A gap of" : fmt::format("{} gaps, the largest of", w.count),
       short_number(w.largest), short_number(w.at));
 }
 
-std::string text_of(const warning::UnevenSampling& w) {
+std::string text_of(const warning::UnevenSampling& w, const Names&) {
   return fmt::format(
       "Sampling is uneven, with a jitter of {:.2g} %. If the clock is even and only the time "
       "stamps are not, use sample numbers instead; otherwise give every sigma, because its "
@@ -79,7 +101,7 @@ std::string text_of(const warning::UnevenSampling& w) {
       100.0 * w.jitter);
 }
 
-std::string text_of(const warning::TimeUnit& w) {
+std::string text_of(const warning::TimeUnit& w, const Names&) {
   using enum warning::TimeUnit::Stored;
   return fmt::format(
       "velocity and acceleration are both {:.5g} times the derivative: the unit of time is wrong. "
@@ -90,64 +112,66 @@ std::string text_of(const warning::TimeUnit& w) {
                                : "Correct it.");
 }
 
-std::string text_of(const warning::UnlikelyInterval& w) {
+std::string text_of(const warning::UnlikelyInterval& w, const Names&) {
   return fmt::format(
       "Samples are {} s apart. Is the unit of time right? For milliseconds use 'unit: ms', for "
       "microseconds 'unit: us'.",
       short_number(w.interval));
 }
 
-std::string text_of(const warning::WrongRate& w) {
-  std::string text = fmt::format("{} is {:.5g} times the derivative of the {}.",
-                                 info(w.rate.rate).name, w.rate.found.ratio, info(w.rate.of).name);
-  if (w.wrong_size) text += fmt::format(" {}", advice_on(w));
+std::string text_of(const warning::WrongRate& w, const Names& name) {
+  std::string text = fmt::format("{} is {:.5g} times the derivative of the {}.", name(w.rate.rate),
+                                 w.rate.found.ratio, name(w.rate.of));
+  if (w.wrong_size) text += fmt::format(" {}", advice_on(w, name.joint));
   if (w.rate.found.ratio < 0.0) text += " Their signs differ: use 'sign: -1' for one of them.";
   return text;
 }
 
-std::string text_of(const warning::NoCommand&) {
+std::string text_of(const warning::NoCommand&, const Names&) {
   return "The command is zero throughout: is that the right column?";
 }
 
-std::string text_of(const warning::UnlikelySpeed& w) {
+std::string text_of(const warning::UnlikelySpeed& w, const Names& name) {
   return fmt::format(
-      "The arm reaches {} m/s, but at its largest command, {} V, the axis file gives {} m/s. Check "
-      "the units of the command and of the {}, and K_1, K_2, K_t and r_g.",
-      short_number(w.speed), short_number(w.command), short_number(w.expected), info(w.from).name);
+      "The {} reaches {} {}, but at its largest command, {} V, the axis file gives {} {}. Check "
+      "the "
+      "units of the command and of the {}, and K_1, K_2, K_t and r_g.",
+      words_on(name.joint, "arm"), short_number(w.speed), unit_on(name.joint, "m/s"),
+      short_number(w.command), short_number(w.expected), unit_on(name.joint, "m/s"), name(w.from));
 }
 
-std::string text_of(const warning::Constant& w) {
-  return fmt::format("{} is constant: is that the right column?", info(w.signal).name);
+std::string text_of(const warning::Constant& w, const Names& name) {
+  return fmt::format("{} is constant: is that the right column?", name(w.signal));
 }
 
-std::string text_of(const warning::Stuck& w) {
+std::string text_of(const warning::Stuck& w, const Names& name) {
   return fmt::format(
-      "{} has the same value in {} samples from {} s on, while the arm moves: the sensor is stuck. "
+      "{} has the same value in {} samples from {} s on, while the {} moves: the sensor is stuck. "
       "Trim the recording, or do not fit the signal ('fit: false').",
-      info(w.signal).name, w.samples, short_number(w.at));
+      name(w.signal), w.samples, short_number(w.at), words_on(name.joint, "arm"));
 }
 
-std::string text_of(const warning::Clipped& w) {
+std::string text_of(const warning::Clipped& w, const Names& name) {
   return fmt::format(
       "{} is exactly {} in {} samples: it is clipped at the end of its range. Record with a wider "
       "range, or do not fit the signal ('fit: false').",
-      info(w.signal).name, short_number(w.value, w.signal), w.samples);
+      name(w.signal), name.value(w.value, w.signal), w.samples);
 }
 
-std::string text_of(const warning::Missing& w) {
+std::string text_of(const warning::Missing& w, const Names& name) {
   return fmt::format(
       "{} has no value in {} of {} samples, which are left out; if it was recorded more slowly "
       "than "
       "the rest, that is as it should be.",
-      info(w.signal).name, w.samples, w.of);
+      name(w.signal), w.samples, w.of);
 }
 
-std::string text_of(const warning::Repeated& w) {
+std::string text_of(const warning::Repeated& w, const Names& name) {
   return fmt::format("{}: each value is recorded {} times, by a sample and hold. Set 'hold: {}'.",
-                     info(w.signal).name, w.times, w.times);
+                     name(w.signal), w.times, w.times);
 }
 
-std::string text_of(const warning::Filtered& w) {
+std::string text_of(const warning::Filtered& w, const Names& name) {
   const std::string filter =
       w.average > 0 ? fmt::format(
                           "is a moving average of {} samples: the fit takes that for a part of the "
@@ -159,27 +183,27 @@ std::string text_of(const warning::Filtered& w) {
                           "filter, which the fit takes for a part of the axis. Set 'filter' as the "
                           "drive or recorder has it",
                           round_to_digits(w.corner, 1));
-  return fmt::format("{} {}, or record it unfiltered.", info(w.signal).name, filter);
+  return fmt::format("{} {}, or record it unfiltered.", name(w.signal), filter);
 }
 
-std::string text_of(const warning::UnlikelySigma& w) {
+std::string text_of(const warning::UnlikelySigma& w, const Names& name) {
   return fmt::format(
       "{} scatters by {} from sample to sample, but its sigma is {}. Without a sigma the scatter "
       "is used.",
-      info(w.signal).name, short_number(w.scatter, w.signal), short_number(w.sigma, w.signal));
+      name(w.signal), name.value(w.scatter, w.signal), name.value(w.sigma, w.signal));
 }
 
 }  // namespace
 
-std::string warning_text(const RecordingWarning& warning) {
-  return std::visit([](const auto& w) { return text_of(w); }, warning);
+std::string warning_text(const RecordingWarning& warning, Joint joint) {
+  return std::visit([&](const auto& w) { return text_of(w, Names{joint}); }, warning);
 }
 
 std::vector<std::string> warnings_for(const Job& job, const Recording& recording,
                                       const RecordingCheck& check) {
   std::vector<std::string> texts;
   for (const RecordingWarning& warning : warnings_of(job, recording, check))
-    texts.push_back(warning_text(warning));
+    texts.push_back(warning_text(warning, job.joint()));
   return texts;
 }
 

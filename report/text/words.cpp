@@ -59,10 +59,12 @@ std::string rejection_text(const Rejection& rejection) {
 }
 
 /// What to record where an effect cannot be judged.
-std::string advice_text(const EffectTrial& trial) {
-  const auto effect = effect_named(trial.candidate.name);
-  if (trial.rejection->test != Rejection::Test::power || !effect) return "";
-  return fmt::format("; record {}", kEffectTable[*effect].excitation);
+std::string advice_text(const EffectTrial& trial, Joint joint) {
+  if (trial.rejection->test != Rejection::Test::power || trial.candidate.strengths.empty())
+    return "";
+  const auto effect = quantity_list()[trial.candidate.strengths.front()].effect;
+  if (!effect) return "";
+  return fmt::format("; record {}", words_on(joint, kEffectTable[*effect].excitation));
 }
 
 std::string text_of(const StepMotion& motion) {
@@ -105,9 +107,10 @@ std::string text_of(const PrbsMotion& motion) {
                      std::abs(motion.amplitude), motion.bit);
 }
 
-std::string text_of(const MoveMotion& motion) {
-  return fmt::format("a move of {:.3g} m at {:.3g} m/s and {:.3g} m/s^2", motion.distance,
-                     motion.speed, motion.acceleration);
+std::string text_of(const MoveMotion& motion, Joint joint) {
+  return fmt::format("a move of {:.3g} {} at {:.3g} {} and {:.3g} {}", motion.distance,
+                     unit_on(joint, "m"), motion.speed, unit_on(joint, "m/s"), motion.acceleration,
+                     unit_on(joint, "m/s^2"));
 }
 
 std::string text_of(const RecordedMotion&) { return "a recorded motion"; }
@@ -170,10 +173,10 @@ const char* grade_name(Grade grade) {
   return "";
 }
 
-std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour) {
+std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour, Joint joint) {
   const std::string heading = grade_heading(grade, colour);
   const auto signal = [&] {
-    return fmt::format("the {} of {}", info(grade.signal).name, grade.recording);
+    return fmt::format("the {} of {}", info(grade.signal, joint).name, grade.recording);
   };
   using enum FitGrade::Reason;
   switch (grade.reason) {
@@ -201,15 +204,14 @@ std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour)
                             followed_text(grade.percent, signal())));
     case force:
       return fmt::format(
-          "{}: the force that the model lacks in {} is {:.3g} % of the drive's. Check the units "
-          "and "
+          "{}: the {} that the model lacks in {} is {:.3g} % of the drive's. Check the units and "
           "signs of the columns and what the axis file declares.",
-          heading, grade.recording, grade.percent);
+          heading, words_on(joint, "force"), grade.recording, grade.percent);
     case tracking_only:
       return fmt::format(
           "{} while it tracks recordings: the free-running simulation {}. The parameters describe "
-          "the forces; do not simulate with them for long.",
-          heading, followed_text(grade.percent, signal()));
+          "the {}; do not simulate with them for long.",
+          heading, followed_text(grade.percent, signal()), words_on(joint, "forces"));
     case residual:
     case none:
       break;
@@ -266,9 +268,10 @@ std::string verdict_text(const EffectSelection& selection) {
     case misfit:
       return verdict.at_bound.empty()
                  ? fmt::format(
-                       "The declared model does not fit: of {}, {:.3g} % of the drive force is "
-                       "missing. Nothing can be said about effects yet.",
-                       verdict.recording, verdict.force_percent)
+                       "The declared model does not fit: of {}, {:.3g} % of the {} is missing. "
+                       "Nothing can be said about effects yet.",
+                       verdict.recording, verdict.force_percent,
+                       words_on(selection.result.job.joint(), "drive force"))
                  : fmt::format(
                        "The declared model does not fit: {} is at its bound. Nothing can be said "
                        "about effects yet.",
@@ -284,19 +287,20 @@ std::string verdict_text(const EffectSelection& selection) {
 
 std::string overall_verdict(const RunResult& run_result, bool colour) {
   const FitGrade& grade = run_result.grade;
-  if (!run_result.selection) return grade_text(grade, run_result.fit(), colour);
+  const Joint joint = run_result.job().joint();
+  if (!run_result.selection) return grade_text(grade, run_result.fit(), colour, joint);
   // Both judge the same model by the same residual.
   const bool by_residual =
       grade.reason == FitGrade::Reason::residual || grade.reason == FitGrade::Reason::none;
   return (by_residual ? grade_heading(grade, colour) + "."
-                      : grade_text(grade, run_result.fit(), colour)) +
+                      : grade_text(grade, run_result.fit(), colour, joint)) +
          " " + verdict_text(*run_result.selection);
 }
 
-std::string reason_text(const EffectTrial& trial) {
+std::string reason_text(const EffectTrial& trial, Joint joint) {
   switch (trial.reason) {
     case Reason::failed_test:
-      return rejection_text(trial.rejection.value()) + advice_text(trial);
+      return rejection_text(trial.rejection.value()) + advice_text(trial, joint);
     case Reason::explains_best:
       return fmt::format(
           "explains the residual best: {:.3g} % lower validation error ({:.3g} standard deviations "
@@ -336,8 +340,15 @@ std::string weak_direction_text(const WeakDirection& weak) {
                      fmt::join(changes, ", "));
 }
 
-std::string motion_text(const Motion& motion) {
-  return std::visit([](const auto& m) { return text_of(m); }, motion);
+std::string motion_text(const Motion& motion, Joint joint) {
+  return std::visit(
+      [joint]<class M>(const M& m) {
+        if constexpr (std::is_same_v<M, MoveMotion>)
+          return text_of(m, joint);
+        else
+          return text_of(m);
+      },
+      motion);
 }
 
 std::string gain_shift_text(const GainShift& shift, std::string_view unit) {
@@ -363,14 +374,14 @@ std::string guess_text(const GuessInfluence& guess) {
                      guess.name, guess.elasticity);
 }
 
-std::string discrimination_text(const Discrimination& discrimination) {
+std::string discrimination_text(const Discrimination& discrimination, Joint joint) {
   std::string text = fmt::format("{} and {} explain these recordings equally well; ",
                                  discrimination.chosen, discrimination.rival);
   if (!discrimination.signal) return text + "no motion tried discriminates between them.";
   return text + fmt::format("they differ most in the {} during {}: by {:.2g} times its noise.",
-                            info(*discrimination.signal).name,
+                            info(*discrimination.signal, joint).name,
                             discrimination.experiment
-                                ? motion_text(discrimination.experiment->motion)
+                                ? motion_text(discrimination.experiment->motion, joint)
                                 : "the motion of " + discrimination.recording,
                             discrimination.size);
 }
@@ -387,8 +398,9 @@ std::string input_noise_text(const Job& job) {
   const bool force = drives_by_force(noisiest, job.model);
   return fmt::format(
       "noise of {} in the {}{}",
-      with_unit(fmt::format("{:.3g}", noisiest.command_sigma), force ? "N" : "V"),
-      force ? "drive force" : "command",
+      with_unit(fmt::format("{:.3g}", noisiest.command_sigma),
+                force ? unit_on(job.joint(), "N") : "V"),
+      force ? words_on(job.joint(), "drive force") : "command",
       noisiest.command_noise == NoiseSource::given ? "" : ", estimated from its samples");
 }
 

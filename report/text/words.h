@@ -1,5 +1,5 @@
 // The words for what a run finds: its data and judgements (fit/) as names and sentences.
-// With `colour`, verdicts are green, yellow or red, for a terminal.
+// With `colour`, verdicts are green, yellow or red, for a terminal. The joint is that of the axis.
 #pragma once
 
 #include <string>
@@ -13,7 +13,8 @@ namespace axisfit {
 const char* grade_name(Grade grade);
 
 /// How far a fit can be relied on, and why, one sentence or a few.
-std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour = false);
+std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour = false,
+                       Joint joint = Joint::prismatic);
 
 /// What a search for effects comes to, a sentence or a few.
 std::string verdict_text(const EffectSelection& selection);
@@ -22,13 +23,13 @@ std::string verdict_text(const EffectSelection& selection);
 std::string overall_verdict(const RunResult& run_result, bool colour = false);
 
 /// What the decision on an effect rests on; no sentence, to follow its estimate.
-std::string reason_text(const EffectTrial& trial);
+std::string reason_text(const EffectTrial& trial, Joint joint = Joint::prismatic);
 
 /// What the recordings leave open in that direction, one sentence.
 std::string weak_direction_text(const WeakDirection& weak);
 
 /// "a step of 10 V"
-std::string motion_text(const Motion& motion);
+std::string motion_text(const Motion& motion, Joint joint = Joint::prismatic);
 
 /// "known only as a ratio to K_f, which is a guess"
 std::string guess_text(const GuessInfluence& guess);
@@ -41,9 +42,10 @@ std::string better_gain_text(const FitResult& fit);
 /// "(8.10 +- 0.20) N exp(-|v| / 0.02 m/s)".
 std::string closed_form_text(const ClosedForm& closed_form);
 /// In which motion and signal two undecided effects differ, one sentence.
-std::string discrimination_text(const Discrimination& discrimination);
+std::string discrimination_text(const Discrimination& discrimination,
+                                Joint joint = Joint::prismatic);
 
-/// Whether the input of a recording is a force in newtons.
+/// Whether the input of a recording is a force, and no command.
 bool drives_by_force(const Recording& recording, const Model<double>& model);
 
 /// "noise of 0.02 V in the command, estimated from its samples": the largest of the recordings.

@@ -8,7 +8,7 @@ namespace axisfit {
 template <class T>
 struct AddedMass {
   static constexpr std::string_view name = "added_mass";
-  static constexpr std::string_view meaning = "mass on the arm in addition to M";
+  static constexpr std::string_view meaning = "mass added to the arm";
   static constexpr ActsOn acts_on = ActsOn::inertia;
   static constexpr std::string_view excitation = motions::kAcceleration;
 
@@ -16,8 +16,7 @@ struct AddedMass {
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"dM", "kg", "mass on the arm in addition to M", -1e5, 1e5}.typically(8.0),
-          self.dM);
+    visit(Quantity{"dM", "kg", "mass added to the arm", -1e5, 1e5}.typically(8.0), self.dM);
   }
 
   static std::vector<SearchEntry> search(const SearchScales&) { return {{{"dM"}}}; }

@@ -48,8 +48,9 @@ struct DahlElement {
           self.B_d);
   }
 
-  static std::vector<SearchEntry> search(const SearchScales&) {
-    SearchEntry element{{"F_d"}, {"l_d"}, geometric(1e-5, 1e-2, 4)};
+  static std::vector<SearchEntry> search(const SearchScales& scales) {
+    SearchEntry element{
+        {"F_d"}, {"l_d"}, geometric(0.01 * scales.short_travel, 10.0 * scales.short_travel, 4)};
     if (!kIsFirst) element.extends = DahlElement<T, 1>::name;
     return {element, {.strengths = {"B_d"}, .extends = name}};
   }

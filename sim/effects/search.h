@@ -60,6 +60,7 @@ struct SearchScales {
   std::vector<double> periods = {};                ///< m, of forces along the stroke, best first
   std::vector<double> drive_periods = {};  ///< m, of such in proportion to the drive's force
   double pinion_radius = 0.0;              ///< m, r_g
+  double short_travel = 1e-3;  ///< m, over which surfaces bend, as an order of magnitude
 };
 
 /// The values of an entry's shapes that are tried, one list of them per trial.

@@ -127,6 +127,35 @@ TEST_F(InitJobTest, UnitsAndSignsComeFromNamesAndDerivatives) {
   expect_the_driven_mass(fitted(read()), 1.0 / 60.0);
 }
 
+TEST_F(InitJobTest, AnglesMakeARevoluteJoint) {
+  const std::string axis = folder_.write(
+      "true.yaml",
+      "joint: revolute\ndrive: torque_source\ntransmission: rigid\n"
+      "parameters: {K_f: 0.2 N m/V, J: 24 g m^2, B_a: 0.04 N m s/rad}\n"
+      "effects: {coulomb_friction: {T_c: 0.05 N m}, constant_torque: {T_0: 0.03 N m}}\n"
+      "instruments: {position: {noise: 0.01 deg}, velocity: {noise: 0.2 deg/s}}\n");
+  constexpr double kPi = 3.14159265358979;
+  const Table table = renamed(
+      record_levels(axis, {{2.0, -2.0, 1.0, -1.5, 0.5, -0.8}, 0.3}, 1.8,
+                    {Signal::position, Signal::velocity}, 500.0),
+      {{"t [s]", 1.0}, {"iq [A]", 1.0}, {"angle [deg]", 180.0 / kPi}, {"speed [rpm]", 30.0 / kPi}});
+  folder_.write("a.csv", table);
+  make({"a.csv"});
+  const std::string made = folder_.read("axis.yaml"), job = folder_.read("job.yaml");
+  for (const char* expected : {"joint: revolute\n", "drive: torque_source ",
+                               "\n  J: ", "{T_c: ", "constant_torque: {T_0: ", "K_f: 1 N m/V"})
+    EXPECT_NE(made.find(expected), std::string::npos) << expected << "\n" << made;
+  for (const char* expected : {"position: {column: \"angle [deg]\", unit: deg}",
+                               "velocity: {column: \"speed [rpm]\", unit: rpm}"})
+    EXPECT_NE(job.find(expected), std::string::npos) << expected << "\n" << job;
+  EXPECT_EQ(job.find("1 rad"), std::string::npos) << job;
+  const auto found = fitted(read());
+  EXPECT_NEAR(found.at("J"), 0.12, 0.003);
+  EXPECT_NEAR(found.at("B_a"), 0.2, 0.01);
+  EXPECT_NEAR(found.at("coulomb_friction.T_c"), 0.25, 0.01);
+  EXPECT_NEAR(found.at("constant_torque.T_0"), 0.15, 0.01);
+}
+
 TEST_F(InitJobTest, ARowOfUnitsCountsAsTheNames) {
   folder_.write(
       "plain.csv",

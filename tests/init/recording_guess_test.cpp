@@ -29,7 +29,9 @@ Table swing(double per_second, double per_metre) {
 RecordingGuess guess_of(const Table& table) {
   const TempFolder folder;
   const std::string path = folder.write("a.csv", table);
-  return guess_recording(RecordingFile(path), path);
+  RecordingGuess guess = guess_recording(RecordingFile(path), path);
+  write_units(guess, Joint::prismatic);
+  return guess;
 }
 
 TEST(RecordingGuessTest, APositionHasTheUnitThatItsVelocityTells) {

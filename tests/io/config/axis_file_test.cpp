@@ -97,6 +97,7 @@ void expect_same(const Rig& read, const Rig& written) {
   EXPECT_EQ(read.model.structure.drive, structure.drive);
   EXPECT_EQ(read.model.structure.transmission, structure.transmission);
   EXPECT_EQ(read.model.structure.effects, structure.effects);
+  EXPECT_EQ(read.model.structure.joint, structure.joint);
   Model<double> a = read.model, b = written.model;
   const auto in_a = members(a), in_b = members(b);
   for (const QuantityEntry& entry : quantity_list()) {
@@ -165,13 +166,12 @@ double random_value(std::mt19937_64& generator, double lower, double upper) {
   return lower + (upper - lower) * z;
 }
 
-Rig random_rig(std::mt19937_64& generator, Drive drive, Transmission transmission,
-               const EffectSet& effects) {
+Rig random_rig(std::mt19937_64& generator, const Structure& structure) {
   Rig rig;
-  rig.name = "rig " + effects.to_string();
-  rig.model.structure = {drive, transmission, effects};
+  rig.name = "rig " + structure.effects.to_string();
+  rig.model.structure = structure;
   const auto member = members(rig.model);
-  for (const QuantityEntry& entry : quantity_list())
+  for (const QuantityEntry& entry : quantity_list(structure.joint))
     *member[entry.index] = random_value(generator, entry.quantity.lower, entry.quantity.upper);
   for (double& noise : rig.noise) noise = random_value(generator, 1e-9, 1e6);
   visit_settings(rig.controller, [&](const Quantity& setting, double& value) {
@@ -193,29 +193,52 @@ EffectSet usable_effects(Structure structure) {
 
 TEST_F(AxisFileTest, EveryVariantSurvivesWritingDigitForDigit) {
   std::mt19937_64 generator(7);
-  for (const Drive drive : {Drive::velocity_loop, Drive::current_source, Drive::force_source}) {
-    for (const Transmission transmission : {Transmission::backlash, Transmission::rigid}) {
-      // None, each alone, and all, of those that have a part in the axis.
-      const EffectSet all = usable_effects({drive, transmission, {}});
-      std::vector<EffectSet> sets{{}, all};
-      for (std::size_t i = 0; i < kEffects; ++i)
-        if (all[i]) sets.push_back(EffectSet().set(i));
-      for (const EffectSet& effects : sets) {
-        const Rig rig = random_rig(generator, drive, transmission, effects);
-        const std::string text = format_axis_file(rig, "written by a test");
-        SCOPED_TRACE(text);
-        expect_same(read(text), rig);
-        if (HasFailure()) return;
-      }
+  std::vector<Structure> structures;
+  for (const Joint joint : kJoints)
+    for (const Drive drive : {Drive::velocity_loop, Drive::current_source, Drive::force_source})
+      for (const Transmission transmission : {Transmission::backlash, Transmission::rigid})
+        structures.push_back({drive, transmission, {}, joint});
+  for (Structure structure : structures) {
+    // None, each alone, and all, of those that have a part in the axis.
+    const EffectSet all = usable_effects(structure);
+    std::vector<EffectSet> sets{{}, all};
+    for (std::size_t i = 0; i < kEffects; ++i)
+      if (all[i]) sets.push_back(EffectSet().set(i));
+    for (const EffectSet& effects : sets) {
+      structure.effects = effects;
+      const Rig rig = random_rig(generator, structure);
+      const std::string text = format_axis_file(rig, "written by a test");
+      SCOPED_TRACE(text);
+      expect_same(read(text), rig);
+      if (HasFailure()) return;
     }
   }
+}
+
+TEST_F(AxisFileTest, ReadsARevoluteJointInItsOwnWords) {
+  const Rig rig = read(
+      "joint: revolute\ndrive: torque_source\ntransmission: rigid\n"
+      "parameters: {K_f: 50 N mm/V, J: 24 g m^2, B_a: 50 N mm s/rad, w: 1 deg/s}\n"
+      "effects: {coulomb_friction: {T_c: 0.08 Nm}, constant_torque: {T_0: 0 N m}}\n"
+      "instruments: {drive_torque: {}, position: {noise: 0.1 deg}}\n"
+      "initial: {y0: 90 deg}\n");
+  EXPECT_EQ(rig.model.structure.joint, Joint::revolute);
+  EXPECT_DOUBLE_EQ(value_of(rig, "K_f"), 0.05);
+  EXPECT_DOUBLE_EQ(value_of(rig, "M"), 0.024);
+  EXPECT_DOUBLE_EQ(value_of(rig, "coulomb_friction.F_c"), 0.08);
+  EXPECT_NEAR(value_of(rig, "initial.y0"), 1.5707963267948966, 1e-15);
+  EXPECT_NE(errors("joint: revolute\ndrive: torque_source\ntransmission: rigid\n"
+                   "parameters: {K_f: 1 N/V, M: 24 kg, B_a: 1 N m s/rad}\n"
+                   "effects: {constant_force: {F_0: 0 N}}\n")
+                .find("did you mean 'constant_torque'"),
+            std::string::npos);
 }
 
 TEST_F(AxisFileTest, ValuesOnTheirLimitsSurviveWriting) {
   for (const bool upper : {false, true}) {
     Rig rig;
     for (const QuantityEntry& entry : quantity_list())
-      if (const auto effect = effect_named(entry.group))
+      if (const auto effect = entry.effect)
         if (is_used(entry, rig.model.structure)) rig.model.structure.effects.set(*effect);
     const auto member = members(rig.model);
     for (const QuantityEntry& entry : quantity_list())
@@ -369,7 +392,8 @@ TEST_F(AxisFileTest, EveryMistakeIsNamedWithItsPlace) {
 }
 
 TEST_F(AxisFileTest, AllMistakesAreNamedAtOnce) {
-  EXPECT_EQ(errors(R"(drive: force_source
+  EXPECT_EQ(
+      errors(R"(drive: force_source
 transmission: rigid
 colour: red
 parameters:
@@ -382,15 +406,15 @@ instruments:
   position: {noise: 1 s}
 controller: {limit: 0 V}
 )"),
-            "axis.yaml:3:1: unknown key 'colour'; known keys: name, drive, transmission, effects, "
-            "parameters, initial, guessed, instruments, controller\naxis.yaml:5:3: key 'B_a' is "
-            "missing in "
-            "parameters\naxis.yaml:5:8: K_f: 'N' cannot be converted to 'N/V'; use for example "
-            "'N/V'\naxis.yaml:6:6: M needs a unit, for example '95 kg'\naxis.yaml:7:8: r_g is not "
-            "used by an axis with drive force_source and transmission rigid: remove "
-            "it\naxis.yaml:9:25: F_0 must be a number with a unit, for example '1 N', not "
-            "'up'\naxis.yaml:11:21: noise: 's' cannot be converted to 'm'; use for example "
-            "'m'\naxis.yaml:12:21: limit must lie between 0.001 V and 10000 V, not 0 V\n");
+      "axis.yaml:3:1: unknown key 'colour'; known keys: joint, name, drive, transmission, effects, "
+      "parameters, initial, guessed, instruments, controller\naxis.yaml:5:3: key 'B_a' is "
+      "missing in "
+      "parameters\naxis.yaml:5:8: K_f: 'N' cannot be converted to 'N/V'; use for example "
+      "'N/V'\naxis.yaml:6:6: M needs a unit, for example '95 kg'\naxis.yaml:7:8: r_g is not "
+      "used by an axis with drive force_source and transmission rigid: remove "
+      "it\naxis.yaml:9:25: F_0 must be a number with a unit, for example '1 N', not "
+      "'up'\naxis.yaml:11:21: noise: 's' cannot be converted to 'm'; use for example "
+      "'m'\naxis.yaml:12:21: limit must lie between 0.001 V and 10000 V, not 0 V\n");
 }
 
 TEST_F(AxisFileTest, FilesThatAreNoAxisAreRefused) {

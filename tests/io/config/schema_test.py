@@ -91,6 +91,7 @@ RIGHT = [
     ("axis", "x.yaml", "K_v: 1000 ", "K_v: 100000 % "),
     ("axis", "x.yaml", "H: 0.01 mm", "H: 10 µm"),
     ("motion", "prbs.yaml", "seed: 1", "offset: -1 V"),
+    ("axis", "pendulum.yaml", "J: 24 g m^2", "J: 0.024 kg m^2"),
 ]
 
 WRONG = [
@@ -104,6 +105,11 @@ WRONG = [
     ("axis", "x.yaml", "  M: 146 kg", "  M: 146 kg\n  mass: 146 kg"),
     ("axis", "x.yaml", "period: 5 ms", "perod: 5 ms"),
     ("motion", "step.yaml", "level: 10 V", "level: 10 V\namplitude: 1 V"),
+    # the words of a load that slides
+    ("axis", "pendulum.yaml", "J: 24 g m^2", "M: 24 kg"),
+    ("axis", "pendulum.yaml", "T_c: 0.08 N m", "F_c: 0.08 N"),
+    ("axis", "pendulum.yaml", "torque_source", "force_source"),
+    ("axis", "pendulum.yaml", "joint: revolute", "joint: prismatic"),
     # a required key that is missing
     ("job", "paper.yaml", "axis: ../axes/x.yaml\n", ""),
     ("job", "paper.yaml", "    time: {column: time_s, unit: s}\n", ""),

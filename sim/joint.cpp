@@ -1,0 +1,136 @@
+#include "sim/joint.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <mutex>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace axisfit {
+namespace {
+
+/// A unit on both joints, and how far the range of what has it differs: the smallest servo turns
+/// 1e-9 kg m^2, and a joint may turn many times.
+struct UnitPair {
+  std::string_view prismatic, revolute;
+  double lower = 1.0, upper = 1.0;  ///< factors
+};
+constexpr auto kUnits = std::to_array<UnitPair>({
+    {"m", "rad", 1.0, 1e3},
+    {"m/s", "rad/s", 1.0, 1e3},
+    {"m/s^2", "rad/s^2", 1.0, 1e3},
+    {"kg", "kg m^2", 1e-6, 1.0},
+    {"N", "N m"},
+    {"N/V", "N m/V", 1e-3, 1.0},
+    {"N/m", "N m/rad", 1e-3, 1.0},
+    {"N/m^2", "N m/rad^2"},
+    {"N s/m", "N m s/rad"},
+    {"N s/m^2", "N m s/rad^2"},
+    {"N s^2/m^2", "N m s^2/rad^2"},
+    {"N s^3/m^3", "N m s^3/rad^3"},
+    {"N/m^3", "N m/rad^3"},
+    {"m/N", "rad/(N m)", 1.0, 1e3},
+    {"1/N", "1/(N m)", 1.0, 1e3},
+    {"1/m", "1/rad"},
+    {"V s/m", "V s/rad", 1e-3, 1.0},
+});
+
+using Exchange = std::pair<std::string_view, std::string_view>;
+
+/// Where word by word is not how it is said.
+constexpr auto kPhrases = std::to_array<Exchange>({
+    {"force_droop", "drive_torque_droop"},
+    {"stroke_spring", "joint_spring"},
+    {"stiffness along the stroke", "stiffness of a spring at the joint"},
+    {"pinion radius", "angle of the joint per angle of the motor"},
+    {"motor torque as a force at the rack", "motor torque at the joint"},
+    {"rack and pinion with backlash, stiffness and damping",
+     "gear with backlash, stiffness and damping"},
+});
+constexpr auto kWords = std::to_array<Exchange>({
+    {"force", "torque"},
+    {"forces", "torques"},
+    {"Force", "Torque"},
+    {"mass", "inertia"},
+    {"masses", "inertias"},
+    {"Mass", "Inertia"},
+    {"arm", "joint"},
+    {"Arm", "Joint"},
+    {"newton", "newton metre"},
+    {"metre", "radian"},
+    {"metres", "radians"},
+    {"newtons", "newton metres"},
+    {"stroke", "travel"},
+});
+constexpr auto kSymbols = std::to_array<Exchange>({
+    {"M", "J"},
+    {"dM", "dJ"},
+    {"m_e", "J_e"},
+    {"dF_c", "dT_c"},
+});
+
+template <class Table>
+const Exchange* find(const Table& table, std::string_view text) {
+  const auto found = std::ranges::find(table, text, &Exchange::first);
+  return found == std::end(table) ? nullptr : &*found;
+}
+
+const UnitPair* find_unit(std::string_view unit) {
+  const auto* found = std::ranges::find(kUnits, unit, &UnitPair::prismatic);
+  return found == kUnits.end() ? nullptr : found;
+}
+
+/// The same text for the life of the program.
+std::string_view kept(std::string text) {
+  static std::mutex mutex;
+  static std::set<std::string, std::less<>> texts;
+  const std::lock_guard lock(mutex);
+  return *texts.insert(std::move(text)).first;
+}
+
+}  // namespace
+
+std::string_view unit_on(Joint joint, std::string_view unit) {
+  const UnitPair* pair = joint == Joint::revolute ? find_unit(unit) : nullptr;
+  return pair == nullptr ? unit : pair->revolute;
+}
+
+std::string_view words_on(Joint joint, std::string_view text) {
+  if (joint == Joint::prismatic) return text;
+  if (const Exchange* whole = find(kPhrases, text)) return whole->second;
+  const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  std::string said;
+  for (auto at = text.begin(); at != text.end();) {
+    const auto end = is_letter(*at) ? std::find_if_not(at, text.end(), is_letter) : at + 1;
+    const std::string_view word(at, end);
+    const Exchange* other = find(kWords, word);
+    said += other == nullptr ? word : other->second;
+    at = end;
+  }
+  return kept(std::move(said));
+}
+
+Quantity quantity_on(Joint joint, const Quantity& quantity) {
+  if (joint == Joint::prismatic) return quantity;
+  Quantity turned = quantity;
+  turned.meaning = words_on(joint, quantity.meaning);
+  if (const Exchange* symbol = find(kSymbols, quantity.symbol))
+    turned.symbol = symbol->second;
+  else if (quantity.symbol.starts_with("F_"))
+    turned.symbol = kept("T_" + std::string(quantity.symbol.substr(2)));
+  if (quantity.symbol == "r_g") {
+    turned.unit = "1";  // of angles
+  } else if (const UnitPair* unit = find_unit(quantity.unit)) {
+    turned.unit = unit->revolute;
+    if (quantity.lower > 0.0)
+      turned.lower *= unit->lower;
+    else
+      turned.lower *= unit->upper;
+    turned.upper *= unit->upper;
+  }
+  return turned;
+}
+
+}  // namespace axisfit
