@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <ranges>
 #include <stdexcept>
 #include <tuple>
@@ -42,10 +43,13 @@ bool never_changes(const Values& values) {
 /// A voltage that hardly changes drives nothing: it is that of the supply.
 bool is_supply(Kind kind, const Values& values) {
   if (kind != Kind::command && kind != Kind::motor_voltage) return false;
-  const auto [least, most] = std::ranges::minmax(values);
-  constexpr double kPart = 0.3;
-  return most > least && least * most > 0.0 &&
-         most - least < kPart * std::min(std::abs(least), std::abs(most));
+  if (never_changes(values)) return false;  // as that of a step
+  const auto n = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double square = 0.0;
+  for (const double x : values) square += (x - mean) * (x - mean) / n;
+  constexpr double kPart = 0.1;
+  return std::sqrt(square) < kPart * std::abs(mean);
 }
 
 /// What may be of one value throughout, as that of a step or of a free run.
