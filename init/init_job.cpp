@@ -436,12 +436,22 @@ class Initialiser {
     return values;
   }
 
-  static std::optional<ForceBalance> balance_of(const Source& source) {
+  /// With gravity where that leaves clearly less of the force unbalanced.
+  std::optional<ForceBalance> balance_of(const Source& source) const {
+    constexpr double kLeft = 0.6;
+    const auto left = [](const ForceBalance& b) { return 1.0 - b.correlation * b.correlation; };
+    auto plain = balance_of(source, false);
+    if (joint() != Joint::revolute) return plain;
+    const auto with = balance_of(source, true);
+    return with && (!plain || left(*with) < kLeft * left(*plain)) ? with : plain;
+  }
+
+  static std::optional<ForceBalance> balance_of(const Source& source, bool with_gravity) {
     const GuessedColumn *position = source.guess.find(Kind::position),
                         *velocity = source.guess.find(Kind::velocity);
     const std::vector<double> none;
     return force_balance(source.guess.time.values, position ? position->values : none,
-                         velocity ? velocity->values : none, driving(source));
+                         velocity ? velocity->values : none, driving(source), with_gravity);
   }
 
   /// The axis file that is missing.
@@ -468,6 +478,7 @@ class Initialiser {
     seen.balance = balance_of(first);
     seen.gain = gain_;
     seen.joint = joint();
+    seen.has_gravity = seen.balance && seen.balance->gravity_sine != 0.0;
     starter_ = mass_starter(first.file, seen);
     structure_ = starter_->structure;
     if (starter_->gain_guessed)

@@ -80,6 +80,7 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
   const auto quantity = [&](const char* name) -> const Quantity& {
     return quantity_list(seen.joint)[find_quantity(name)->index].quantity;
   };
+  if (sound && seen.has_gravity) starter.structure.effects.set(*effect_named("pendulum_gravity"));
   const double most = starter.largest_force =
       std::min(round_to_digits(input * gain, 2), quantity("constant_force.F_0").upper);
   const auto within = [](double value, double lower, double upper) {
@@ -114,6 +115,11 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
       initial("M", balance.mass * gain), initial("B_a", viscous),
       force("coulomb_friction.F_c", std::max(balance.coulomb * gain, 0.01 * most), 0.0),
       say("constant_force"), force("constant_force.F_0", -balance.constant * gain, -most));
+  if (sound && seen.has_gravity)
+    starter.text += fmt::format(
+        "  pendulum_gravity: {{{}, {}}}   # weight times lever; where it hangs is found\n",
+        force("pendulum_gravity.G_s", balance.gravity_sine * gain, -most),
+        force("pendulum_gravity.G_c", balance.gravity_cosine * gain, -most));
   return starter;
 }
 

@@ -33,11 +33,13 @@ struct DrivenMass {
   std::optional<ForceBalance> balance;
   std::optional<double> gain{};    ///< N/V, of an input that is no force, where the user knows it
   Joint joint = Joint::prismatic;  ///< a revolute one has an inertia that a torque turns
+  bool has_gravity = false;        ///< the balance has it
 };
 
 /// A force source that moves one mass with viscous and Coulomb friction and a constant force. Where
 /// the input is no force and its gain not known, that is the power of ten, at least 1 N/V, that
-/// makes the mass 0.1 kg or more: motion does not show the gain. On a revolute joint it is 1 N m/V.
+/// makes the mass 0.1 kg or more: motion does not show the gain. On a revolute joint it is 1 N m/V,
+/// and the axis has the gravity that the balance has.
 StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen);
 
 }  // namespace axisfit

@@ -27,10 +27,10 @@ class InitJobTest : public ::testing::Test {
  protected:
   /// Makes a job in the folder.
   InitialJob make(std::vector<std::string> recordings, const std::string& axis = {},
-                  std::optional<double> gain = {}) {
+                  std::optional<double> gain = {}, const std::vector<ColumnAnswer>& answers = {}) {
     for (std::string& r : recordings)
       if (!fs::path(r).is_absolute()) r = folder_.path(r);
-    InitialJob made = initial_job(recordings, axis, folder_.path(), gain);
+    InitialJob made = initial_job(recordings, axis, folder_.path(), gain, answers);
     for (const auto& [name, contents] : made.files) folder_.write(name, contents);
     return made;
   }
@@ -513,6 +513,30 @@ TEST_F(InitJobTest, TheEmpsAxisIsFoundFromItsFilesAlone) {
   EXPECT_NEAR(kGain * found.at("B_a"), 203.5034, 0.03 * 203.5034);
   EXPECT_NEAR(kGain * found.at("coulomb_friction.F_c"), 20.3935, 0.03 * 20.3935);
   EXPECT_NEAR(kGain * found.at("constant_force.F_0"), 3.1648, 0.10 * 3.1648);
+}
+
+// A hobby servo: whole numbers without a sign for its duty, a supply beside them, no units, and a
+// weight that no column tells of.
+TEST_F(InitJobTest, AServoWithAPendulumIsReadFromItsFileAlone) {
+  const char* given = std::getenv("AXISFIT_BAM");
+  const fs::path data =
+      given != nullptr && *given != '\0' ? given : AXISFIT_CONFIGS "/../../shared/data/bam";
+  if (!fs::exists(data / "sin_sin_8.csv"))
+    GTEST_SKIP() << "There are no recordings of the servo in " << data
+                 << ". To run this test, name their folder in the environment variable "
+                    "AXISFIT_BAM.";
+  constexpr double kGain = 0.38670 / 4.0171 * 7.3 / 885.0;  // N m per count, published (model m1)
+  make({(data / "sin_sin_8.csv").string()}, {}, kGain, {read_answer("position=position:rad")});
+  const std::string job = folder_.read("job.yaml");
+  EXPECT_NE(job.find("command: {column: load, unit: V, signed_bits: 16}"), std::string::npos)
+      << job;
+  EXPECT_NE(job.find("velocity: {column: speed, unit: rad/s}"), std::string::npos) << job;
+  Model<double> start = read().job.model;
+  EXPECT_EQ(start.structure.joint, Joint::revolute);
+  // m l^2 of the pendulum and the published armature; its weight at its lever.
+  EXPECT_NEAR(start.axis.M, 0.0049 + 0.0018142, 0.0007);
+  EXPECT_NEAR(*members(start)[find_quantity("pendulum_gravity.G_s")->index], 0.49 * 9.81 * 0.1,
+              0.05);
 }
 
 }  // namespace
