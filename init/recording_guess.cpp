@@ -163,6 +163,7 @@ class Guesser {
     std::optional<ColumnGuess> guess;
     const ColumnAnswer* answer = nullptr;
     bool usable = false;
+    Overflow overflow{};
   };
 
   static bool usable(const Column& column) {
@@ -195,6 +196,8 @@ class Guesser {
                   "column '{}', which --column names, {}", heading.reference,
                   column.obstacle.empty() ? "has fewer than 10 finite values" : column.obstacle));
       }
+      if (heading.guess && heading.usable)
+        heading.overflow = overflow_of(column.values, heading.guess->kind, heading.guess->unit);
       headings_.push_back(std::move(heading));
     }
   }
@@ -277,13 +280,8 @@ class Guesser {
     const Values& times = file_.columns()[clock].values;
     if (times.size() != column.values.size() || !increases(without_gaps(times))) return {};
     Values values = column.values;
-    overflow_in(c).undo(values);
+    headings_[c].overflow.undo(values);
     return interpolated(times, values, time_.raw);
-  }
-
-  Overflow overflow_in(std::size_t c) const {
-    const auto& guess = headings_[c].guess;
-    return guess ? overflow_of(file_.columns()[c].values, guess->kind, guess->unit) : Overflow();
   }
 
   /// What name or answer say of unit and factor.
@@ -353,7 +351,7 @@ class Guesser {
     column.column.kind = key.first;
     column.column.is_setpoint = key.second;
     column.raw = std::move(values);
-    column.column.overflow = overflow_in(c);
+    column.column.overflow = headings_[c].overflow;
     if (const Overflow& of = column.column.overflow; of.signed_bits > 0)
       column.guess(fmt::format("its values at the top of {} bits are taken as those below zero",
                                of.signed_bits));

@@ -303,18 +303,23 @@ class EffectSelector {
     if (!chain_.has_elsewhere()) report_progress("do the recordings to validate tell the same?");
     return chain_.elsewhere();
   }
-  bool is_alike_elsewhere(const Candidate& candidate) {
+  /// What the recordings to validate, fitted by themselves, say of an effect; nothing where they
+  /// cannot be.
+  std::optional<Replication> found_elsewhere(const Candidate& candidate) {
     const std::optional<FitResult>& other = elsewhere();
-    return other && replication(current().job, current().fit, *other, candidate).is_alike;
+    if (!other) return std::nullopt;
+    return replication(current().job, current().fit, *other, candidate);
+  }
+  bool is_alike_elsewhere(const Candidate& candidate) {
+    const auto found = found_elsewhere(candidate);
+    return found && found->is_alike;
   }
 
   /// What the recordings to validate, fitted by themselves, say of what was accepted.
   void record_replications() {
-    if (chain_.accepted().empty()) return;
-    if (const auto& other = elsewhere())
-      for (const AcceptedEffect& a : chain_.accepted())
-        if (EffectTrial* trial = trials_.find(a.candidate))
-          trial->replication = replication(current().job, current().fit, *other, a.candidate);
+    for (const AcceptedEffect& a : chain_.accepted())
+      if (EffectTrial* trial = trials_.find(a.candidate))
+        if (auto found = found_elsewhere(a.candidate)) trial->replication = std::move(found);
   }
 
   /// Of a model with which most of the error remains, no part is named but what other recordings
@@ -343,18 +348,13 @@ class EffectSelector {
   void drop_other_periods() {
     for (std::size_t a = 0; a < chain_.accepted().size();) {
       const Candidate candidate = chain_.accepted()[a].candidate;
-      const std::optional<FitResult>* other = candidate.has_phase ? &elsewhere() : nullptr;
-      if (other == nullptr || !*other) {
-        ++a;
-        continue;
-      }
-      const Replication found = replication(current().job, current().fit, **other, candidate);
-      if (!found.has_other_period) {
+      const auto found = candidate.has_phase ? found_elsewhere(candidate) : std::nullopt;
+      if (!found || !found->has_other_period) {
         ++a;
         continue;
       }
       trials_.fail(candidate,
-                   {.test = Rejection::Test::period, .found = found.parameters.back().value});
+                   {.test = Rejection::Test::period, .found = found->parameters.back().value});
       take_out(a, chain_.without(a));
     }
   }

@@ -55,11 +55,8 @@ void correct_overflow(ConfigMap& map, const RecordingFile& file, std::vector<dou
   double period = 0.0;
   const auto given = map.read("wraps_after", period);
   if (!given || period == 0.0) return;
-  const auto first = std::ranges::find_if(values, [](double x) { return !std::isnan(x); });
-  if (first == values.end()) return;
-  const double least = *std::min_element(first, values.end(), [](double a, double b) {
-    return a < b || (std::isnan(b) && !std::isnan(a));
-  });
+  double least = INFINITY;
+  for (const double x : values) least = std::fmin(least, x);  // passes over NaN
   constexpr double kRounding = 1e-6;
   if (!is_beyond(*given, -INFINITY, least + period * (1.0 + kRounding),
                  "is more than wraps_after beyond the least value: correct or remove it"))
