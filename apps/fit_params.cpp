@@ -140,7 +140,7 @@ void start_from(const std::string& axis_file, Job& job) {
       throw std::runtime_error(fmt::format(
           "--from {}: this axis has the effect {}, which the job has not: run the next-job.yaml "
           "beside it, or name the effect in the job",
-          axis_file, words_on(rig->model.structure.joint, kEffectTable[effect].name)));
+          axis_file, words_on(vocabulary_of(rig->model.structure), kEffectTable[effect].name)));
   const std::vector<double*> values = members(rig->model);
   for (FreeParameter& p : job.free)
     if (!p.recording && is_used(quantity_list()[p.quantity], rig->model.structure))
@@ -251,13 +251,13 @@ Files files_of(const Arguments& arguments, const JobFile& file, const RunResult&
                       arguments.output, kAxisFile.name,
                       fmt::format("Goes on from {}, with what was accepted there: the axis is {}.",
                                   origin, kAxisFile.name)));
-  const Joint joint = run_result.job().joint();
+  const Vocabulary vocabulary = run_result.job().vocabulary();
   if (const Experiment* next = next_experiment(run_result)) {
-    files.emplace_back(
-        kMotionFile.name,
-        format_motion_file(
-            {next->motion, next->duration},
-            fmt::format("Suggested by {}:\n{}.", origin, motion_text(next->motion, joint)), joint));
+    files.emplace_back(kMotionFile.name,
+                       format_motion_file({next->motion, next->duration},
+                                          fmt::format("Suggested by {}:\n{}.", origin,
+                                                      motion_text(next->motion, vocabulary)),
+                                          vocabulary));
   }
   return files;
 }

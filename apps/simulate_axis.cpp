@@ -88,11 +88,11 @@ void run_command(Arguments arguments) {
   options.duration = motion.duration;
   options.noise = !arguments.exact;
   for (const std::string& name : arguments.signals) {
-    const Joint joint = rig->model.structure.joint;
-    const auto found = signal_by_name(name, joint);
+    const Vocabulary vocabulary = vocabulary_of(rig->model.structure);
+    const auto found = signal_by_name(name, vocabulary);
     if (!found)
       throw std::runtime_error(fmt::format("--signals: on a {} joint there is no {}",
-                                           joint_names()[static_cast<std::size_t>(joint)], name));
+                                           joint_name(vocabulary.joint), name));
     const Signal signal = *found;
     if (std::ranges::find(options.signals, signal) != options.signals.end())
       throw std::runtime_error(fmt::format("--signals: {} is named twice", name));

@@ -103,15 +103,14 @@ struct Input {
   const char* key = "command";
   Kind kind = Kind::command;
   bool is_setpoint = false;
-  std::string unit = "V";
   double gain = 1.0;  ///< by which the column's values are multiplied besides
 };
 
 // What a force source may be driven by, the nearest to a force first.
 const std::vector<Input> kForceInputs{
-    {"drive_force", Kind::force, false, "N"}, {"drive_force", Kind::force, true, "N"},
-    {"command", Kind::current, false},        {"command", Kind::current, true},
-    {"command", Kind::command, false},        {"command", Kind::motor_voltage, false},
+    {"drive_force", Kind::force, false},   {"drive_force", Kind::force, true},
+    {"command", Kind::current, false},     {"command", Kind::current, true},
+    {"command", Kind::command, false},     {"command", Kind::motor_voltage, false},
     {"command", Kind::set_velocity, false}};
 
 /// What a velocity loop is driven by. A position that is asked for counts only where the controller
@@ -120,9 +119,9 @@ std::optional<Input> velocity_input(const RecordingGuess& recording, bool known_
   for (const Kind kind : {Kind::set_velocity, Kind::command})
     if (recording.find(kind)) return Input{"command", kind};
   if (recording.find(Kind::velocity, true))
-    return Input{"command", Kind::velocity, true, "V", ControllerSettings().gain};
+    return Input{"command", Kind::velocity, true, ControllerSettings().gain};
   if (known_controller && recording.find(Kind::position, true) && recording.find(Kind::position))
-    return Input{"position_reference", Kind::position, true, "m"};
+    return Input{"position_reference", Kind::position, true};
   return std::nullopt;
 }
 
@@ -177,7 +176,7 @@ class Initialiser {
       diagnostics.throw_if_any();
       structure_ = rig->model.structure;
     }
-    for (Source& source : sources_) write_units(source.guess, joint());
+    for (Source& source : sources_) write_units(source.guess, vocabulary());
     choose_inputs();
     drop_recordings_without_input();
     correct_signs();
@@ -360,12 +359,14 @@ class Initialiser {
     if (!loop && is_of_angles(first)) structure_.joint = Joint::revolute;
   }
 
-  Joint joint() const { return structure_.joint; }
+  Vocabulary vocabulary() const { return vocabulary_of(structure_); }
   /// As the job calls it.
   const QuantityEntry& quantity(std::string_view name) const {
-    return quantity_list(joint())[find_quantity(name)->index];
+    return quantity_list(vocabulary())[find_quantity(name)->index];
   }
-  std::string say(std::string_view text) const { return std::string(words_on(joint(), text)); }
+  std::string say(std::string_view text) const { return std::string(words_on(vocabulary(), text)); }
+
+  std::string_view command_unit() const { return unit_on(vocabulary(), kCommandUnit); }
 
   bool force_source() const { return capabilities(structure_).is_force_driven; }
 
@@ -404,11 +405,26 @@ class Initialiser {
       if (chosen != kForceInputs.end() && has_input(source.guess, *chosen)) {
         source.input = *chosen;
         // A part of a rating is a force only once K_f says how large.
-        if (input_of(source).of_rating) {
-          source.input->key = "command";
-          source.input->unit = "V";
-        }
+        if (input_of(source).of_rating) source.input->key = "command";
       }
+    if (axis_.empty() && chosen != kForceInputs.end() && sources_.front().input) {
+      if (input_of(sources_.front()).of_rating)
+        structure_.drive = Drive::rated_force;
+      else if (chosen->kind == Kind::current)
+        structure_.drive = Drive::motor_current;
+    }
+    for (Source& source : sources_) write_rating(source);
+  }
+
+  /// The job takes a part of a rating as it is, where the drive does.
+  void write_rating(Source& source) const {
+    if (!source.input || !input_of(source).of_rating || command_unit() != "1") return;
+    GuessedColumn& input = *source.guess.find(source.input->kind, source.input->is_setpoint);
+    constexpr double kPercent = 0.01;
+    input.unit = "%";
+    for (double& x : input.values) x *= kPercent;
+    std::erase_if(input.reasons, [](const std::string& r) { return r.starts_with(kInPercent); });
+    input.guessed = false;
   }
 
   void drop_recordings_without_input() {
@@ -441,7 +457,7 @@ class Initialiser {
     constexpr double kLeft = 0.6;
     const auto left = [](const ForceBalance& b) { return 1.0 - b.correlation * b.correlation; };
     auto plain = balance_of(source, false);
-    if (joint() != Joint::revolute) return plain;
+    if (vocabulary().joint != Joint::revolute) return plain;
     const auto with = balance_of(source, true);
     return with && (!plain || left(*with) < kLeft * left(*plain)) ? with : plain;
   }
@@ -470,14 +486,12 @@ class Initialiser {
     const GuessedColumn* velocity = first.guess.find(Kind::velocity);
     DrivenMass seen;
     seen.column = input_of(first).column;
-    seen.input = drives_in_newtons(first)             ? DrivenMass::Input::force
-                 : first.input->kind == Kind::current ? DrivenMass::Input::current
-                                                      : DrivenMass::Input::unknown;
+    seen.is_force = drives_in_newtons(first);
     seen.largest_input = largest(driving(first));
     if (velocity) seen.largest_speed = largest(velocity->values);
     seen.balance = balance_of(first);
     seen.gain = gain_;
-    seen.joint = joint();
+    seen.structure = structure_;
     seen.has_gravity = seen.balance && seen.balance->gravity_sine != 0.0;
     starter_ = mass_starter(first.file, seen);
     structure_ = starter_->structure;
@@ -579,7 +593,7 @@ class Initialiser {
     for (const std::string& name : kCandidates) {
       if (name == "F_s" && force_source()) continue;
       const Quantity& q = quantity(name).quantity;
-      const double least = joint() == Joint::prismatic ? 1e-3 : 1e-6;
+      const double least = vocabulary().joint == Joint::prismatic ? 1e-3 : 1e-6;
       add(name, any_gain ? bounds(std::max(q.lower, least), q.upper, q.unit) : "{}");
     }
     for (const QuantityEntry& entry : quantity_list()) {
@@ -598,7 +612,7 @@ class Initialiser {
     const bool offset = position && !force_source() && !is_rounded_away(*position, first);
     if (const double resolution = offset ? resolution_of(position->values) : 0.0; resolution > 0.0)
       add("position.bias", bounds(-round_to_digits(resolution, 2), round_to_digits(resolution, 2),
-                                  unit_on(joint(), "m")));
+                                  unit_on(vocabulary(), "m")));
     if (!force_source() || std::ranges::any_of(sources_, drives_in_newtons)) return;
     add("K_f");
     if (starter_) candidates_.back().reason_not_free = kOnlyRatios;
@@ -694,7 +708,8 @@ class Initialiser {
         ++index;
       }
       if (last == nullptr) return;
-      const std::string_view need = excitation_needed(*find_quantity(last->name, joint()), joint());
+      const std::string_view need =
+          excitation_needed(*find_quantity(last->name, vocabulary()), vocabulary());
       last->reason_not_free =
           unseen ? "no recorded signal depends on it" : "these recordings do not determine it";
       if (!need.empty()) last->reason_not_free += fmt::format("; it needs {}", need);
@@ -779,7 +794,7 @@ class Initialiser {
         written.reasons.push_back(
             fmt::format("compared only: its resolution of {:.3g} {} is not noise, and the velocity "
                         "carries the same information",
-                        resolution_of(c.values), unit_on(joint(), "m")));
+                        resolution_of(c.values), unit_on(vocabulary(), "m")));
       text += reasons_text(written, 6);
       text +=
           fmt::format("      {}: {}\n", name_of(c.kind),
@@ -800,16 +815,17 @@ class Initialiser {
     GuessedColumn written = input;
     written.factor *= source.input->gain;
     std::string unit = input.unit;
-    if (source.input->unit == "V" && si_unit(input.kind) != "V") {
-      // The job's command is in volts, whatever the drive takes.
-      const auto factor = unit_factor(unit, unit_on(joint(), si_unit(input.kind)));
+    const std::string_view taken = command_unit();
+    if (source.input->key == std::string_view("command") &&
+        !std::holds_alternative<double>(unit_factor(unit, taken))) {
+      // The job's command is in the unit of the drive, whatever was recorded.
+      const auto factor = unit_factor(unit, unit_on(vocabulary(), si_unit(input.kind)));
       written.factor *= std::get<double>(factor);
-      unit = "V";
+      unit = taken;
       if (source.input->kind != Kind::velocity)
-        written.reasons.push_back(
-            fmt::format("the command of a {} source; a job treats it as V, whatever its unit, and "
-                        "K_f as {}",
-                        say("force"), quantity("K_f").quantity.unit));
+        written.reasons.push_back(fmt::format(
+            "the command of the axis; the job treats it as {}, whatever its unit, and K_f as {}",
+            taken, quantity("K_f").quantity.unit));
     }
     std::pair<std::string, std::string> hold;
     const bool in_newtons = drives_in_newtons(source),
@@ -849,7 +865,7 @@ class Initialiser {
       return "    initial_state: data   # from the first samples: the axis is already moving\n";
     if (position == nullptr || position->values.front() == 0.0) return {};
     return fmt::format("    set: {{initial.y0: {}}}   # it starts at rest at this position\n",
-                       with_unit(position->values.front(), unit_on(joint(), "m")));
+                       with_unit(position->values.front(), unit_on(vocabulary(), "m")));
   }
 
   /// Whether the velocity says less than the position, over the time in which an observer follows
@@ -866,7 +882,7 @@ class Initialiser {
     return noise_from_differences(velocity->values) > kClear * kSlope * noise * rate;
   }
 
-  std::string_view name_of(Kind kind) const { return info(*signal_of(kind), joint()).name; }
+  std::string_view name_of(Kind kind) const { return info(*signal_of(kind), vocabulary()).name; }
 
   std::string fit_text() const {
     // A mass that a force drives is an open integral: free running it drifts away from the

@@ -601,9 +601,9 @@ class Guesser {
     } else if (is_part_of_rating(unit->text) && column.column.kind != Kind::command) {
       column.column.of_rating = true;
       remark = fmt::format(
-          "in per cent of the rated {}, taken as {} here: multiply the factor "
+          "{} {}, taken as {} here: multiply the factor "
           "by a hundredth of the rating",
-          column.column.kind == Kind::force ? "torque or force" : "current",
+          kInPercent, column.column.kind == Kind::force ? "torque or force" : "current",
           si_unit(column.column.kind));
     } else if (column.column.kind == Kind::force)
       remark =
@@ -755,9 +755,9 @@ bool is_of_angles(const RecordingGuess& recording) {
   return any;
 }
 
-void write_units(RecordingGuess& recording, Joint joint) {
+void write_units(RecordingGuess& recording, Vocabulary vocabulary) {
   const auto write = [&](GuessedColumn& column) {
-    if (joint == Joint::revolute) write_turning_units(column);
+    if (vocabulary.joint == Joint::revolute) write_turning_units(column);
     if (column.remark.empty()) return;
     column.reasons.push_back(std::exchange(column.remark, {}));
     column.guessed = true;

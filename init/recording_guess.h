@@ -13,6 +13,9 @@
 
 namespace axisfit {
 
+/// How the remark on a column that is part of a rating begins.
+inline constexpr std::string_view kInPercent = "in per cent of the rated";
+
 /// A column with what a job would say of it.
 struct GuessedColumn {
   std::string column;  ///< its name, or its number
@@ -79,6 +82,6 @@ bool is_of_angles(const RecordingGuess& recording);
 
 /// Writes the units as a job for an axis with that joint takes them, and makes reasons of the
 /// remarks that remain.
-void write_units(RecordingGuess& recording, Joint joint);
+void write_units(RecordingGuess& recording, Vocabulary vocabulary);
 
 }  // namespace axisfit

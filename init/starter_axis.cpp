@@ -4,11 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/plain_text.h"
 #include "base/rounding.h"
 #include "base/units.h"
 #include "base/version.h"
+#include "io/config/axis_file.h"
 #include "io/config/yaml_text.h"
 
 namespace axisfit {
@@ -25,22 +27,31 @@ std::string origin(const std::string& recording) {
 
 /// What stands above K_f.
 std::string gain_comment(const DrivenMass& seen) {
-  if (seen.input == DrivenMass::Input::force)
-    return comment("Not used where the recordings contain the force itself.", 2);
-  const bool current = seen.input == DrivenMass::Input::current;
-  if (seen.gain) return comment(fmt::format("As given, per unit of {}.", seen.column), 2);
-  const bool turns = seen.joint == Joint::revolute;
-  const auto say = [&](const char* text) { return words_on(seen.joint, text); };
+  if (seen.is_force) return comment("Not used where the recordings contain the force itself.", 2);
+  const Vocabulary vocabulary = vocabulary_of(seen.structure);
+  const bool turns = vocabulary.joint == Joint::revolute;
+  const auto say = [&](const char* text) { return words_on(vocabulary, text); };
+  const auto [per, is] = [&]() -> std::pair<const char*, std::string_view> {
+    switch (vocabulary.command) {
+      case Command::share_of_rated:
+        return {"at 100 %", turns
+                                ? "the rated torque, times the gear ratio if the joint has a gear,"
+                                : "the rated force, or rated torque / pinion radius,"};
+      case Command::current:
+        return {"per ampere",
+                turns ? "the torque constant, times the gear ratio if the joint has a gear,"
+                      : "torque constant / pinion radius, or 2 pi * torque constant / screw lead,"};
+      case Command::voltage:
+        break;
+    }
+    return {"per volt (or whatever its unit is)", "the drive gain"};
+  }();
+  if (seen.gain) return comment(fmt::format("As given, {} of {}.", per, seen.column), 2);
   return comment(
-      fmt::format("{}{} per {} of {}. A motion shows only the ratios of {} and friction to it, so "
+      fmt::format("{}{} {} of {}. A motion shows only the ratios of {} and friction to it, so "
                   "it is not fitted: put {} here, and {} will be correct. "
                   "Scale their initial values likewise, so that --check is correct too.",
-                  kGuessed, say("newtons"), current ? "ampere" : "volt (or whatever its unit is)",
-                  seen.column, say("mass"),
-                  !current ? "the drive gain"
-                  : turns  ? "the torque constant, times the gear ratio if the joint has a gear,"
-                           : "torque constant / pinion radius, or 2 pi * torque constant / screw "
-                             "lead,",
+                  kGuessed, say("newtons"), per, seen.column, say("mass"), is,
                   turns ? "J, B_a, T_c and T_0" : "M, B_a, F_c and F_0"),
       2);
 }
@@ -64,21 +75,22 @@ StarterAxis velocity_loop_starter(const std::string& recording) {
 
 StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
   const bool sound = seen.balance && seen.balance->mass > 0.0 && seen.balance->correlation > 0.3;
-  const bool turns = seen.joint == Joint::revolute;
+  const Vocabulary vocabulary = vocabulary_of(seen.structure);
+  const bool turns = vocabulary.joint == Joint::revolute;
   const ForceBalance balance = sound ? *seen.balance : ForceBalance{.mass = turns ? 0.01 : 1.0};
-  const bool gain_guessed = seen.input != DrivenMass::Input::force && !seen.gain;
+  const bool gain_guessed = !seen.is_force && !seen.gain;
   double gain = seen.gain.value_or(1.0);
   if (gain_guessed && !turns)
     while (balance.mass * gain < 0.1 && gain < 1e6) gain *= 10.0;
   const double input = seen.largest_input > 0.0 ? seen.largest_input : 1.0;
 
   StarterAxis starter;
-  starter.structure = {Drive::force_source, Transmission::rigid, {}, seen.joint};
+  starter.structure = seen.structure;
   starter.gain_guessed = gain_guessed;
   for (const char* effect : {"coulomb_friction", "constant_force"})
     starter.structure.effects.set(*effect_named(effect));
   const auto quantity = [&](const char* name) -> const Quantity& {
-    return quantity_list(seen.joint)[find_quantity(name)->index].quantity;
+    return quantity_list(vocabulary)[find_quantity(name)->index].quantity;
   };
   if (sound && seen.has_gravity) starter.structure.effects.set(*effect_named("pendulum_gravity"));
   const double most = starter.largest_force =
@@ -95,7 +107,7 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
     const Quantity& q = quantity(name);
     return fmt::format("{}: {}", q.symbol, with_unit(within(value, lower, most), q.unit));
   };
-  const auto say = [&](const char* text) { return words_on(seen.joint, text); };
+  const auto say = [&](const char* text) { return words_on(vocabulary, text); };
   // A fit on a logarithmic scale must not start at zero.
   const double viscous = balance.viscous > 0.0 ? balance.viscous * gain
                                                : 0.1 * most / std::max(seen.largest_speed, 1e-3);
@@ -107,7 +119,7 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
       "{}\n  {}\neffects:   # initial values, as above\n  coulomb_friction: {{{}}}\n  {}: {{{}}}   "
       "# gravity, or an offset of the drive\n",
       origin(recording), say("mass"), say("force"), turns ? "joint: revolute\n" : "",
-      say("force_source"), sanitized(seen.column), say("arm"),
+      drive_name(seen.structure.drive, vocabulary.joint), sanitized(seen.column), say("arm"),
       gain_guessed ? "guessed: [K_f]   # delete this line when it is that of a data sheet\n" : "",
       gain_comment(seen), with_unit(gain, quantity("K_f").unit),
       sound ? "Fitted by the job; initial values from an impulse balance."

@@ -25,15 +25,14 @@ StarterAxis velocity_loop_starter(const std::string& recording);
 
 /// What a recording shows of a mass that a force moves.
 struct DrivenMass {
-  enum class Input { force, current, unknown };
-  std::string column;  ///< that drives it
-  Input input = Input::unknown;
+  std::string column;          ///< that drives it
+  Structure structure;         ///< by force, rigid
+  bool is_force = false;       ///< the column is the force itself
   double largest_input = 0.0;  ///< either way
   double largest_speed = 1.0;  ///< m/s
   std::optional<ForceBalance> balance;
-  std::optional<double> gain{};    ///< N/V, of an input that is no force, where the user knows it
-  Joint joint = Joint::prismatic;  ///< a revolute one has an inertia that a torque turns
-  bool has_gravity = false;        ///< the balance has it
+  std::optional<double> gain{};  ///< K_f, of an input that is no force, where the user knows it
+  bool has_gravity = false;      ///< the balance has it
 };
 
 /// A force source that moves one mass with viscous and Coulomb friction and a constant force. Where

@@ -68,12 +68,13 @@ Json list(const Values& values, Entry&& entry) {
 }
 
 /// A key that tells the unit on the joint: "rms_n", "speed_radps".
-std::string key_on(Joint joint, std::string_view name, std::string_view unit) {
-  return column_name(name, unit_on(joint, unit));
+std::string key_on(Vocabulary vocabulary, std::string_view name, std::string_view unit) {
+  return column_name(name, unit_on(vocabulary, unit));
 }
 
-Json signal_json(const Measurement& measurement, const SignalError& e, bool finished, Joint joint) {
-  const SignalInfo on = info(e.signal, joint);
+Json signal_json(const Measurement& measurement, const SignalError& e, bool finished,
+                 Vocabulary vocabulary) {
+  const SignalInfo on = info(e.signal, vocabulary);
   Json signal{{"name", on.name},
               {"unit", on.unit},
               {"fitted", e.fitted},
@@ -94,11 +95,11 @@ Json signal_json(const Measurement& measurement, const SignalError& e, bool fini
 }
 
 Json recording_json(const Recording& recording, const RecordingResult& result,
-                    const std::vector<std::string>& warnings, Joint joint) {
+                    const std::vector<std::string>& warnings, Vocabulary vocabulary) {
   Json signals = Json::array();
   for (std::size_t m = 0; m < recording.measurements.size(); ++m)
     signals.push_back(signal_json(recording.measurements[m], result.signals[m],
-                                  result.free_running.finished, joint));
+                                  result.free_running.finished, vocabulary));
   return {{"name", recording.name},
           {"file", recording.file},
           {"role", role_name(recording, true)},
@@ -117,8 +118,9 @@ Json interval_json(const ParameterUncertainty& u) {
 }
 
 /// What is said of an estimate wherever it stands.
-Json estimate_json(const ParameterResult& p, Joint joint) {
-  const Quantity& quantity = find_quantity(p.name.substr(0, p.name.find('@')), joint)->quantity;
+Json estimate_json(const ParameterResult& p, Vocabulary vocabulary) {
+  const Quantity& quantity =
+      find_quantity(p.name.substr(0, p.name.find('@')), vocabulary)->quantity;
   const ParameterUncertainty& u = p.uncertainty;
   Json estimate{{"name", p.name},
                 {"unit", quantity.unit},
@@ -136,12 +138,12 @@ Json estimate_json(const ParameterResult& p, Joint joint) {
 }
 
 template <class Parameters>
-Json estimates_json(const Parameters& parameters, Joint joint) {
-  return list(parameters, [&](const ParameterResult& p) { return estimate_json(p, joint); });
+Json estimates_json(const Parameters& parameters, Vocabulary vocabulary) {
+  return list(parameters, [&](const ParameterResult& p) { return estimate_json(p, vocabulary); });
 }
 
-Json parameter_json(const ParameterResult& p, const FreeParameter& free, Joint joint) {
-  Json parameter = estimate_json(p, joint);
+Json parameter_json(const ParameterResult& p, const FreeParameter& free, Vocabulary vocabulary) {
+  Json parameter = estimate_json(p, vocabulary);
   parameter.update(Json{{"initial", free.initial},
                         {"lower", free.lower},
                         {"upper", free.upper},
@@ -185,16 +187,17 @@ Json assumptions_json(const FitResult& fit) {
 }
 
 /// What a balance of forces tells without a simulation.
-Json inverse_dynamics_json(const SecondOpinion& opinion, InverseStart start, Joint joint) {
+Json inverse_dynamics_json(const SecondOpinion& opinion, InverseStart start,
+                           Vocabulary vocabulary) {
   const auto& [estimate, contradictions] = opinion;
-  Json parameters = estimates_json(estimate.parameters, joint);
+  Json parameters = estimates_json(estimate.parameters, vocabulary);
   for (std::size_t i = 0; i < parameters.size(); ++i)
     parameters[i]["contradicts_fit"] = std::ranges::find(contradictions, i) != contradictions.end();
   return {{"start", text(start)},
           {"exact", estimate.exact},
           {"cutoff_hz", estimate.cutoff},
-          {key_on(joint, "residual", "N"), estimate.residual},
-          {key_on(joint, "drive_rms", "N"), estimate.drive_rms},
+          {key_on(vocabulary, "residual", "N"), estimate.residual},
+          {key_on(vocabulary, "drive_rms", "N"), estimate.drive_rms},
           {"parameters", std::move(parameters)}};
 }
 
@@ -215,8 +218,9 @@ Json profile_json(const Profile& profile, const FitResult& fit) {
   return json;
 }
 
-Json suggestion_json(const Suggestion& s, const FitResult& fit, Joint joint) {
-  const std::string travel = key_on(joint, "travel", "m"), speed = key_on(joint, "speed", "m/s");
+Json suggestion_json(const Suggestion& s, const FitResult& fit, Vocabulary vocabulary) {
+  const std::string travel = key_on(vocabulary, "travel", "m"),
+                    speed = key_on(vocabulary, "speed", "m/s");
   Json predicted = Json::array();
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     const ParameterUncertainty& u = s.predicted.parameters[i];
@@ -224,52 +228,52 @@ Json suggestion_json(const Suggestion& s, const FitResult& fit, Joint joint) {
                          {"standard_error", optional(u.determined, u.standard_error)},
                          {"confidence_interval", interval_json(u)}});
   }
-  return {{"motion", motion_text(s.experiment.motion, joint)},
+  return {{"motion", motion_text(s.experiment.motion, vocabulary)},
           {"duration_s", s.experiment.duration},
           {"parameter", fit.parameters[s.parameter].name},
           {"predicted", std::move(predicted)},
           {"limits",
            {{travel, {*s.limits.lowest, *s.limits.highest}},
             {speed, *s.limits.speed},
-            {"voltage_v", *s.limits.voltage}}},
+            {"voltage_v", *s.limits.command}}},
           {"reach", {{travel, {s.reach.lowest, s.reach.highest}}, {speed, s.reach.speed}}},
           {"motions_tried", s.tried},
           {"motions_feasible", s.feasible}};
 }
 
-Json force_json(const MissingForce& force, Joint joint) {
+Json force_json(const MissingForce& force, Vocabulary vocabulary) {
   if (!force.found) return nullptr;
-  return {{key_on(joint, "rms", "N"), force.rms},
-          {key_on(joint, "noise", "N"), force.noise},
+  return {{key_on(vocabulary, "rms", "N"), force.rms},
+          {key_on(vocabulary, "noise", "N"), force.noise},
           {"cutoff_hz", force.cutoff},
-          {key_on(joint, "drive_rms", "N"), force.drive_rms}};
+          {key_on(vocabulary, "drive_rms", "N"), force.drive_rms}};
 }
 
 Json test_json(const Job& job, const SeriesTest& test) {
   const Recording& recording = job.recordings[test.series.recording];
-  return {
-      {"recording", recording.name},
-      {"signal", info(recording.measurements[test.series.measurement].signal, job.joint()).name},
-      {"role", role_name(recording, test.series.fitted)},
-      {"reduced_chi_square", test.reduced_chi_square},
-      {"autocorrelation_time", test.autocorrelation_time},
-      {"unexplained_percent", test.unexplained_percent},
-      {"explained", test.explained},
-      {"dependences",
-       list(test.dependences,
-            [](const Dependence& d) {
-              return Json{{"variable", d.on}, {"fraction", d.fraction}, {"p_value", d.p_value}};
-            })},
-      {"outliers", list(test.outliers,
-                        [&](std::size_t i) {
-                          return Json{{"time_s", recording.times[test.series.samples[i]]},
-                                      {"residual_over_sigma", test.series.values[i]}};
-                        })},
-      {"drift",
-       {{"over_sigma_per_second", test.drift.per_second},
-        {"standard_error", finite(test.drift.standard_error)},
-        {"p_value", test.drift.p_value}}},
-      {"resolution", test.resolution}};
+  return {{"recording", recording.name},
+          {"signal",
+           info(recording.measurements[test.series.measurement].signal, job.vocabulary()).name},
+          {"role", role_name(recording, test.series.fitted)},
+          {"reduced_chi_square", test.reduced_chi_square},
+          {"autocorrelation_time", test.autocorrelation_time},
+          {"unexplained_percent", test.unexplained_percent},
+          {"explained", test.explained},
+          {"dependences",
+           list(test.dependences,
+                [](const Dependence& d) {
+                  return Json{{"variable", d.on}, {"fraction", d.fraction}, {"p_value", d.p_value}};
+                })},
+          {"outliers", list(test.outliers,
+                            [&](std::size_t i) {
+                              return Json{{"time_s", recording.times[test.series.samples[i]]},
+                                          {"residual_over_sigma", test.series.values[i]}};
+                            })},
+          {"drift",
+           {{"over_sigma_per_second", test.drift.per_second},
+            {"standard_error", finite(test.drift.standard_error)},
+            {"p_value", test.drift.p_value}}},
+          {"resolution", test.resolution}};
 }
 
 Json quantities_json(const Job& job, const std::vector<std::size_t>& quantities,
@@ -295,7 +299,7 @@ Json residual_json(const Job& job, const Diagnosis& diagnosis) {
   Json forces = Json::array();
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     Json force{{"recording", job.recordings[r].name}};
-    const Json found = force_json(diagnosis.forces[r], job.joint());
+    const Json found = force_json(diagnosis.forces[r], job.vocabulary());
     if (!found.is_null()) force.update(found);
     if (!found.is_null()) forces.push_back(std::move(force));
   }
@@ -314,22 +318,22 @@ Json closed_form_term_json(const ClosedForm::Term& term) {
           {"form", term.form}};
 }
 
-Json effect_json(const EffectTrial& t, Joint joint) {
+Json effect_json(const EffectTrial& t, Vocabulary vocabulary) {
   const bool judged = t.improvement.comparable;
   Json json{{"name", t.candidate.name},
             {"acts_on", t.candidate.acts_on},
             {"meaning", t.candidate.meaning},
             {"decision", decision_name(t.decision)},
             {"accepted", t.decision == Decision::accepted},
-            {"reason", reason_text(t, joint)},
+            {"reason", reason_text(t, vocabulary)},
             {"round", t.round},
             {"score", t.score},
-            {"parameters", estimates_json(t.parameters, joint)},
+            {"parameters", estimates_json(t.parameters, vocabulary)},
             {"p_value", optional(judged, t.improvement.p_value)},
             {"validation_improvement_percent", optional(judged, t.improvement.validate_percent)}};
   if (t.replication)
     json["elsewhere"] = {{"alike", t.replication->is_alike},
-                         {"parameters", estimates_json(t.replication->parameters, joint)}};
+                         {"parameters", estimates_json(t.replication->parameters, vocabulary)}};
   if (t.closed_form)
     json["closed_form"] = {{"text", closed_form_text(*t.closed_form)},
                            {"terms", list(t.closed_form->terms, closed_form_term_json)},
@@ -340,7 +344,8 @@ Json effect_json(const EffectTrial& t, Joint joint) {
 
 Json score_json(const Job& job, const SignalScore& score) {
   const Recording& recording = job.recordings[score.recording];
-  const SignalInfo signal = info(recording.measurements[score.measurement].signal, job.joint());
+  const SignalInfo signal =
+      info(recording.measurements[score.measurement].signal, job.vocabulary());
   const bool finished = score.free_running.has_value();
   const SignalErrors errors = score.free_running.value_or(SignalErrors());
   Json json{{"name", signal.name},
@@ -366,12 +371,12 @@ Json model_json(const SelectionStep& model, const ModelScore& score) {
     recordings.push_back({{"name", recording.name},
                           {"role", role_name(recording, true)},
                           {"signals", std::move(signals)},
-                          {"missing_force", force_json(score.forces[r], model.job.joint())}});
+                          {"missing_force", force_json(score.forces[r], model.job.vocabulary())}});
   }
   return {{"added", model.added},
           {"reduced_chi_square", finite(model.fit.reduced_chi_square)},
           {"recordings", std::move(recordings)},
-          {"parameters", estimates_json(model.fit.parameters, model.job.joint())}};
+          {"parameters", estimates_json(model.fit.parameters, model.job.vocabulary())}};
 }
 
 /// What only a closed loop has.
@@ -381,9 +386,9 @@ Json selection_json(const RunResult& run_result) {
   Json models = Json::array();
   for (std::size_t i = 0; i < selection.models.size(); ++i)
     models.push_back(model_json(selection.models[i], scores[i]));
-  const Joint joint = run_result.job().joint();
-  Json json{{"effects",
-             list(selection.effects, [&](const EffectTrial& t) { return effect_json(t, joint); })},
+  const Vocabulary vocabulary = run_result.job().vocabulary();
+  Json json{{"effects", list(selection.effects,
+                             [&](const EffectTrial& t) { return effect_json(t, vocabulary); })},
             {"before", models.front()},
             {"after", models.back()}};
   models.erase(0);
@@ -392,7 +397,7 @@ Json selection_json(const RunResult& run_result) {
                        {"explained", selection.explained},
                        {"held_out_blocks", selection.held_out_blocks},
                        {"hints", list(run_result.discriminations, [&](const Discrimination& d) {
-                          return discrimination_text(d, joint);
+                          return discrimination_text(d, vocabulary);
                         })}};
   return json;
 }
@@ -403,8 +408,8 @@ Json recording_check_json(const Job& job, const Recording& recording, const Reco
   for (std::size_t m = 0; m < check.measurements.size(); ++m) {
     const ValueCheck& values = check.measurements[m];
     const Measurement& measurement = recording.measurements[m];
-    signals.push_back({{"name", info(measurement.signal, job.joint()).name},
-                       {"unit", info(measurement.signal, job.joint()).unit},
+    signals.push_back({{"name", info(measurement.signal, job.vocabulary()).name},
+                       {"unit", info(measurement.signal, job.vocabulary()).unit},
                        {"lowest", values.low},
                        {"highest", values.high},
                        {"sigma", measurement.sigma},
@@ -440,8 +445,8 @@ Json recording_check_json(const Job& job, const Recording& recording, const Reco
           {"signals", std::move(signals)},
           {"rates", list(check.rates,
                          [&](const RateCheck& rate) {
-                           return Json{{"signal", info(rate.rate, job.joint()).name},
-                                       {"of", info(rate.of, job.joint()).name},
+                           return Json{{"signal", info(rate.rate, job.vocabulary()).name},
+                                       {"of", info(rate.of, job.vocabulary()).name},
                                        {"ratio", rate.found.ratio},
                                        {"correlation", rate.found.correlation}};
                          })},
@@ -455,12 +460,13 @@ Json result_json(const RunResult& run_result) {
   const FitResult& fit = run_result.fit();
   Json recordings = Json::array(), parameters = Json::array();
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
-    recordings.push_back(recording_json(
-        job.recordings[r], fit.recordings[r],
-        warnings_for(run_result.baseline, job.recordings[r], run_result.checks[r]), job.joint()));
+    recordings.push_back(
+        recording_json(job.recordings[r], fit.recordings[r],
+                       warnings_for(run_result.baseline, job.recordings[r], run_result.checks[r]),
+                       job.vocabulary()));
   for (std::size_t i = 0; i < job.free.size(); ++i)
     parameters.push_back(
-        parameter_json(fit.parameters[i], as_specified(run_result, i), job.joint()));
+        parameter_json(fit.parameters[i], as_specified(run_result, i), job.vocabulary()));
   Json json{{"schema_version", kSchemaVersion},
             {"axisfit", version()},
             {"status", text(fit.status)},
@@ -468,10 +474,10 @@ Json result_json(const RunResult& run_result) {
             {"grade", grade_name(run_result.grade.grade)},
             {"interrupted", run_result.interrupted},
             {"time_limit_reached", run_result.time_limit.has_value()},
-            {"verdict", grade_text(run_result.grade, fit, false, job.joint())},
+            {"verdict", grade_text(run_result.grade, fit, false, job.vocabulary())},
             {"message", fit.message},
             {"axis", run_result.baseline.axis},
-            {"joint", joint_names()[static_cast<std::size_t>(job.joint())]},
+            {"joint", joint_name(job.vocabulary().joint)},
             {"recordings", std::move(recordings)},
             {"parameters", std::move(parameters)},
             {"reduced_chi_square", finite(fit.reduced_chi_square)},
@@ -480,14 +486,14 @@ Json result_json(const RunResult& run_result) {
   json.update(identifiability_json(ParameterSpace(job), fit.correlation, fit.identifiability));
   json["assumptions"] = assumptions_json(fit);
   if (run_result.second_opinion)
-    json["inverse_dynamics"] =
-        inverse_dynamics_json(*run_result.second_opinion, run_result.inverse_start, job.joint());
+    json["inverse_dynamics"] = inverse_dynamics_json(*run_result.second_opinion,
+                                                     run_result.inverse_start, job.vocabulary());
   if (!run_result.profiles.empty())
     json["profile"] =
         list(run_result.profiles, [&](const Profile& p) { return profile_json(p, fit); });
   if (run_result.options.suggest_experiment)
     json["next_experiment"] = run_result.suggestion
-                                  ? suggestion_json(*run_result.suggestion, fit, job.joint())
+                                  ? suggestion_json(*run_result.suggestion, fit, job.vocabulary())
                                   : Json(nullptr);
   if (run_result.selection) json.update(selection_json(run_result));
   json.update(Json{{"observer_gain", fit.observer_gain},
@@ -533,7 +539,7 @@ Json check_json(const Job& job, const std::vector<RecordingCheck>& checks, const
       const Measurement& m = recording.measurements[forecast.series[s].measurement];
       sensitivity.push_back(
           {{"recording", recording.name},
-           {"signal", info(m.signal, job.joint()).name},
+           {"signal", info(m.signal, job.vocabulary()).name},
            {"rms_over_noise",
             forecast.sensitivity(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(s))}});
     }

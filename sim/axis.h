@@ -17,7 +17,11 @@ enum class Drive {
   velocity_loop,   ///< the paper's controller: preamplifier, current loop, two limits
   current_source,  ///< ideal power stage y6 = K_i V_c (the paper's linear case when V_L is large)
   force_source,    ///< force K_f U on the arm side, as from a recorded drive signal
+  motor_current,   ///< the same, U being a current: K_f is what the motor makes of an ampere
+  rated_force,     ///< the same, U being a share of the rated force K_f
+  motor_voltage,   ///< torque K_m (U - K_m y3) / R: a motor without inductance, U at its terminals
 };
+inline constexpr std::size_t kDrives = 6;
 
 enum class Transmission {
   backlash,  ///< rack and pinion with backlash, stiffness and damping, (4) and (5)
@@ -46,10 +50,10 @@ template <class AxisOfT, class Visitor>
 void visit_axis(AxisOfT& a, Visitor&& visit) {
   using enum UsedBy;
   using Q = Quantity;
-  visit(Q{"R", "ohm", "armature resistance", 1e-3, 1e3, kRequired, velocity_loop}, a.R);
+  visit(Q{"R", "ohm", "armature resistance", 1e-3, 1e3, kRequired, armature}, a.R);
   visit(Q{"L", "H", "armature inductance", 1e-6, 1, kRequired, velocity_loop}, a.L);
   visit(Q{"K_e", "V s/rad", "motor EMF constant", 0, 100, kRequired, velocity_loop}, a.K_e);
-  visit(Q{"K_m", "N m/A", "motor torque constant", 1e-4, 100, kRequired, electric_drive}, a.K_m);
+  visit(Q{"K_m", "N m/A", "motor torque constant", 1e-4, 100, kRequired, motor_constant}, a.K_m);
   visit(Q{"J_m", "kg m^2", "armature inertia", 0, 100, kRequired, motor}, a.J_m);
   visit(Q{"B_m", "N m s/rad", "armature damping", 0, 100, kRequired, motor}, a.B_m);
   visit(Q{"K_t", "V s/rad", "tachometer gain", 0, 100, kRequired, electric_drive}, a.K_t);
@@ -70,7 +74,7 @@ void visit_axis(AxisOfT& a, Visitor&& visit) {
   visit(Q{"F_s", "N", "static friction of the arm", 0, 1e5, 0.0}, a.F_s);
   visit(Q{"w", "m/s", "speed above which the static friction vanishes", 1e-6, 1, 0.002}, a.w);
   visit(Q{"K_v", "V/V", "power-unit forward gain", 10, 1e6, kRequired, velocity_loop}, a.K_v);
-  visit(Q{"K_f", "N/V", "force per drive signal", 1e-6, 1e9, kRequired, force_source}, a.K_f);
+  visit(Q{"K_f", "N/U", "force per drive signal", 1e-6, 1e9, kRequired, force_source}, a.K_f);
   visit(Q{"T_d", "s", "dead time of the command", -1, 1, 0.0}, a.T_d);
 }
 

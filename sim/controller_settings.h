@@ -29,8 +29,8 @@ void visit_settings(SettingsT& c, Visitor&& visit) {
   visit(Q{"k_ff", "1", "velocity feedforward", 0, 100, defaults.k_ff}, c.k_ff);
   visit(Q{"k_p", "1/s", "position gain", 0, 1e5, defaults.k_p}, c.k_p);
   visit(Q{"k_i", "1/s^2", "integral gain", 0, 1e6, defaults.k_i}, c.k_i);
-  visit(Q{"gain", "V s/m", "set-velocity voltage per speed", 1e-3, 1e6, defaults.gain}, c.gain);
-  visit(Q{"limit", "V", "largest magnitude of the voltage", 1e-3, 1e4, defaults.limit}, c.limit);
+  visit(Q{"gain", "U s/m", "set-velocity voltage per speed", 1e-3, 1e6, defaults.gain}, c.gain);
+  visit(Q{"limit", "U", "largest magnitude of the command", 1e-3, 1e4, defaults.limit}, c.limit);
   visit(Q{"counts_per_revolution", "1", "encoder counts per motor revolution; 0: no quantisation",
           0, 1e9, defaults.counts_per_revolution},
         c.counts_per_revolution);

@@ -24,7 +24,7 @@ struct Disturbance {
 /// What acts on the axis at one instant besides its state.
 template <class T>
 struct Input {
-  T command{0.0};  ///< U, V
+  T command{0.0};  ///< U, in the unit of the drive
   TargetOf<T> target;
   T time{0.0};  ///< s, of the recording
   RestMemory<T> memory;
@@ -70,9 +70,10 @@ class Equations {
   }
   /// Whether the signs of contact, motion and load change more than constants.
   bool signs_matter() const { return is_.asymmetric || is_.slope || is_.load; }
-  /// What a drive lag of zero adds to the dead time of a force source: nothing, but its derivative.
+  /// What a drive lag of zero adds to the dead time of a command that drives the motor itself:
+  /// nothing, but its derivative.
   T lag_of_switching() const {
-    const bool adds = is_.lag_active && is_.has.is_force_driven;
+    const bool adds = is_.lag_active && is_.has.is_direct();
     return adds ? slots_.drive_lag : T(0.0);
   }
   /// Number of states in use, from the first on.
@@ -113,15 +114,21 @@ class Equations {
   T current(const Mode& mode, const State<T>& y, const Input<T>& input) const {
     if (is_.has.has_voltage_loop) return y[6];
     if (is_.has.is_electric) return m_.axis.K_i * power_stage_input(mode, y, input);
+    if (is_.has.has_back_emf) return (followed_command(y, input) - m_.axis.K_m * y[3]) / m_.axis.R;
     return T(0.0);
   }
 
-  /// U with the drive's offset, V.
+  /// U with the drive's offset, in the unit of the command.
   T command(const Input<T>& input) const { return input.command + slots_.command_offset; }
+
+  /// The same, late by the drive's lag.
+  T followed_command(const State<T>& y, const Input<T>& input) const {
+    return is_.lagging ? y[7] : command(input);
+  }
 
   /// Force at the rack of the motor's current alone, N on the arm side.
   T current_force(const Mode& mode, const State<T>& y, const Input<T>& input) const {
-    return is_.has.is_force_driven ? m_.axis.K_f * (is_.lagging ? y[7] : command(input))
+    return is_.has.is_force_driven ? m_.axis.K_f * followed_command(y, input)
                                    : m_.axis.K_m * current(mode, y, input) / m_.axis.r_g;
   }
 
@@ -365,7 +372,7 @@ class Equations {
 
   /// The mode after the command was switched. What a force source drives with jumps then.
   Mode switched(Mode mode, const State<T>& y, const Input<T>& input) const {
-    if (is_.driven_load && is_.has.is_force_driven && !is_.lagging)
+    if (is_.driven_load && is_.has.is_direct() && !is_.lagging)
       mode.load = sign_of_load(mode, y, input);
     return settle(mode, y, input);
   }
@@ -401,7 +408,7 @@ class Equations {
  private:
   /// What the power stage would follow without lag, V.
   T undelayed_input(const Mode& mode, const State<T>& y, const Input<T>& input) const {
-    return is_.has.is_force_driven ? command(input) : preamplifier_voltage(mode, y);
+    return is_.has.is_direct() ? command(input) : preamplifier_voltage(mode, y);
   }
 
   static ActiveTerms active_terms_of(const Model<T>& model, const EffectSet& effects) {

@@ -7,12 +7,12 @@ namespace axisfit {
 
 namespace {
 
-std::vector<QuantityEntry> make_list(Joint joint) {
+std::vector<QuantityEntry> make_list(Vocabulary vocabulary) {
   std::vector<QuantityEntry> entries;
   const Model<double> model;
   visit_quantities(model, [&](std::string_view group, const Quantity& quantity, double) {
-    const std::string_view group_on = words_on(joint, group);
-    const Quantity on = quantity_on(joint, quantity);
+    const std::string_view group_on = words_on(vocabulary, group);
+    const Quantity on = quantity_on(vocabulary, quantity);
     entries.push_back({full_name(group_on, on), std::string(group_on), on, entries.size(),
                        effect_named(group), signal_by_name(group)});
   });
@@ -21,13 +21,13 @@ std::vector<QuantityEntry> make_list(Joint joint) {
 
 }  // namespace
 
-const std::vector<QuantityEntry>& quantity_list(Joint joint) {
-  static const std::array lists{make_list(Joint::prismatic), make_list(Joint::revolute)};
-  return lists[static_cast<std::size_t>(joint)];
+const std::vector<QuantityEntry>& quantity_list(Vocabulary vocabulary) {
+  static const auto lists = for_all_vocabularies(make_list);
+  return lists[index_of(vocabulary)];
 }
 
-const QuantityEntry* find_quantity(std::string_view name, Joint joint) {
-  const auto& list = quantity_list(joint);
+const QuantityEntry* find_quantity(std::string_view name, Vocabulary vocabulary) {
+  const auto& list = quantity_list(vocabulary);
   const auto found = std::ranges::find(list, name, &QuantityEntry::name);
   return found == list.end() ? nullptr : &*found;
 }
@@ -43,6 +43,10 @@ bool is_used(UsedBy used_by, const Structure& structure) {
       return has.is_electric;
     case UsedBy::force_source:
       return has.is_force_driven;
+    case UsedBy::motor_constant:
+      return has.has_current();
+    case UsedBy::armature:
+      return has.has_voltage_loop || has.has_back_emf;
     case UsedBy::backlash:
       return has.has_backlash;
     case UsedBy::rigid:
@@ -65,10 +69,11 @@ bool has_signal(Signal signal, const Structure& structure) {
     case Signal::acceleration:
       return true;
     case Signal::tachometer:
-    case Signal::motor_current:
     case Signal::preamplifier_voltage:
-    case Signal::drive_force:
       return capabilities(structure).is_electric;
+    case Signal::motor_current:
+    case Signal::drive_force:
+      return capabilities(structure).has_current();
     case Signal::motor_voltage:
       return capabilities(structure).has_voltage_loop;
   }

@@ -9,9 +9,9 @@
 
 #include "sim/axis.h"
 #include "sim/effects/effects.h"
-#include "sim/joint.h"
 #include "sim/scalar.h"
 #include "sim/signal.h"
+#include "sim/vocabulary.h"
 
 namespace axisfit {
 
@@ -28,21 +28,47 @@ struct Capabilities {
   bool is_electric;       ///< set-velocity input, preamplifier, tachometer and motor current
   bool has_voltage_loop;  ///< armature circuit, with V_m and its limit
   bool is_force_driven;   ///< the command is the force K_f U, and may be recorded in newtons
+  bool has_back_emf;      ///< the command is the voltage of a motor that R and K_m describe
   bool has_backlash;      ///< gear of finite stiffness: motor and arm move each for itself
   bool has_motor;         ///< a motor angle and a pinion, so that J_m, B_m and r_g count
+  Command command;
+
+  /// Whether a motor turns the current, which is known, into its torque.
+  constexpr bool has_current() const { return is_electric || has_back_emf; }
+  /// Whether the command drives the motor itself, without a controller between them.
+  constexpr bool is_direct() const { return !is_electric; }
 };
 
 /// By drive and transmission.
-inline constexpr Capabilities kCapabilities[3][2]{
-    // electric, voltage loop, force driven, backlash, motor
-    {{true, true, false, true, true}, {true, true, false, false, true}},     // velocity_loop
-    {{true, false, false, true, true}, {true, false, false, false, true}},   // current_source
-    {{false, false, true, true, true}, {false, false, true, false, false}},  // force_source
-};
+inline constexpr std::array<std::array<Capabilities, 2>, kDrives> kCapabilities = [] {
+  using enum Command;
+  // electric, voltage loop, force driven, back EMF, backlash, motor, command
+  const std::array<Capabilities, kDrives> with_backlash{{
+      {true, true, false, false, true, true, voltage},          // velocity_loop
+      {true, false, false, false, true, true, voltage},         // current_source
+      {false, false, true, false, true, true, voltage},         // force_source
+      {false, false, true, false, true, true, current},         // motor_current
+      {false, false, true, false, true, true, share_of_rated},  // rated_force
+      {false, false, false, true, true, true, voltage},         // motor_voltage
+  }};
+  std::array<std::array<Capabilities, 2>, kDrives> all{};
+  for (std::size_t drive = 0; drive < kDrives; ++drive) {
+    Capabilities rigid = with_backlash[drive];
+    rigid.has_backlash = false;
+    rigid.has_motor = !rigid.is_force_driven;
+    all[drive] = {with_backlash[drive], rigid};
+  }
+  return all;
+}();
 
 constexpr const Capabilities& capabilities(const Structure& structure) {
   return kCapabilities[static_cast<std::size_t>(structure.drive)]
                       [static_cast<std::size_t>(structure.transmission)];
+}
+
+/// How its quantities are called.
+constexpr Vocabulary vocabulary_of(const Structure& structure) {
+  return {structure.joint, capabilities(structure).command};
 }
 
 template <class T>
@@ -117,10 +143,10 @@ struct QuantityEntry {
 
 /// The list of all quantities, in the order of visit_quantities, with the names, units and ranges
 /// that they have on the joint. Without one: those by which the sources call them.
-const std::vector<QuantityEntry>& quantity_list(Joint joint = Joint::prismatic);
+const std::vector<QuantityEntry>& quantity_list(Vocabulary vocabulary = {});
 
 /// The entry with this name, or null.
-const QuantityEntry* find_quantity(std::string_view name, Joint joint = Joint::prismatic);
+const QuantityEntry* find_quantity(std::string_view name, Vocabulary vocabulary = {});
 
 /// The model in another scalar type, without derivatives.
 template <class To, class From>

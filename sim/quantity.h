@@ -11,15 +11,20 @@ namespace axisfit {
 /// Standard value of a quantity that has none: whoever describes an axis must give it.
 inline constexpr double kRequired = std::numeric_limits<double>::quiet_NaN();
 
+/// The unit of the command, which depends on the drive: "N/U" stands for "N/V" or "N/A".
+inline constexpr std::string_view kCommandUnit = "U";
+
 /// When the model makes use of a quantity.
 enum class UsedBy {
   every_axis,
   velocity_loop,   ///< drive: velocity_loop
   electric_drive,  ///< drive: velocity_loop or current_source
-  force_source,    ///< drive: force_source
+  force_source,    ///< drive: force_source, motor_current or rated_force
+  motor_constant,  ///< drive: one whose motor current is known
+  armature,        ///< drive: velocity_loop or motor_voltage
   backlash,        ///< transmission: backlash
   rigid,           ///< transmission: rigid
-  motor,           ///< needed unless a force source drives a rigid transmission
+  motor,           ///< needed unless what drives a rigid transmission is a force
 };
 
 struct Quantity {

@@ -49,8 +49,8 @@ std::string column_name(std::string_view name, std::string_view unit) {
   return text;
 }
 
-std::string column_name(Signal signal, Joint joint) {
-  const SignalInfo on = info(signal, joint);
+std::string column_name(Signal signal, Vocabulary vocabulary) {
+  const SignalInfo on = info(signal, vocabulary);
   return column_name(on.name, on.unit);
 }
 
@@ -83,7 +83,8 @@ std::vector<Column> record(const Rig& rig, const Motion& motion, const Recording
   std::vector<Column> columns;
   columns.push_back({"time_s", times});
   // The command in force from each instant on.
-  Column& written = columns.emplace_back(Column{"command_v", {}});
+  Column& written = columns.emplace_back(Column{
+      column_name("command", unit_on(vocabulary_of(rig.model.structure), kCommandUnit)), {}});
   std::size_t next = 0;
   for (const double t : times) {
     // An instant and a sample that are the same may differ by rounding.
@@ -92,7 +93,7 @@ std::vector<Column> record(const Rig& rig, const Motion& motion, const Recording
   }
   for (std::size_t s = 0; s < options.signals.size(); ++s) {
     const Signal signal = options.signals[s];
-    Column column{column_name(signal, rig.model.structure.joint), recorder.readings(s)};
+    Column column{column_name(signal, vocabulary_of(rig.model.structure)), recorder.readings(s)};
     NormalStream stream(options.seed, info(signal).name);
     for (double& x : column.values) {
       if (!options.noise) break;

@@ -32,15 +32,15 @@ struct RecordingOptions {
   std::vector<Signal> signals;  ///< which to record, in this order
 };
 
-/// Runs a rig through a motion and records it: columns time_s, command_v, then one per signal,
-/// named by column_name(). The model's instruments give gain and bias, the rig noise, and the
-/// controller's encoder the position's resolution.
-/// Throws std::runtime_error when the motion cannot be simulated to its end.
+/// Runs a rig through a motion and records it: columns time_s, command_v (or _a), then one per
+/// signal, named by column_name(). The model's instruments give gain and bias, the rig noise, and
+/// the controller's encoder the position's resolution. Throws std::runtime_error when the motion
+/// cannot be simulated to its end.
 std::vector<Column> record(const Rig& rig, const Motion& motion, const RecordingOptions& options);
 
 /// A name and a unit in plain letters: "velocity_mps".
 std::string column_name(std::string_view name, std::string_view unit);
 /// Of a signal on the joint.
-std::string column_name(Signal signal, Joint joint = Joint::prismatic);
+std::string column_name(Signal signal, Vocabulary vocabulary = {});
 
 }  // namespace axisfit

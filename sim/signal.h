@@ -6,8 +6,8 @@
 #include <optional>
 #include <string_view>
 
-#include "sim/joint.h"
 #include "sim/quantity.h"
+#include "sim/vocabulary.h"
 
 namespace axisfit {
 
@@ -48,15 +48,15 @@ constexpr std::size_t index_of(Signal signal) { return static_cast<std::size_t>(
 constexpr const SignalInfo& info(Signal signal) { return kSignalTable[index_of(signal)]; }
 
 /// As it is called on the joint.
-inline SignalInfo info(Signal signal, Joint joint) {
+inline SignalInfo info(Signal signal, Vocabulary vocabulary) {
   const SignalInfo& entry = info(signal);
-  return {signal, words_on(joint, entry.name), unit_on(joint, entry.unit),
-          words_on(joint, entry.meaning)};
+  return {signal, words_on(vocabulary, entry.name), unit_on(vocabulary, entry.unit),
+          words_on(vocabulary, entry.meaning)};
 }
 
-inline std::optional<Signal> signal_by_name(std::string_view name, Joint joint = Joint::prismatic) {
+inline std::optional<Signal> signal_by_name(std::string_view name, Vocabulary vocabulary = {}) {
   for (const SignalInfo& entry : kSignalTable)
-    if (words_on(joint, entry.name) == name) return entry.signal;
+    if (words_on(vocabulary, entry.name) == name) return entry.signal;
   return std::nullopt;
 }
 

@@ -73,7 +73,7 @@ struct Recording {
   std::string file;  ///< as the user wrote it
   Role role = Role::fit;
   Samples times;     ///< s, increasing, at least two
-  Schedule command;  ///< V
+  Schedule command;  ///< in the unit of the drive
   /// Standard deviation of the noise with which the command was recorded, V: white, of each value
   /// of the schedule. Zero: the axis received exactly this command.
   double command_sigma = 0.0;
@@ -158,11 +158,11 @@ struct FitOptions {
 };
 
 /// What the machine may be asked for. What is not given is taken to be what the recordings covered,
-/// since the machine bore that; the voltage of an electric drive to be its controller's limit.
+/// since the machine bore that; the command of an electric drive to be its controller's limit.
 struct MachineLimits {
   std::optional<double> lowest{}, highest{};  ///< m, position of the arm
   std::optional<double> speed{};              ///< m/s of the arm, either way
-  std::optional<double> voltage{};            ///< V of the command, either way
+  std::optional<double> command{};            ///< in the unit of the drive, either way
 };
 
 struct Job {
@@ -175,10 +175,10 @@ struct Job {
   std::vector<std::size_t> guessed{};  ///< quantities whose values are guesses, in quantity_list()
   FitOptions options;
 
-  Joint joint() const { return model.structure.joint; }
+  Vocabulary vocabulary() const { return vocabulary_of(model.structure); }
   /// What a quantity is on the job's axis.
   const QuantityEntry& entry(std::size_t quantity) const {
-    return quantity_list(joint())[quantity];
+    return quantity_list(vocabulary())[quantity];
   }
 };
 

@@ -152,11 +152,11 @@ MachineLimits complete_limits(const Job& job, const FitResult& fit) {
   if (!limits.lowest) limits.lowest = lowest;
   if (!limits.highest) limits.highest = highest;
   if (!limits.speed) limits.speed = speed;
-  if (!limits.voltage)
-    limits.voltage = capabilities(job.model.structure).is_force_driven
+  if (!limits.command)
+    limits.command = capabilities(job.model.structure).is_force_driven
                          ? force / fitted_model(job, fit).axis.K_f
                          : job.controller.limit;
-  limits.voltage = std::min(*limits.voltage, job.controller.limit);
+  limits.command = std::min(*limits.command, job.controller.limit);
   return limits;
 }
 
@@ -173,7 +173,7 @@ std::vector<Experiment> candidate_motions(const Structure& structure, const Mach
   const auto add = [&](const Motion& motion) { candidates.push_back({motion, duration}); };
   for (const double share : {1.0, 0.5, 0.2, 0.1, 0.05})
     for (const double sign : {1.0, -1.0}) {
-      const double u = sign * share * *limits.voltage;
+      const double u = sign * share * *limits.command;
       add(StepMotion{u, 0.0});
       for (const double part : {0.25, 0.125, 0.0625}) {
         const double hold = part * duration;

@@ -32,7 +32,7 @@ Forecast forecast(const Job& job, const std::vector<double>& values) {
   return result;
 }
 
-std::string_view excitation_needed(const QuantityEntry& quantity, Joint joint) {
+std::string_view excitation_needed(const QuantityEntry& quantity, Vocabulary vocabulary) {
   constexpr std::string_view kReversal =
       "the pinion to change flanks: commands of both signs, or strong braking";
   constexpr std::string_view kRinging =
@@ -62,8 +62,8 @@ std::string_view excitation_needed(const QuantityEntry& quantity, Joint joint) {
       {"T_r", kFastChanges},
       {"T_d", motions::kSwitches}};
   for (const auto& [name, need] : kNeeds)
-    if (name == quantity_list()[quantity.index].name) return words_on(joint, need);
-  return quantity.effect ? words_on(joint, kEffectTable[*quantity.effect].excitation)
+    if (name == quantity_list()[quantity.index].name) return words_on(vocabulary, need);
+  return quantity.effect ? words_on(vocabulary, kEffectTable[*quantity.effect].excitation)
                          : std::string_view();
 }
 

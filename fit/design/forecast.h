@@ -25,6 +25,6 @@ Forecast forecast(const Job& job, const std::vector<double>& values);
 
 /// What a motion must do for a parameter to be seen, in words that follow "needs"; empty where
 /// nothing general can be said.
-std::string_view excitation_needed(const QuantityEntry& quantity, Joint joint);
+std::string_view excitation_needed(const QuantityEntry& quantity, Vocabulary vocabulary);
 
 }  // namespace axisfit

@@ -44,7 +44,7 @@ std::vector<Candidate> transmission_candidates(const Job& job, const SearchScale
   const Structure& structure = job.model.structure;
   const Capabilities& has = capabilities(structure);
   const Axis<double>& axis = job.model.axis;
-  const std::string kGap(words_on(job.joint(), "gap between motor and arm"));
+  const std::string kGap(words_on(job.vocabulary(), "gap between motor and arm"));
   if (has.has_backlash) {
     if (axis.H != 0.0 || is_free(job, "H")) return {};
     Candidate gap = candidate("backlash", kGap, "H", 0.0);

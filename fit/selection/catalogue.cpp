@@ -62,17 +62,17 @@ std::vector<std::size_t> quantities_of(std::string_view effect,
   return quantities;
 }
 
-Candidate candidate_of(const EffectInfo& effect, SearchEntry entry, Joint joint) {
+Candidate candidate_of(const EffectInfo& effect, SearchEntry entry, Vocabulary vocabulary) {
   Candidate candidate;
-  candidate.name = words_on(joint, effect.name);
-  candidate.acts_on = words_on(joint, name_of(effect.acts_on));
-  candidate.meaning = words_on(joint, effect.meaning);
+  candidate.name = words_on(vocabulary, effect.name);
+  candidate.acts_on = words_on(vocabulary, name_of(effect.acts_on));
+  candidate.meaning = words_on(vocabulary, effect.meaning);
   candidate.strengths = quantities_of(effect.name, entry.strengths);
   candidate.shapes = quantities_of(effect.name, entry.shapes);
   candidate.settings = std::move(entry.settings);
   candidate.shapes_are_free = !entry.is_curve;
   candidate.probes = std::move(entry.probes);
-  candidate.extends = words_on(joint, entry.extends);
+  candidate.extends = words_on(vocabulary, entry.extends);
   candidate.is_curve = entry.is_curve;
   candidate.has_phase = entry.has_phase;
   return candidate;
@@ -133,9 +133,10 @@ bool is_part_of(const Candidate& part, const Candidate& whole) {
 
 std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
   scales.pinion_radius = job.model.axis.r_g;
-  if (job.joint() == Joint::revolute) scales.short_travel *= 10.0;  // at a radius of 0.1 m
+  if (job.vocabulary().joint == Joint::revolute)
+    scales.short_travel *= 10.0;  // at a radius of 0.1 m
   const Structure& structure = job.model.structure;
-  const Joint joint = job.joint();
+  const Vocabulary vocabulary = job.vocabulary();
   Model<double> model = job.model;
   std::vector<Candidate> list;
   const auto add_if_absent = [&](Candidate candidate) {
@@ -152,7 +153,7 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
         if (entry.is_curve == curves && is_used(entry.used_by, structure) &&
             (entry.extends.empty() || structure.effects[*effect_named(entry.extends)]) &&
             (!entry.changes_dry_friction || rubs))
-          add_if_absent(candidate_of(kEffectTable[e], std::move(entry), joint));
+          add_if_absent(candidate_of(kEffectTable[e], std::move(entry), vocabulary));
     }
   };
   for (const ActsOn place : kPlacesToAct) add_effects(place, false);
@@ -182,7 +183,7 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
   const std::size_t mass = index_of_quantity("M"), added_mass = index_of_quantity("added_mass.dM");
   const bool offers_mass =
       std::ranges::any_of(list, [&](const Candidate& c) { return c.strengths[0] == added_mass; });
-  for (const QuantityEntry& entry : quantity_list(joint))
+  for (const QuantityEntry& entry : quantity_list(vocabulary))
     if (const double declared = *members(model)[entry.index]; is_constant(job, entry, declared)) {
       if (entry.index == mass && offers_mass) continue;  // they say the same
       Candidate candidate = single(entry.name, "axis file", entry);

@@ -47,10 +47,10 @@ std::string power_unit(const Variable& x, int power) {
 }
 
 /// All terms over a range of the variable. Of what is inside a term, steps of a twentieth.
-std::vector<Form> forms_over(const Variable& x, Joint joint, double from, double to) {
+std::vector<Form> forms_over(const Variable& x, Vocabulary vocabulary, double from, double to) {
   std::vector<Form> list;
-  const std::string force(unit_on(joint, "N"));
-  const std::string_view unit = unit_on(joint, x.unit);
+  const std::string force(unit_on(vocabulary, "N"));
+  const std::string_view unit = unit_on(vocabulary, x.unit);
   const std::string_view s = x.symbol;
   const double range = to - from;
   if (x.unit == "rad") {
@@ -64,12 +64,12 @@ std::vector<Form> forms_over(const Variable& x, Joint joint, double from, double
   }
   for (int n = x.has_line_elsewhere ? 2 : 1; n <= 3; ++n)
     list.push_back({n == 1 ? std::string(s) : fmt::format("{}^{}", s, n),
-                    std::string(unit_on(joint, power_unit(x, n))), 0,
+                    std::string(unit_on(vocabulary, power_unit(x, n))), 0,
                     [n](double q) { return std::pow(q, n); }});
   if (x.effect == "force_over_velocity") {
-    list.push_back(
-        {"|v|", std::string(unit_on(joint, "N s/m")), 0, [](double q) { return std::abs(q); }});
-    list.push_back({"v |v|", std::string(unit_on(joint, power_unit(x, 2))), 0,
+    list.push_back({"|v|", std::string(unit_on(vocabulary, "N s/m")), 0,
+                    [](double q) { return std::abs(q); }});
+    list.push_back({"v |v|", std::string(unit_on(vocabulary, power_unit(x, 2))), 0,
                     [](double q) { return q * std::abs(q); }});
   }
   constexpr int kWidths = 40;
@@ -241,7 +241,7 @@ std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
   const auto column_of = [&](const std::function<double(double)>& f) {
     return known->whitened(spline.with_held_ends(f));
   };
-  const std::vector<Form> forms = forms_over(*x, job.joint(), from, to);
+  const std::vector<Form> forms = forms_over(*x, job.vocabulary(), from, to);
   Eigen::MatrixXd columns(known->count(), static_cast<Eigen::Index>(forms.size()));
   for (std::size_t g = 0; g < forms.size(); ++g)
     columns.col(static_cast<Eigen::Index>(g)) = column_of(forms[g].value);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <mutex>
 
 #include "base/suggest.h"
 #include "base/units.h"
@@ -14,39 +15,39 @@ namespace axisfit {
 namespace {
 
 /// The key of a quantity, and those of a group of them.
-Key key_of(Joint joint, const Quantity& quantity, std::string name) {
+Key key_of(Vocabulary vocabulary, const Quantity& quantity, std::string name) {
   Key key = Key::of(quantity, std::move(name));
-  key.used_by = words_on(joint, key.used_by);
+  key.used_by = words_on(vocabulary, key.used_by);
   return key;
 }
-Section quantity_keys(Joint joint, std::string_view group) {
+Section quantity_keys(Vocabulary vocabulary, std::string_view group) {
   Section keys;
-  for (const QuantityEntry& entry : quantity_list(joint))
+  for (const QuantityEntry& entry : quantity_list(vocabulary))
     if (entry.group == group)
-      keys.push_back(key_of(joint, entry.quantity, std::string(entry.quantity.symbol)));
+      keys.push_back(key_of(vocabulary, entry.quantity, std::string(entry.quantity.symbol)));
   return keys;
 }
 
-Section effect_keys(Joint joint) {
+Section effect_keys(Vocabulary vocabulary) {
   Section keys;
   for (const EffectInfo& effect : kEffectTable) {
-    const std::string name(words_on(joint, effect.name));
-    Section parameters = quantity_keys(joint, name);
+    const std::string name(words_on(vocabulary, effect.name));
+    Section parameters = quantity_keys(vocabulary, name);
     // An effect that is not used is refused as a whole.
     const std::string used = parameters.front().used_by;
     for (Key& parameter : parameters) parameter.used_by.clear();
     keys.push_back(Key::optional(name, Map{std::move(parameters)}, DefaultText{"effect absent"},
-                                 std::string(words_on(joint, effect.meaning))));
+                                 std::string(words_on(vocabulary, effect.meaning))));
     keys.back().used_by = used;
   }
   return keys;
 }
 
-Section instrument_keys(Joint joint) {
+Section instrument_keys(Vocabulary vocabulary) {
   Section keys;
   for (const SignalInfo& of_sliding : kSignalTable) {
-    const SignalInfo signal = info(of_sliding.signal, joint);
-    Section settings = quantity_keys(joint, signal.name);
+    const SignalInfo signal = info(of_sliding.signal, vocabulary);
+    Section settings = quantity_keys(vocabulary, signal.name);
     settings.push_back(Key::optional(
         "noise", NumberWithUnit{std::string(signal.unit), 0.0, 1e6},
         Rig().noise[index_of(signal.signal)],
@@ -57,25 +58,24 @@ Section instrument_keys(Joint joint) {
   return keys;
 }
 
-Section controller_keys(Joint joint) {
+Section controller_keys(Vocabulary vocabulary) {
   Section keys;
   ControllerSettings settings;
   visit_settings(settings, [&](const Quantity& quantity, double) {
-    keys.push_back(Key::of(quantity_on(joint, quantity)));
+    keys.push_back(Key::of(quantity_on(vocabulary, quantity)));
   });
   return keys;
 }
 
 std::string describe(const Structure& structure) {
-  return fmt::format("drive {} and transmission {}",
-                     drive_names(structure.joint)[static_cast<std::size_t>(structure.drive)],
-                     transmission_names()[static_cast<std::size_t>(structure.transmission)]);
+  return fmt::format("drive {} and transmission {}", drive_name(structure.drive, structure.joint),
+                     transmission_name(structure.transmission));
 }
 
 void read_parameters(const ConfigNode& node, Model<double>& model) {
-  ConfigMap map(node, keys_below(axis_keys(model.structure.joint), "parameters"));
+  ConfigMap map(node, keys_below(axis_keys(vocabulary_of(model.structure)), "parameters"));
   const std::vector<double*> member = members(model);
-  for (const QuantityEntry& entry : quantity_list(model.structure.joint)) {
+  for (const QuantityEntry& entry : quantity_list(vocabulary_of(model.structure))) {
     if (!entry.group.empty()) continue;
     const Quantity& quantity = entry.quantity;
     double& value = *member[entry.index];
@@ -92,25 +92,25 @@ void read_parameters(const ConfigNode& node, Model<double>& model) {
 }
 
 void read_initial(const ConfigNode& node, Model<double>& model) {
-  ConfigMap map(node, keys_below(axis_keys(model.structure.joint), "initial"));
+  ConfigMap map(node, keys_below(axis_keys(vocabulary_of(model.structure)), "initial"));
   const std::vector<double*> member = members(model);
-  for (const QuantityEntry& entry : quantity_list(model.structure.joint))
+  for (const QuantityEntry& entry : quantity_list(vocabulary_of(model.structure)))
     if (entry.group == "initial" && is_used(entry, model.structure))
       map.read(entry.quantity.symbol, *member[entry.index]);
   map.finish();
 }
 
 void read_instruments(const ConfigNode& node, Rig& rig) {
-  const Joint joint = rig.model.structure.joint;
-  const Section& keys = keys_below(axis_keys(joint), "instruments");
+  const Vocabulary vocabulary = vocabulary_of(rig.model.structure);
+  const Section& keys = keys_below(axis_keys(vocabulary), "instruments");
   ConfigMap map(node, keys);
   const std::vector<double*> member = members(rig.model);
   for (const SignalInfo& signal : kSignalTable) {
-    const std::string_view name = info(signal.signal, joint).name;
+    const std::string_view name = info(signal.signal, vocabulary).name;
     const auto given = map.optional(name);
     if (!given) continue;
     ConfigMap instrument(*given, keys_below(keys, name));
-    for (const QuantityEntry& entry : quantity_list(joint))
+    for (const QuantityEntry& entry : quantity_list(vocabulary))
       if (entry.signal == signal.signal)
         instrument.read(entry.quantity.symbol, *member[entry.index]);
     instrument.read("noise", rig.noise[index_of(signal.signal)]);
@@ -119,8 +119,8 @@ void read_instruments(const ConfigNode& node, Rig& rig) {
   map.finish();
 }
 
-void read_controller(const ConfigNode& node, Joint joint, ControllerSettings& settings) {
-  ConfigMap map(node, keys_below(axis_keys(joint), "controller"));
+void read_controller(const ConfigNode& node, Vocabulary vocabulary, ControllerSettings& settings) {
+  ConfigMap map(node, keys_below(axis_keys(vocabulary), "controller"));
   visit_settings(settings,
                  [&](const Quantity& setting, double& value) { map.read(setting.symbol, value); });
   map.finish();
@@ -143,8 +143,8 @@ void read_guessed(const ConfigNode& node, Rig& rig) {
 
 namespace {
 
-Section make_axis_keys(Joint joint) {
-  const auto say = [&](const char* text) { return std::string(words_on(joint, text)); };
+Section make_axis_keys(Vocabulary vocabulary) {
+  const auto say = [&](const char* text) { return std::string(words_on(vocabulary, text)); };
   return {
       Key::optional("name", Text{}, DefaultText{"none"}, "shown in reports"),
       Key::optional("joint",
@@ -152,11 +152,15 @@ Section make_axis_keys(Joint joint) {
                             {"revolute", "it turns: rad, N m and kg m^2"}}},
                     Joint::prismatic,
                     "what the load does; it decides on the names and units of the other keys"),
-      Key::required("drive",
-                    Choice{{{"velocity_loop", "the paper's controller and current loop"},
-                            {"current_source", "an ideal power stage"},
-                            {say("force_source"), say("the command is a force")}}},
-                    say("what turns the command into a force")),
+      Key::required(
+          "drive",
+          Choice{{{"velocity_loop", "the paper's controller and current loop"},
+                  {"current_source", "an ideal power stage"},
+                  {say("force_source"), say("the command, in V, is a force")},
+                  {"motor_current", "it is the motor's current, in A"},
+                  {say("rated_force"), say("it is a share of the rated force, such as 120 %")},
+                  {"motor_voltage", "it is the voltage at a motor with resistance and back EMF"}}},
+          say("what turns the command into a force")),
       Key::required(
           "transmission",
           Choice{{{"backlash", say("rack and pinion with backlash, stiffness and damping")},
@@ -165,58 +169,66 @@ Section make_axis_keys(Joint joint) {
       Key::optional("guessed", List{{Text{}}}, DefaultText{"none"},
                     "quantities whose values here are guesses, such as `[K_f]`; the report names "
                     "the estimates that rest on them"),
-      Key::required("parameters", Map{quantity_keys(joint, "")}, "parameters of the paper's model"),
+      Key::required("parameters", Map{quantity_keys(vocabulary, "")},
+                    "parameters of the paper's model"),
       Key::optional(
-          "effects", Map{effect_keys(joint)}, DefaultText{"none"},
+          "effects", Map{effect_keys(vocabulary)}, DefaultText{"none"},
           "effects beyond the paper's model, by name; an effect is active if it is listed"),
-      Key::optional("initial", Map{quantity_keys(joint, "initial")}, DefaultText{"all 0"},
+      Key::optional("initial", Map{quantity_keys(vocabulary, "initial")}, DefaultText{"all 0"},
                     "initial state"),
-      Key::optional("instruments", Map{instrument_keys(joint)}, DefaultText{"ideal"},
+      Key::optional("instruments", Map{instrument_keys(vocabulary)}, DefaultText{"ideal"},
                     "gain, bias, lag, delay, drift and noise of each signal"),
-      Key::optional("controller", Map{controller_keys(joint)}, DefaultText{"those of its keys"},
+      Key::optional("controller", Map{controller_keys(vocabulary)},
+                    DefaultText{"those of its keys"},
                     "the slave control unit: limits, moves and the encoder; a fit uses it only to "
                     "compute the command from a `position_reference`")};
 }
 
-std::vector<std::string> choices_of(Joint joint, std::string_view key) {
-  return std::get<Choice>(find_key(axis_keys(joint), key).form).names();
+std::vector<std::string> choices_of(Vocabulary vocabulary, std::string_view key) {
+  return std::get<Choice>(find_key(axis_keys(vocabulary), key).form).names();
 }
 
 }  // namespace
 
-const Section& axis_keys(Joint joint) {
-  static const std::array keys{make_axis_keys(Joint::prismatic), make_axis_keys(Joint::revolute)};
-  return keys[static_cast<std::size_t>(joint)];
+const Section& axis_keys(Vocabulary vocabulary) {
+  // They are many: only those that are asked for.
+  static std::mutex mutex;
+  static std::array<Section, kVocabularies> made;
+  const std::lock_guard lock(mutex);
+  Section& keys = made[index_of(vocabulary)];
+  if (keys.empty()) keys = make_axis_keys(vocabulary);
+  return keys;
 }
 
-const std::vector<std::string>& joint_names() {
-  static const auto names = choices_of(Joint::prismatic, "joint");
-  return names;
-}
-
-const std::vector<std::string>& drive_names(Joint joint) {
-  static const std::array names{choices_of(Joint::prismatic, "drive"),
-                                choices_of(Joint::revolute, "drive")};
+const std::string& joint_name(Joint joint) {
+  static const auto names = choices_of({}, "joint");
   return names[static_cast<std::size_t>(joint)];
 }
 
-const std::vector<std::string>& transmission_names() {
-  static const auto names = choices_of(Joint::prismatic, "transmission");
-  return names;
+const std::string& drive_name(Drive drive, Joint joint) {
+  static const std::array names{choices_of(Joint::prismatic, "drive"),
+                                choices_of(Joint::revolute, "drive")};
+  return names[static_cast<std::size_t>(joint)][static_cast<std::size_t>(drive)];
+}
+
+const std::string& transmission_name(Transmission transmission) {
+  static const auto names = choices_of({}, "transmission");
+  return names[static_cast<std::size_t>(transmission)];
 }
 
 Section quantity_keys() {
   Section keys;
-  for (const Joint joint : kJoints)
-    for (const QuantityEntry& entry : quantity_list(joint)) {
-      Key key = key_of(joint, entry.quantity, entry.name);
+  for (const Vocabulary vocabulary : all_vocabularies())
+    for (const QuantityEntry& entry : quantity_list(vocabulary)) {
+      Key key = key_of(vocabulary, entry.quantity, entry.name);
       const auto known = std::ranges::find(keys, entry.name, &Key::name);
       if (known == keys.end()) {
         keys.push_back(std::move(key));
       } else if (auto& amount = std::get<NumberWithUnit>(known->form);
                  amount.unit != entry.quantity.unit) {
-        amount.description =
-            fmt::format("{}; revolute: {}", value_text(known->form), value_text(key.form));
+        if (const std::string before = value_text(known->form), here = value_text(key.form);
+            before.find(here) == std::string::npos)
+          amount.description = fmt::format("{} or {}", before, here);
       }
     }
   return keys;
@@ -240,7 +252,7 @@ std::optional<double> read_value(const ConfigNode& node, const Quantity& quantit
 
 const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& structure) {
   const std::string name = key.text();
-  const QuantityEntry* entry = find_quantity(name, structure.joint);
+  const QuantityEntry* entry = find_quantity(name, vocabulary_of(structure));
   if (entry != nullptr && is_used(*entry, structure)) return entry;
   if (entry != nullptr) {
     const bool parameter = entry->group.empty() || entry->group == "initial";
@@ -254,7 +266,7 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
     return nullptr;
   }
   std::vector<std::string> names;
-  for (const QuantityEntry& e : quantity_list(structure.joint))
+  for (const QuantityEntry& e : quantity_list(vocabulary_of(structure)))
     if (is_used(e, structure)) names.push_back(e.name);
   const std::string suggestion = closest_match(name, names);
   key.error(
@@ -267,11 +279,11 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
 }
 
 void read_effects(const ConfigNode& node, Model<double>& model) {
-  const Joint joint = model.structure.joint;
-  const Section& keys = keys_below(axis_keys(joint), "effects");
+  const Vocabulary vocabulary = vocabulary_of(model.structure);
+  const Section& keys = keys_below(axis_keys(vocabulary), "effects");
   ConfigMap map(node, keys);
   visit_effects(model.effects, [&](std::size_t index, auto& effect) {
-    const std::string_view name = words_on(joint, effect.name);
+    const std::string_view name = words_on(vocabulary, effect.name);
     const auto given = map.optional(name);
     if (!given) return;
     model.structure.effects.set(index);
@@ -280,7 +292,7 @@ void read_effects(const ConfigNode& node, Model<double>& model) {
     effect.visit(effect, [&](const Quantity& quantity, double& value) {
       used = used || is_used(*find_quantity(full_name(effect.name, quantity)), model.structure);
       value = std::isnan(quantity.default_value) ? 0.0 : quantity.default_value;
-      parameters.read(quantity_on(joint, quantity).symbol, value);
+      parameters.read(quantity_on(vocabulary, quantity).symbol, value);
     });
     parameters.finish();
     if (!used)
@@ -309,6 +321,7 @@ std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
   map.read("drive", drive);
   map.read("transmission", transmission);
   rig.model.structure.drive = drive.value_or(Drive());
+  map.describe(axis_keys(vocabulary_of(rig.model.structure)));
   rig.model.structure.transmission = transmission.value_or(Transmission());
   if (const auto effects = map.optional("effects")) read_effects(*effects, rig.model);
   const auto parameters = map.required("parameters");
@@ -324,7 +337,7 @@ std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
   // Without a pinion there is no telling how far a count is, unless it is said.
   if (!capabilities(rig.model.structure).has_motor) rig.controller.counts_per_revolution = 0.0;
   if (const auto controller = map.optional("controller"))
-    read_controller(*controller, rig.model.structure.joint, rig.controller);
+    read_controller(*controller, vocabulary_of(rig.model.structure), rig.controller);
   map.finish();
   if (diagnostics.count() > before) return std::nullopt;
   if (const std::string reason = model_error(rig.model); !reason.empty()) {
@@ -339,16 +352,14 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
   out << YAML::BeginMap;
   if (!rig.name.empty()) out << YAML::Key << "name" << YAML::Value << rig.name;
   const Structure& structure = rig.model.structure;
-  const Joint joint = structure.joint;
-  if (joint != Joint::prismatic)
-    out << YAML::Key << "joint" << YAML::Value << joint_names()[static_cast<std::size_t>(joint)];
-  out << YAML::Key << "drive" << YAML::Value
-      << drive_names(joint)[static_cast<std::size_t>(structure.drive)];
-  out << YAML::Key << "transmission" << YAML::Value
-      << transmission_names()[static_cast<std::size_t>(structure.transmission)];
+  const Vocabulary vocabulary = vocabulary_of(structure);
+  if (structure.joint != Joint::prismatic)
+    out << YAML::Key << "joint" << YAML::Value << joint_name(structure.joint);
+  out << YAML::Key << "drive" << YAML::Value << drive_name(structure.drive, structure.joint);
+  out << YAML::Key << "transmission" << YAML::Value << transmission_name(structure.transmission);
   if (!rig.guessed.empty()) {
     out << YAML::Key << "guessed" << YAML::Value << YAML::Flow << YAML::BeginSeq;
-    for (const std::size_t g : rig.guessed) out << quantity_list(joint)[g].name;
+    for (const std::size_t g : rig.guessed) out << quantity_list(vocabulary)[g].name;
     out << YAML::EndSeq;
   }
 
@@ -357,14 +368,14 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
   std::map<std::string, std::vector<std::pair<std::string, std::string>>> groups;
   Model<double> model = rig.model;
   const std::vector<double*> member = members(model);
-  for (const QuantityEntry& entry : quantity_list(joint)) {
+  for (const QuantityEntry& entry : quantity_list(vocabulary)) {
     const double value = *member[entry.index];
     const bool custom = entry.group == "initial" || entry.signal;
     if (!is_used(entry, structure) || (custom && value == entry.quantity.default_value)) continue;
     groups[entry.group].emplace_back(entry.quantity.symbol, with_unit(value, entry.quantity.unit));
   }
   std::vector<SignalInfo> signals;
-  for (const SignalInfo& signal : kSignalTable) signals.push_back(info(signal.signal, joint));
+  for (const SignalInfo& signal : kSignalTable) signals.push_back(info(signal.signal, vocabulary));
   for (const SignalInfo& signal : signals)
     if (const double noise = rig.noise[index_of(signal.signal)]; noise > 0.0)
       groups[std::string(signal.name)].emplace_back("noise", with_unit(noise, signal.unit));
@@ -379,7 +390,7 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
   if (structure.effects.any()) {
     out << YAML::Key << "effects" << YAML::Value << YAML::BeginMap;
     visit_effects(model.effects, [&](std::size_t index, const auto& effect) {
-      const std::string name(words_on(joint, effect.name));
+      const std::string name(words_on(vocabulary, effect.name));
       if (structure.effects[index]) emit(name, name);
     });
     out << YAML::EndMap;
@@ -397,7 +408,7 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
   out << YAML::Key << "controller" << YAML::Value << YAML::BeginMap;
   visit_settings(rig.controller, [&](const Quantity& setting, double value) {
     out << YAML::Key << std::string(setting.symbol) << YAML::Value
-        << with_unit(value, unit_on(joint, setting.unit));
+        << with_unit(value, unit_on(vocabulary, setting.unit));
   });
   out << YAML::EndMap << YAML::EndMap;
   return with_comment(comment, out.c_str());

@@ -12,14 +12,14 @@ namespace axisfit {
 
 /// The keys of an axis file. Among the parameters, effects and initial states are all that an axis
 /// with that joint can have; which of them one has depends on its drive and transmission.
-const Section& axis_keys(Joint joint = Joint::prismatic);
+const Section& axis_keys(Vocabulary vocabulary = {});
 
-/// The words for joints, drives and transmissions, in the order of their enumerations.
-const std::vector<std::string>& joint_names();
-const std::vector<std::string>& drive_names(Joint joint = Joint::prismatic);
-const std::vector<std::string>& transmission_names();
+/// The words of axis files for what is chosen.
+const std::string& joint_name(Joint joint);
+const std::string& drive_name(Drive drive, Joint joint);
+const std::string& transmission_name(Transmission transmission);
 
-/// The keys for all quantities under their full names, and for all effects, of both joints.
+/// The keys for all quantities under their full names, and for all effects, in every vocabulary.
 Section quantity_keys();
 Section effect_keys();
 

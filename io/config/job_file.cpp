@@ -56,17 +56,22 @@ Section fit_keys() {
                     "event checks")};
 }
 
-Section limit_keys(Joint joint) {
+Section limit_keys(Vocabulary vocabulary) {
   const DefaultText covered{"range covered by the recordings"};
-  const std::string m(unit_on(joint, "m")), speed(unit_on(joint, "m/s"));
-  return {Key::optional("travel", Bounds{{m}}, covered,
-                        "allowed positions of the arm, such as `[0 m, 1.2 m]`"),
-          Key::optional("speed", NumberWithUnit{speed, 1e-6, joint == Joint::prismatic ? 1e3 : 1e6},
-                        covered, "largest speed of the arm in either direction"),
-          Key::optional("voltage", NumberWithUnit{"V", 1e-6, 1e6},
-                        DefaultText{"the controller's `limit` for an electric drive; otherwise "
-                                    "what the recordings covered"},
-                        "largest magnitude of the command; never above the controller's `limit`")};
+  const std::string m(unit_on(vocabulary, "m")), speed(unit_on(vocabulary, "m/s")),
+      command(unit_on(vocabulary, kCommandUnit));
+  return {
+      Key::optional("travel", Bounds{{m}}, covered,
+                    "allowed positions of the arm, such as `[0 m, 1.2 m]`"),
+      Key::optional("speed",
+                    NumberWithUnit{speed, 1e-6, vocabulary.joint == Joint::prismatic ? 1e3 : 1e6},
+                    covered, "largest speed of the arm in either direction"),
+      Key::optional("command", NumberWithUnit{command, 1e-6, 1e6},
+                    DefaultText{"the controller's `limit` for an electric drive; otherwise "
+                                "what the recordings covered"},
+                    "largest magnitude of the command; never above the controller's `limit`"),
+      Key::optional("voltage", NumberWithUnit{"V", 1e-6, 1e6}, DefaultText{"see `command`"},
+                    "the same, of a command in V")};
 }
 
 class JobReader {
@@ -195,14 +200,19 @@ class JobReader {
 
   void read_limits(const ConfigNode& node) {
     MachineLimits& limits = result_.job.limits;
-    const Joint joint = result_.job.joint();
-    const Section keys = limit_keys(joint);
+    const Vocabulary vocabulary = result_.job.vocabulary();
+    const Section keys = limit_keys(vocabulary);
     ConfigMap map(node, keys);
     if (const auto travel = map.optional("travel"))
-      if (const auto range = travel->as_bounds(unit_on(joint, "m"), -kUnlimited, kUnlimited))
+      if (const auto range = travel->as_bounds(unit_on(vocabulary, "m"), -kUnlimited, kUnlimited))
         std::tie(limits.lowest, limits.highest) = *range;
     map.read("speed", limits.speed);
-    map.read("voltage", limits.voltage);
+    map.read("command", limits.command);
+    if (const auto voltage = map.optional("voltage")) {
+      if (limits.command || vocabulary.command != Command::voltage)
+        voltage->error("the command of this axis is limited by 'command': remove 'voltage'");
+      map.read("voltage", limits.command);
+    }
     map.finish();
   }
 

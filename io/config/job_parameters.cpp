@@ -106,7 +106,7 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
               entry.name == "K_f"
                   ? fmt::format(
                         "K_f cannot be fitted to '{}', which has no command: its {} acts as it is",
-                        r.name, words_on(job.joint(), "drive_force"))
+                        r.name, words_on(job.vocabulary(), "drive_force"))
                   : fmt::format("{} is fitted for all recordings but set for '{}': remove one, or "
                                 "use per_recording: true",
                                 entry.name, r.name));

@@ -358,12 +358,12 @@ class RecordingReader {
                                    Recording& recording) {
     const bool force_source = capabilities(rig_.model.structure).is_force_driven;
     const auto command = signals.optional("command");
-    const SignalInfo drive_force = info(Signal::drive_force, joint());
+    const SignalInfo drive_force = info(Signal::drive_force, vocabulary());
     const auto force = force_source ? signals.optional(drive_force.name) : std::nullopt;
     const auto reference = force_source ? std::nullopt : signals.optional("position_reference");
     if (command && force)
       force->error(fmt::format("give either the command or the {}, not both: each drives the axis",
-                               words_on(joint(), "drive force")));
+                               words_on(vocabulary(), "drive force")));
     if (command && reference)
       reference->error("the recorded command drives the axis: remove position_reference");
     if (!command && !force && !reference)
@@ -384,7 +384,7 @@ class RecordingReader {
         force->error(fmt::format("a {} acts as it is: remove K_f from 'set'", drive_force.name));
       recording.overrides.emplace_back(gain, 1.0);
     } else if (command) {
-      input = read_noisy_input(*command, "V", recording);
+      input = read_noisy_input(*command, unit_on(vocabulary(), kCommandUnit), recording);
     }
     return input;
   }
@@ -445,7 +445,7 @@ class RecordingReader {
 
   /// The command that the axis file's slave control unit makes of a recorded position reference.
   std::optional<Series> read_reference(const ConfigNode& node, ConfigMap& signals) const {
-    const std::string_view unit = info(Signal::position, joint()).unit;
+    const std::string_view unit = info(Signal::position, vocabulary()).unit;
     const auto reference = read_column(*data_, node, unit);
     const auto position_node = signals.optional("position");
     if (!position_node) {
@@ -476,7 +476,7 @@ class RecordingReader {
     const Structure& structure = rig_.model.structure;
     std::size_t named = 0;
     for (const SignalInfo& of_sliding : kSignalTable) {
-      const SignalInfo signal = info(of_sliding.signal, joint());
+      const SignalInfo signal = info(of_sliding.signal, vocabulary());
       const bool is_input =
           signal.signal == Signal::drive_force && capabilities(structure).is_force_driven;
       const auto given = is_input ? std::nullopt : signals.optional(signal.name);
@@ -632,7 +632,7 @@ class RecordingReader {
     if (named == 0) {
       std::vector<std::string_view> names;
       for (const SignalInfo& signal : kSignalTable)
-        names.push_back(info(signal.signal, joint()).name);
+        names.push_back(info(signal.signal, vocabulary()).name);
       signals_node.error(
           fmt::format("no measured signal: name at least one of {}", fmt::join(names, ", ")));
     } else if (recording.role == Role::fit && recording.measurements.size() == named &&
@@ -646,7 +646,7 @@ class RecordingReader {
     Model<double> model = rig_.model;
     const auto member = members(model);
     for (const auto& [quantity, value] : recording.overrides) *member[quantity] = value;
-    for (const QuantityEntry& entry : quantity_list(joint()))
+    for (const QuantityEntry& entry : quantity_list(vocabulary()))
       if (const auto reason = ignored_by_observer(entry, observer_, recording);
           !reason.empty() && *member[entry.index] != 0.0)
         signals_node.error(reason);
@@ -671,7 +671,7 @@ class RecordingReader {
         signals_node.error(
             fmt::format("this recording has no standstill of 50 samples, or no velocity or "
                         "position to detect one: give the sigma of {}, or omit it",
-                        info(m.signal, joint()).name));
+                        info(m.signal, vocabulary()).name));
     }
   }
 
@@ -683,7 +683,7 @@ class RecordingReader {
     return false;
   }
 
-  Joint joint() const { return rig_.model.structure.joint; }
+  Vocabulary vocabulary() const { return vocabulary_of(rig_.model.structure); }
 
   const Rig& rig_;
   const ObserverMode observer_;

@@ -53,13 +53,17 @@ std::string used_by_text(UsedBy used_by) {
     case UsedBy::electric_drive:
       return "`velocity_loop`, `current_source`";
     case UsedBy::force_source:
-      return "`force_source`";
+      return "`force_source`, `motor_current`, `rated_force`";
+    case UsedBy::motor_constant:
+      return "`velocity_loop`, `current_source`, `motor_voltage`";
+    case UsedBy::armature:
+      return "`velocity_loop`, `motor_voltage`";
     case UsedBy::backlash:
       return "`backlash`";
     case UsedBy::rigid:
       return "`rigid`";
     case UsedBy::motor:
-      return "all but `force_source` with `rigid`";
+      return "`backlash`, or a drive whose command is no force";
   }
   return "";
 }

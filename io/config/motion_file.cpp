@@ -16,14 +16,10 @@
 namespace axisfit {
 namespace {
 
-/// A voltage up to the controller's limit, which the keys do not know.
-NumberWithUnit voltage_up_to(const std::string& limit) {
-  return {"V", -kUnlimited, kUnlimited, "V, +-" + limit};
-}
-
-Key offset_key(double default_value) {
-  return Key::optional("offset", voltage_up_to("(limit - amplitude)"), default_value,
-                       "mean voltage");
+/// A command up to the controller's limit, which the keys do not know.
+NumberWithUnit command_up_to(const std::string& limit, Vocabulary vocabulary) {
+  const std::string unit(unit_on(vocabulary, kCommandUnit));
+  return {unit, -kUnlimited, kUnlimited, unit + ", +-" + limit};
 }
 
 struct MotionType {
@@ -32,61 +28,66 @@ struct MotionType {
   Section keys;
 };
 
-std::vector<MotionType> make_types(Joint joint) {
-  const NumberWithUnit limited = voltage_up_to("limit");
+std::vector<MotionType> make_types(Vocabulary vocabulary) {
+  const NumberWithUnit limited = command_up_to("limit", vocabulary);
+  const auto offset_key = [&](double default_value) {
+    return Key::optional("offset", command_up_to("(limit - amplitude)", vocabulary), default_value,
+                         "mean command");
+  };
   const NumberWithUnit frequency{"Hz", 0.0, 1e4};
   const auto amount = [&](const char* unit, double lower, double upper) {
-    const Quantity on = quantity_on(joint, {"", unit, "", lower, upper});
+    const Quantity on = quantity_on(vocabulary, {"", unit, "", lower, upper});
     return NumberWithUnit{std::string(on.unit), on.lower, on.upper};
   };
-  return {{"step",
-           "one level from a given time on",
-           {Key::required("level", limited, "voltage"),
-            Key::optional("start", NumberWithUnit{"s", 0.0, 1e6}, StepMotion().start,
-                          "time of the step")}},
-          {"levels",
-           "a sequence of levels",
-           {Key::required("levels", List{{limited}}, "voltages, the first from time zero"),
-            Key::required("hold", NumberWithUnit{"s", 1e-4, 1e6}, "duration of each level")}},
-          {"sine",
-           "a sine of constant frequency",
-           {Key::required("amplitude", limited, "amplitude of the voltage about the offset"),
-            Key::required("frequency", NumberWithUnit{"Hz", 1e-6, 1e4}, "frequency of the sine"),
-            offset_key(SineMotion().offset)}},
-          {"chirp",
-           "a sine whose frequency changes linearly",
-           {Key::required("amplitude", limited, "amplitude of the voltage about the offset"),
-            Key::required("from", frequency, "frequency at time zero"),
-            Key::required("to", frequency, "frequency at the end of `duration`"),
-            offset_key(SineMotion().offset)}},
-          {"prbs",
-           "a pseudo-random binary sequence",
-           {Key::required("amplitude", limited, "amplitude of the voltage about the offset"),
-            Key::required("bit", NumberWithUnit{"s", 1e-4, 1e6},
-                          "bit period: how long each value is held"),
-            offset_key(PrbsMotion().offset),
-            Key::optional("seed", Integer{}, PrbsMotion().seed,
-                          "seed of the sequence, which is the same on every machine")}},
-          {"move",
-           "a position move under closed-loop control",
-           {Key::required("distance", amount("m", -1e3, 1e3),
-                          std::string(words_on(joint, "distance of the arm from position zero"))),
-            Key::required("speed", amount("m/s", 1e-6, 1e3), "maximum speed"),
-            Key::required("acceleration", amount("m/s^2", 1e-6, 1e5),
-                          "acceleration and deceleration")}},
-          {"recorded",
-           "the command from a recording",
-           {Key::required("file", Text{},
-                          "CSV or `.mat` file; a relative path is relative to the motion file"),
-            Key::required("time", Map{column_keys()},
-                          "column of the sample times, which must increase"),
-            Key::required("command", Map{column_keys()},
-                          "column of the command; all values within the limit")}}};
+  return {
+      {"step",
+       "one level from a given time on",
+       {Key::required("level", limited, "the command"),
+        Key::optional("start", NumberWithUnit{"s", 0.0, 1e6}, StepMotion().start,
+                      "time of the step")}},
+      {"levels",
+       "a sequence of levels",
+       {Key::required("levels", List{{limited}}, "commands, the first from time zero"),
+        Key::required("hold", NumberWithUnit{"s", 1e-4, 1e6}, "duration of each level")}},
+      {"sine",
+       "a sine of constant frequency",
+       {Key::required("amplitude", limited, "amplitude of the command about the offset"),
+        Key::required("frequency", NumberWithUnit{"Hz", 1e-6, 1e4}, "frequency of the sine"),
+        offset_key(SineMotion().offset)}},
+      {"chirp",
+       "a sine whose frequency changes linearly",
+       {Key::required("amplitude", limited, "amplitude of the command about the offset"),
+        Key::required("from", frequency, "frequency at time zero"),
+        Key::required("to", frequency, "frequency at the end of `duration`"),
+        offset_key(SineMotion().offset)}},
+      {"prbs",
+       "a pseudo-random binary sequence",
+       {Key::required("amplitude", limited, "amplitude of the command about the offset"),
+        Key::required("bit", NumberWithUnit{"s", 1e-4, 1e6},
+                      "bit period: how long each value is held"),
+        offset_key(PrbsMotion().offset),
+        Key::optional("seed", Integer{}, PrbsMotion().seed,
+                      "seed of the sequence, which is the same on every machine")}},
+      {"move",
+       "a position move under closed-loop control",
+       {Key::required("distance", amount("m", -1e3, 1e3),
+                      std::string(words_on(vocabulary, "distance of the arm from position zero"))),
+        Key::required("speed", amount("m/s", 1e-6, 1e3), "maximum speed"),
+        Key::required("acceleration", amount("m/s^2", 1e-6, 1e5),
+                      "acceleration and deceleration")}},
+      {"recorded",
+       "the command from a recording",
+       {Key::required("file", Text{},
+                      "CSV or `.mat` file; a relative path is relative to the motion file"),
+        Key::required("time", Map{column_keys()},
+                      "column of the sample times, which must increase"),
+        Key::required("command", Map{column_keys()},
+                      "column of the command; all values within the limit")}}};
 }
 
-const std::vector<MotionType>& motion_types(Joint joint = Joint::prismatic) {
-  static const std::array types{make_types(Joint::prismatic), make_types(Joint::revolute)};
-  return types[static_cast<std::size_t>(joint)];
+const std::vector<MotionType>& motion_types(Vocabulary vocabulary = {}) {
+  static const auto types = for_all_vocabularies(make_types);
+  return types[index_of(vocabulary)];
 }
 
 /// Reads the keys of one type of motion. Values that are wrong are reported.
@@ -101,11 +102,11 @@ class MotionReader {
     const auto type = map_.read("type", choice);
     map_.read("duration", file.duration);
     if (!choice) return file;
-    const auto& [name, meaning, keys] = motion_types(rig_.model.structure.joint)[*choice];
+    const auto& [name, meaning, keys] = motion_types(vocabulary_of(rig_.model.structure))[*choice];
     map_.describe(keys);
     if (name == "step") {
       StepMotion motion;
-      motion.level = voltage("level", limit());
+      motion.level = level_of("level", limit());
       map_.read("start", motion.start);
       file.motion = motion;
     } else if (name == "levels") {
@@ -113,14 +114,14 @@ class MotionReader {
       map_.read("hold", motion.hold);
       if (const auto levels = map_.required("levels"))
         if (const auto entries = levels->as_sequence()) {
-          if (entries->empty()) levels->error("levels must have at least one voltage");
+          if (entries->empty()) levels->error("levels must have at least one command");
           for (const ConfigNode& level : *entries)
-            motion.levels.push_back(level.as_quantity("V", -limit(), limit()).value_or(0.0));
+            motion.levels.push_back(level.as_quantity(unit(), -limit(), limit()).value_or(0.0));
         }
       file.motion = std::move(motion);
     } else if (name == "sine" || name == "chirp") {
       SineMotion motion;
-      motion.amplitude = voltage("amplitude", limit());
+      motion.amplitude = level_of("amplitude", limit());
       if (name == "sine") {
         map_.read("frequency", motion.from);
         motion.to = motion.from;
@@ -128,13 +129,13 @@ class MotionReader {
         map_.read("from", motion.from);
         map_.read("to", motion.to);
       }
-      motion.offset = voltage("offset", limit() - std::abs(motion.amplitude));
+      motion.offset = level_of("offset", limit() - std::abs(motion.amplitude));
       file.motion = motion;
     } else if (name == "prbs") {
       PrbsMotion motion;
-      motion.amplitude = voltage("amplitude", limit());
+      motion.amplitude = level_of("amplitude", limit());
       map_.read("bit", motion.bit);
-      motion.offset = voltage("offset", limit() - std::abs(motion.amplitude));
+      motion.offset = level_of("offset", limit() - std::abs(motion.amplitude));
       map_.read("seed", motion.seed);
       file.motion = motion;
     } else if (name == "move") {
@@ -144,9 +145,8 @@ class MotionReader {
       map_.read("acceleration", motion.acceleration);
       file.motion = motion;
       if (!capabilities(rig_.model.structure).is_electric)
-        type->error(fmt::format(
-            "a move needs a set-velocity input, which the {} source of this axis does not have",
-            words_on(rig_.model.structure.joint, "force")));
+        type->error(
+            "a move needs a set-velocity input, which the drive of this axis does not have");
       else if (rig_.model.axis.T_d >= rig_.controller.period)
         type->error("a move needs a command delay T_d below the controller's period");
     } else {
@@ -159,9 +159,13 @@ class MotionReader {
  private:
   double limit() const { return rig_.controller.limit; }
 
-  double voltage(const char* key, double most) {
+  std::string_view unit() const {
+    return unit_on(vocabulary_of(rig_.model.structure), kCommandUnit);
+  }
+
+  double level_of(const char* key, double most) {
     const auto given = map_.given(key);
-    return given ? given->as_quantity("V", -most, most).value_or(0.0) : 0.0;
+    return given ? given->as_quantity(unit(), -most, most).value_or(0.0) : 0.0;
   }
 
   /// The command column of a recording, and the path of that.
@@ -174,7 +178,7 @@ class MotionReader {
     try {
       found = (root_.directory() / *path).lexically_normal().string();
       const RecordingFile data(found);
-      const auto times = read_times(data, *time), values = read_column(data, *command, "V");
+      const auto times = read_times(data, *time), values = read_column(data, *command, unit());
       if (!times || !values) return motion;
       const double limit = rig_.controller.limit;
       const auto beyond =
@@ -215,8 +219,8 @@ const Section& motion_keys() {
   return keys;
 }
 
-const Section& motion_keys(const std::string& type, Joint joint) {
-  return std::ranges::find(motion_types(joint), type, &MotionType::name)->keys;
+const Section& motion_keys(const std::string& type, Vocabulary vocabulary) {
+  return std::ranges::find(motion_types(vocabulary), type, &MotionType::name)->keys;
 }
 
 MotionFile read_motion_file(const std::string& path, const Rig& rig) {
@@ -232,8 +236,8 @@ namespace {
 /// Writes the keys of every type of motion.
 class MotionWriter {
  public:
-  MotionWriter(YAML::Emitter& out, double duration, Joint joint)
-      : out_(out), duration_(duration), joint_(joint) {}
+  MotionWriter(YAML::Emitter& out, double duration, Vocabulary vocabulary)
+      : out_(out), duration_(duration), vocabulary_(vocabulary) {}
 
   void operator()(const StepMotion& motion) {
     begin("step");
@@ -243,7 +247,8 @@ class MotionWriter {
   void operator()(const LevelsMotion& motion) {
     begin("levels");
     out_ << YAML::Key << "levels" << YAML::Value << YAML::Flow << YAML::BeginSeq;
-    for (const double level : motion.levels) out_ << with_unit(level, "V");
+    for (const double level : motion.levels)
+      out_ << with_unit(level, unit_on(vocabulary_, kCommandUnit));
     out_ << YAML::EndSeq;
     set("hold", motion.hold);
   }
@@ -277,7 +282,7 @@ class MotionWriter {
     out_ << YAML::Key << "type" << YAML::Value << type;
     keys_ = &motion_keys();
     set("duration", duration_);
-    keys_ = &motion_keys(type, joint_);
+    keys_ = &motion_keys(type, vocabulary_);
   }
   void set(const char* key, double value) {
     const std::string& unit = std::get<NumberWithUnit>(find_key(*keys_, key).form).unit;
@@ -286,16 +291,17 @@ class MotionWriter {
 
   YAML::Emitter& out_;
   double duration_;
-  Joint joint_;
+  Vocabulary vocabulary_;
   const Section* keys_ = nullptr;
 };
 
 }  // namespace
 
-std::string format_motion_file(const MotionFile& file, const std::string& comment, Joint joint) {
+std::string format_motion_file(const MotionFile& file, const std::string& comment,
+                               Vocabulary vocabulary) {
   YAML::Emitter out;
   out << YAML::BeginMap;
-  std::visit(MotionWriter(out, file.duration, joint), file.motion);
+  std::visit(MotionWriter(out, file.duration, vocabulary), file.motion);
   out << YAML::EndMap;
   return with_comment(comment, out.c_str());
 }

@@ -171,9 +171,19 @@ Json when(const Json& constants, const Json& then, const std::string& may_be_mis
 /// The maps of an axis file whose keys depend on the structure.
 constexpr std::array<const char*, 3> kPartsOfStructure{"parameters", "effects", "initial"};
 
-/// What such a part holds on the joint.
-std::string group_of(const std::string& part, Joint joint) {
-  return part + "." + joint_names()[static_cast<std::size_t>(joint)];
+/// What such a part holds on the joint, or has otherwise with another command than a voltage.
+std::string group_of(const std::string& part, Vocabulary vocabulary) {
+  const std::string unit(unit_on(vocabulary, kCommandUnit));
+  return part + "." + joint_name(vocabulary.joint) +
+         (vocabulary.command == Command::voltage ? "" : "." + unit);
+}
+
+/// That in whose group the key of a quantity, or of the effect with it, stands.
+Vocabulary defining(const QuantityEntry& entry, Vocabulary vocabulary) {
+  const auto unit_of = [](const QuantityEntry& e) { return e.quantity.unit; };
+  return unit_of(entry) == unit_of(quantity_list(vocabulary.joint)[entry.index])
+             ? Vocabulary(vocabulary.joint)
+             : vocabulary;
 }
 
 /// Which keys they have, and must have, in an axis of this structure.
@@ -182,12 +192,13 @@ Json parts_of(Structure structure) {
   Json parts = Json::object();
   for (const char* part : kPartsOfStructure)
     parts[part] = {{"properties", Json::object()}, {"additionalProperties", false}};
-  const auto add = [&](const std::string& part, const std::string& name) {
-    parts[part]["properties"][name] =
-        SchemaMaker::reference(group_of(part, structure.joint) + "." + name);
-  };
-  for (const QuantityEntry& entry : quantity_list(structure.joint)) {
+  const Vocabulary vocabulary = vocabulary_of(structure);
+  for (const QuantityEntry& entry : quantity_list(vocabulary)) {
     if (!is_used(entry, structure)) continue;
+    const auto add = [&](const std::string& part, const std::string& name) {
+      parts[part]["properties"][name] =
+          SchemaMaker::reference(group_of(part, defining(entry, vocabulary)) + "." + name);
+    };
     const std::string symbol(entry.quantity.symbol);
     if (entry.group.empty()) {
       add("parameters", symbol);
@@ -217,25 +228,32 @@ nlohmann::ordered_json axis_schema() {
   for (const char* by_joint : {"instruments", "controller"})
     top["properties"][by_joint] = {{"type", "object"}};
   top["properties"]["drive"] = {{"type", "string"}};
+  for (const Vocabulary vocabulary : all_vocabularies())
+    for (const char* part : kPartsOfStructure) {
+      Section keys = keys_below(axis_keys(vocabulary), part);
+      if (vocabulary.command != Command::voltage)
+        std::erase_if(keys, [&](const Key& key) {
+          return std::ranges::none_of(quantity_list(vocabulary), [&](const QuantityEntry& entry) {
+            return (entry.name == key.name || entry.group == key.name) &&
+                   defining(entry, vocabulary) == vocabulary;
+          });
+        });
+      maker.share(group_of(part, vocabulary), keys);
+    }
   for (const Joint joint : kJoints) {
-    const std::string& name = joint_names()[static_cast<std::size_t>(joint)];
-    for (const char* part : kPartsOfStructure)
-      maker.share(group_of(part, joint), keys_below(axis_keys(joint), part));
+    const char* without_joint = joint == Joint::prismatic ? "joint" : "";
     Json whole = maker.map(axis_keys(joint));
     Json of_joint{{"properties", Json::object()}};
     for (const char* by_joint : {"drive", "instruments", "controller"})
       of_joint["properties"][by_joint] = whole["properties"][by_joint];
-    const char* without_joint = joint == Joint::prismatic ? "joint" : "";
-    top["allOf"].push_back(when({{"joint", name}}, of_joint, without_joint));
-    for (std::size_t drive = 0; drive < drive_names(joint).size(); ++drive)
-      for (std::size_t transmission = 0; transmission < transmission_names().size(); ++transmission)
-        top["allOf"].push_back(when(
-            {{"joint", name},
-             {"drive", drive_names(joint)[drive]},
-             {"transmission", transmission_names()[transmission]}},
-            parts_of(
-                {static_cast<Drive>(drive), static_cast<Transmission>(transmission), {}, joint}),
-            without_joint));
+    top["allOf"].push_back(when({{"joint", joint_name(joint)}}, of_joint, without_joint));
+    for (std::size_t drive = 0; drive < kDrives; ++drive)
+      for (const Transmission transmission : {Transmission::backlash, Transmission::rigid})
+        top["allOf"].push_back(when({{"joint", joint_name(joint)},
+                                     {"drive", drive_name(static_cast<Drive>(drive), joint)},
+                                     {"transmission", transmission_name(transmission)}},
+                                    parts_of({static_cast<Drive>(drive), transmission, {}, joint}),
+                                    without_joint));
   }
   return maker.with_definitions(std::move(top));
 }

@@ -146,6 +146,7 @@ class TextLines::Source {
     const int got = ::gzread(file_, block.data(), static_cast<unsigned>(block.size()));
     int error = Z_OK;
     ::gzerror(file_, &error);
+    if (error == Z_MEM_ERROR) throw std::bad_alloc();
     if (got < 0 || error == Z_BUF_ERROR)
       throw RecordingError(path_, 0,
                            error == Z_ERRNO ? "could not be read completely; check the disk"

@@ -19,13 +19,13 @@ using Values = std::vector<double>;
 /// Of a value that noise of this size hides.
 double resolution(const Measurement& m) { return 0.01 * m.sigma; }
 
-std::string signal_name(const Measurement& m, Joint joint) {
-  return std::string(info(m.signal, joint).name);
+std::string signal_name(const Measurement& m, Vocabulary vocabulary) {
+  return std::string(info(m.signal, vocabulary).name);
 }
 
 /// "Velocity of step"
-std::string title_of(const Measurement& m, const Recording& recording, Joint joint) {
-  std::string name = signal_name(m, joint);
+std::string title_of(const Measurement& m, const Recording& recording, Vocabulary vocabulary) {
+  std::string name = signal_name(m, vocabulary);
   name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
   return fmt::format("{} of {}", name, recording.name);
 }
@@ -35,8 +35,8 @@ bool spans_a_decade(const std::vector<double>& values) {
   const auto [least, most] = std::ranges::minmax(values);
   return most > 10.0 * least;
 }
-std::string unit_of(const Measurement& m, Joint joint) {
-  return std::string(info(m.signal, joint).unit);
+std::string unit_of(const Measurement& m, Vocabulary vocabulary) {
+  return std::string(info(m.signal, vocabulary).unit);
 }
 
 /// Stretches of time in which a condition holds, from what holds from each instant on. Those that
@@ -93,12 +93,12 @@ struct EventTimes {
 };
 
 /// What happened between one mode and the next.
-std::vector<EventTimes> events_of(const std::vector<ModeChange>& modes, Joint joint) {
+std::vector<EventTimes> events_of(const std::vector<ModeChange>& modes, Vocabulary vocabulary) {
   std::vector<EventTimes> list{{"contact", "teeth touch", {}},
                                {"separation", "teeth separate", {}},
                                {"limit", "a limit is reached or left", {}},
-                               {"stick", words_on(joint, "the arm sticks"), {}},
-                               {"slip", words_on(joint, "the arm breaks away"), {}}};
+                               {"stick", words_on(vocabulary, "the arm sticks"), {}},
+                               {"slip", words_on(vocabulary, "the arm breaks away"), {}}};
   for (std::size_t i = 1; i < modes.size(); ++i) {
     const Mode &from = modes[i - 1].mode, &to = modes[i].mode;
     const bool happened[] = {
@@ -142,7 +142,9 @@ struct Variable {
 /// What a residual is shown against, besides time: what the axis has.
 std::vector<Variable> variables(const Structure& structure) {
   const Capabilities& has = capabilities(structure);
-  const auto on = [&](const char* unit) { return std::string(unit_on(structure.joint, unit)); };
+  const auto on = [&](const char* unit) {
+    return std::string(unit_on(vocabulary_of(structure), unit));
+  };
   std::vector<Variable> list{
       {"velocity", {"velocity", on("m/s")}, [](const Sample& s) { return s.velocity; }},
       {"position", {"position", on("m")}, [](const Sample& s) { return s.position; }}};
@@ -150,11 +152,11 @@ std::vector<Variable> variables(const Structure& structure) {
     list.push_back({"angle", {"motor angle", "rad"}, [](const Sample& s) {
                       return wrapped_angle(s.motor_angle);
                     }});
-  list.push_back(
-      {"force",
-       {std::string(words_on(structure.joint, has.has_backlash ? "gear force" : "drive force")),
-        on("N")},
-       [](const Sample& s) { return s.gear_force; }});
+  list.push_back({"force",
+                  {std::string(words_on(vocabulary_of(structure),
+                                        has.has_backlash ? "gear force" : "drive force")),
+                   on("N")},
+                  [](const Sample& s) { return s.gear_force; }});
   if (has.is_electric)
     list.push_back({"current", {"current", "A"}, [](const Sample& s) { return s.current; }});
   return list;
@@ -171,7 +173,7 @@ ReportCharts::ReportCharts(const RunResult& run_result) : run_result_(run_result
     charts.times = columns_.add_times(recording.times);
     charts.phases = phases_of(recording, simulation.modes);
     const double duration = recording.times.back() - recording.times.front();
-    for (EventTimes& e : events_of(simulation.modes, job.joint()))
+    for (EventTimes& e : events_of(simulation.modes, job.vocabulary()))
       charts.events.push_back(
           {e.kind, std::string(e.text),
            columns_.add(std::move(e.times), 1e-7 * duration, std::floor(recording.times.front()))});
@@ -221,8 +223,8 @@ Html ReportCharts::overview() {
   const Recording& recording = run_result_.job().recordings[worst.recording];
   const Measurement& m = recording.measurements[worst.measurement];
   const RecordingCharts& r = recordings_[worst.recording];
-  const Joint joint = run_result_.job().joint();
-  const ChartAxis y{signal_name(m, joint), unit_of(m, joint)};
+  const Vocabulary vocabulary = run_result_.job().vocabulary();
+  const ChartAxis y{signal_name(m, vocabulary), unit_of(m, vocabulary)};
   const auto measured = r.measured[worst.measurement];
   if (run_result_.selection && run_result_.selection->models.size() > 1) {
     const auto judged = [&](const FitResult& fit) {
@@ -240,7 +242,7 @@ Html ReportCharts::overview() {
         {"after", "residual", r.times, measured, LineStyle::line, judged(run_result_.fit())}};
     return add(std::move(chart));
   }
-  Chart chart = over_time(worst.recording, "overview", title_of(m, recording, joint), y);
+  Chart chart = over_time(worst.recording, "overview", title_of(m, recording, vocabulary), y);
   chart.series = {{"measured", "measured", r.times, measured},
                   {"simulated", "simulated", r.times, r.simulated[worst.measurement]}};
   return add(std::move(chart));
@@ -253,11 +255,12 @@ Html ReportCharts::traces(std::size_t recording) {
   Html all;
   for (std::size_t m = 0; m < data.measurements.size(); ++m) {
     const Measurement& measurement = data.measurements[m];
-    const Joint joint = run_result_.job().joint();
-    const std::string name = signal_name(measurement, joint), unit = unit_of(measurement, joint);
+    const Vocabulary vocabulary = run_result_.job().vocabulary();
+    const std::string name = signal_name(measurement, vocabulary),
+                      unit = unit_of(measurement, vocabulary);
     const std::string of = fmt::format("{} of {}", name, data.name);
-    Chart trace =
-        over_time(recording, "trace-" + name, title_of(measurement, data, joint), {name, unit});
+    Chart trace = over_time(recording, "trace-" + name, title_of(measurement, data, vocabulary),
+                            {name, unit});
     trace.series = {{"measured", "measured", r.times, r.measured[m]},
                     {"simulated", "simulated", r.times, r.simulated[m]}};
     all += add(std::move(trace));
@@ -303,10 +306,10 @@ Html ReportCharts::views(const SeriesTest& test) {
   const Recording& recording = run_result_.job().recordings[series.recording];
   const Measurement& m = recording.measurements[series.measurement];
   const SimulatedRecording& simulation = run_result_.fit().recordings[series.recording].as_fitted();
-  const Joint joint = run_result_.job().joint();
-  const std::string id = fmt::format("{}-{}{}", series.recording + 1, signal_name(m, joint),
+  const Vocabulary vocabulary = run_result_.job().vocabulary();
+  const std::string id = fmt::format("{}-{}{}", series.recording + 1, signal_name(m, vocabulary),
                                      series.fitted ? "" : "-judged");
-  const ChartAxis y{"residual", unit_of(m, joint)};
+  const ChartAxis y{"residual", unit_of(m, vocabulary)};
   Values residual = series.values;
   for (double& v : residual) v *= m.sigma;
   const auto dots = columns_.add_coarse(thinned(residual));
@@ -374,9 +377,9 @@ Html ReportCharts::missing_force(std::size_t recording) {
     supplied.push_back(before.force[i] - after->force[i]);
 
   const std::string name = run_result_.job().recordings[recording].name;
-  const Joint joint = run_result_.job().joint();
-  const auto say = [&](const char* text) { return std::string(words_on(joint, text)); };
-  const ChartAxis y{say("missing force"), std::string(unit_on(joint, "N"))};
+  const Vocabulary vocabulary = run_result_.job().vocabulary();
+  const auto say = [&](const char* text) { return std::string(words_on(vocabulary, text)); };
+  const ChartAxis y{say("missing force"), std::string(unit_on(vocabulary, "N"))};
   const double resolution = 0.01 * std::max(before.noise, 1e-6 * before.rms) + 1e-12;
   Html all;
   Chart chart = over_time(recording, "force", say("Missing force on the arm") + " in " + name, y);
@@ -409,7 +412,7 @@ Html ReportCharts::missing_force(std::size_t recording) {
   }
   Chart spectrum{.id = fmt::format("force-{}-in-space", recording + 1),
                  .title = say("Spatial spectrum of the missing force"),
-                 .x = {say("cycles per metre"), std::string(unit_on(joint, "1/m"))},
+                 .x = {say("cycles per metre"), std::string(unit_on(vocabulary, "1/m"))},
                  .y = {"amplitude", y.unit},
                  .series = {}};
   const auto line = [&](const std::string& label, const char* role, const MissingForce& force) {

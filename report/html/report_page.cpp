@@ -129,7 +129,7 @@ class Page {
           residual_verdict(job_, *run_result_.diagnosis, run_result_.options.select_effects));
     Html all = html(R"(<div class="verdict {}">{}</div>)", verdict_class(), summary);
     for (const Discrimination& s : run_result_.discriminations)
-      all += paragraph_of(discrimination_text(s, job_.joint()));
+      all += paragraph_of(discrimination_text(s, job_.vocabulary()));
     if (run_result_.interrupted)
       all += paragraph_of(fmt::format("Stopped{} before everything requested was finished.",
                                       stop_reason(run_result_)));
@@ -162,9 +162,9 @@ class Page {
         const bool finished = fit_.recordings[r].free_running.finished;
         const auto or_dash = [&](double value) { return finished ? number(value) : "-"; };
         rows += row(head_cell(job_.recordings[r].name) + cell(role_name(job_.recordings[r], e)) +
-                    cell(std::string(info(e.signal, job_.joint()).name)) +
+                    cell(std::string(info(e.signal, job_.vocabulary()).name)) +
                     number_cell(or_dash(e.rmse)) +
-                    cell(std::string(info(e.signal, job_.joint()).unit)) +
+                    cell(std::string(info(e.signal, job_.vocabulary()).unit)) +
                     number_cell(finished ? fmt::format("{:.3g} %", e.nrmse_percent) : "-") +
                     number_cell(number(e.sigma)) + number_cell(or_dash(e.reduced_chi_square)) +
                     number_cell(e.prediction_rmse ? number(*e.prediction_rmse) : ""));
@@ -184,13 +184,13 @@ class Page {
         const SignalScore* score = find_series(run_result_.scores[i].signals, head);
         if (score == nullptr || !score->as_fitted()) continue;
         const SignalErrors& e = *score->as_fitted();
-        rows +=
-            row(head_cell(recording.name) + cell(role_name(recording, head.fitted)) +
-                cell(std::string(info(m.signal, job_.joint()).name)) +
-                cell(i == 0 ? "baseline" : "+ " + run_result_.selection->models[i].added) +
-                number_cell(number(e.rmse)) + cell(std::string(info(m.signal, job_.joint()).unit)) +
-                number_cell(fmt::format("{:.3g} %", e.nrmse_percent)) +
-                number_cell(number(e.reduced_chi_square)));
+        rows += row(head_cell(recording.name) + cell(role_name(recording, head.fitted)) +
+                    cell(std::string(info(m.signal, job_.vocabulary()).name)) +
+                    cell(i == 0 ? "baseline" : "+ " + run_result_.selection->models[i].added) +
+                    number_cell(number(e.rmse)) +
+                    cell(std::string(info(m.signal, job_.vocabulary()).unit)) +
+                    number_cell(fmt::format("{:.3g} %", e.nrmse_percent)) +
+                    number_cell(number(e.reduced_chi_square)));
       }
     }
     return html("<h3>Errors before and after</h3>{}",
@@ -330,8 +330,8 @@ class Page {
       if (const Html force = charts_.missing_force(r); !force.empty())
         forces += html("<h4>{}</h4>{}", job_.recordings[r].name, figures(force));
     if (!forces.empty())
-      all += html("<h3>{}</h3>{}", std::string(words_on(job_.joint(), "Missing force on the arm")),
-                  forces);
+      all += html("<h3>{}</h3>{}",
+                  std::string(words_on(job_.vocabulary(), "Missing force on the arm")), forces);
     const auto worst =
         std::ranges::max_element(diagnosis.tests, {}, &SeriesTest::reduced_chi_square);
     for (auto test = diagnosis.tests.begin(); test != diagnosis.tests.end(); ++test)
@@ -345,7 +345,7 @@ class Page {
     const Recording& recording = job_.recordings[test.series.recording];
     return fmt::format(
         "{} of {} ({})",
-        info(recording.measurements[test.series.measurement].signal, job_.joint()).name,
+        info(recording.measurements[test.series.measurement].signal, job_.vocabulary()).name,
         recording.name, role_name(recording, test.series.fitted));
   }
 
@@ -405,7 +405,7 @@ class Page {
              t.candidate.meaning) +
         number_cell(number(t.score)) +
         cell(html(R"(<span class="badge {0}">{0}</span>)", decision)) +
-        cell(reason_text(t, job_.joint())) +
+        cell(reason_text(t, job_.vocabulary())) +
         number_cell(judged ? fmt::format("{:+.3g} %", -t.improvement.validate_percent) : "-") +
         number_cell(judged ? fmt::format("{:.1g}", t.improvement.p_value) : "-"));
   }

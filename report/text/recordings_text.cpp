@@ -38,9 +38,9 @@ std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& c
     std::vector<std::vector<std::string>> rows{
         {"", "lowest", "highest", "unit", "sigma", "noise", "resolution", ""}};
     rows.push_back(
-        {force ? std::string(words_on(job.joint(), "drive_force")) : "command",
+        {force ? std::string(words_on(job.vocabulary(), "drive_force")) : "command",
          short_number(check.command.low), short_number(check.command.high),
-         force ? std::string(unit_on(job.joint(), "N")) : "V",
+         std::string(unit_on(job.vocabulary(), force ? "N" : kCommandUnit)),
          recording.command_sigma > 0.0 ? fmt::format("{:.2g}", recording.command_sigma) : "", "",
          "", fmt::format("{} switches", check.switches)});
     const double largest = std::max(std::abs(check.command.low), std::abs(check.command.high));
@@ -53,7 +53,7 @@ std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& c
       for (const RateCheck& rate : check.rates)
         if (rate.rate == measurement.signal)
           remark = fmt::format("{:.4g} x d/dt", rate.found.ratio);
-      const SignalInfo signal = info(measurement.signal, job.joint());
+      const SignalInfo signal = info(measurement.signal, job.vocabulary());
       rows.push_back({std::string(signal.name), short_number(values.low), short_number(values.high),
                       std::string(signal.unit), fmt::format("{:.2g}", measurement.sigma),
                       fmt::format("{:.2g}", values.noise),

@@ -17,12 +17,12 @@ namespace axisfit {
 namespace {
 
 /// What an accelerometer shows at rest, where it has nothing to show and is left out.
-std::string excluded_text(const Recording& recording, Joint joint) {
+std::string excluded_text(const Recording& recording, Vocabulary vocabulary) {
   std::string text;
   for (const Measurement& m : recording.measurements) {
     const auto excluded = excluded_samples(m);
     if (!excluded) continue;
-    const SignalInfo signal = info(m.signal, joint);
+    const SignalInfo signal = info(m.signal, vocabulary);
     text += paragraph(
         fmt::format(
             "{}: {} samples of the {} at standstill are excluded, with a mean of {:.3g} {}{}.",
@@ -39,7 +39,7 @@ std::string recordings_text(const RunResult& run_result) {
   for (const Recording& r : job.recordings) {
     std::string signals;
     for (const Measurement& m : r.measurements)
-      signals += (signals.empty() ? "" : ", ") + std::string(info(m.signal, job.joint()).name);
+      signals += (signals.empty() ? "" : ", ") + std::string(info(m.signal, job.vocabulary()).name);
     rows.push_back({r.name, r.role == Role::fit ? "fit" : "validate",
                     fmt::format("{} samples", r.times.size()),
                     fmt::format("{:.4g} s to {:.4g} s", r.times.front(), r.times.back()), signals});
@@ -48,7 +48,7 @@ std::string recordings_text(const RunResult& run_result) {
       "Recordings\n" + format_table(rows, {Alignment::left, Alignment::left, Alignment::right,
                                            Alignment::left, Alignment::wrapped});
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
-    text += excluded_text(job.recordings[r], job.joint());
+    text += excluded_text(job.recordings[r], job.vocabulary());
     for (const std::string& warning :
          warnings_for(run_result.baseline, job.recordings[r], run_result.checks[r]))
       text += paragraph(fmt::format("! {}: {}", job.recordings[r].name, warning), 2);
@@ -134,12 +134,12 @@ std::string errors_text(const Job& job, const FitResult& result) {
     const Recording& recording = job.recordings[r];
     for (const SignalError& e : result.recordings[r].signals) {
       const bool finished = result.recordings[r].free_running.finished;
-      rows.push_back({series_name(recording, role_name(recording, e), e.signal, job.joint()),
+      rows.push_back({series_name(recording, role_name(recording, e), e.signal, job.vocabulary()),
                       finished ? fmt::format("{:.4g}", e.rmse) : "-",
                       finished ? fmt::format("{:.3g} %", e.nrmse_percent) : "-",
                       fmt::format("{:.3g}{}", e.sigma, mark_of(e.noise)),
                       finished ? fmt::format("{:.4g}", e.reduced_chi_square) : "-",
-                      std::string(info(e.signal, job.joint()).unit),
+                      std::string(info(e.signal, job.vocabulary()).unit),
                       e.prediction_rmse ? fmt::format("{:.4g}", *e.prediction_rmse) : ""});
     }
   }
@@ -160,8 +160,9 @@ std::string errors_text(const Job& job, const FitResult& result) {
 
 }  // namespace
 
-std::string series_name(const Recording& recording, const char* role, Signal signal, Joint joint) {
-  return fmt::format("{}, {}: {}", recording.name, role, info(signal, joint).name);
+std::string series_name(const Recording& recording, const char* role, Signal signal,
+                        Vocabulary vocabulary) {
+  return fmt::format("{}, {}: {}", recording.name, role, info(signal, vocabulary).name);
 }
 
 std::string report_text(const RunResult& run_result, bool colour) {
@@ -187,7 +188,7 @@ std::string report_text(const RunResult& run_result, bool colour) {
       text += "Instruments\n" + faults + "\n";
   text += paragraph(overall_verdict(run_result, colour));
   for (const Discrimination& s : run_result.discriminations)
-    text += paragraph(discrimination_text(s, job.joint()));
+    text += paragraph(discrimination_text(s, job.vocabulary()));
   if (!run_result.selection && run_result.diagnosis)
     text += residual_verdict(job, *run_result.diagnosis, run_result.options.select_effects, colour);
   if (run_result.interrupted) {
@@ -215,12 +216,12 @@ std::vector<Column> force_columns(const Job& job, const Diagnosis& diagnosis) {
     double Sample::*member;
   };
   constexpr Course kCourse[]{
-      {"command", "V", &Sample::command},         {"arm_position", "m", &Sample::position},
+      {"command", "U", &Sample::command},         {"arm_position", "m", &Sample::position},
       {"arm_velocity", "m/s", &Sample::velocity}, {"motor_angle", "rad", &Sample::motor_angle},
       {"motor_current", "A", &Sample::current},   {"drive_force", "N", &Sample::drive_force},
       {"gear_force", "N", &Sample::gear_force}};
   const auto called = [&](const char* name, const char* unit) {
-    return column_name(words_on(job.joint(), name), unit_on(job.joint(), unit));
+    return column_name(words_on(job.vocabulary(), name), unit_on(job.vocabulary(), unit));
   };
   std::vector<Column> columns{{called("missing_force", "N"), {}}};
   for (const Course& course : kCourse) columns.push_back({called(course.name, course.unit), {}});
@@ -247,7 +248,7 @@ std::string residuals_csv(const Job& job, const FitResult& result,
     }
   std::vector<Column> columns{{"recording", number}, {"time_s", time}};
   for (const SignalInfo& signal : kSignalTable) {
-    const std::string name(info(signal.signal, job.joint()).name);
+    const std::string name(info(signal.signal, job.vocabulary()).name);
     Column measured{name + "_measured", {}}, simulated{name + "_simulated", {}},
         residual{name + "_residual", {}};
     bool recorded = false;

@@ -32,7 +32,8 @@ std::string residual_verdict(const Job& job, const Diagnosis& diagnosis,
 std::string selection_text(const RunResult& run_result, bool colour = false);
 
 /// "step, fit: velocity"
-std::string series_name(const Recording& recording, const char* role, Signal signal, Joint joint);
+std::string series_name(const Recording& recording, const char* role, Signal signal,
+                        Vocabulary vocabulary);
 
 /// What each parameter of a job is and, unless it is determined, its verdict.
 std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty>& known,
@@ -62,7 +63,7 @@ std::string forecast_text(const Job& job, const Forecast& forecast, bool colour 
 std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& checks);
 
 /// What looks wrong with a recording, and what to do about it: a sentence or two.
-std::string warning_text(const RecordingWarning& warning, Joint joint = Joint::prismatic);
+std::string warning_text(const RecordingWarning& warning, Vocabulary vocabulary = {});
 
 /// The same of all that looks wrong with a recording.
 std::vector<std::string> warnings_for(const Job& job, const Recording& recording,
@@ -73,10 +74,10 @@ std::string run_time_text(const Job& job, const RunTimeEstimate& run_time);
 
 /// Cells of one row about a missing force: name, rms, noise, per cent of the drive force, cutoff.
 std::vector<std::string> force_cells(const std::string& name, const MissingForce& force,
-                                     Joint joint);
+                                     Vocabulary vocabulary);
 /// The table of such rows.
 std::string forces_table(std::string_view title, std::vector<std::vector<std::string>> rows,
-                         Joint joint);
+                         Vocabulary vocabulary);
 
 /// residuals.csv: recording (its number in the job), time_s, and measured, simulated and residual
 /// of every signal, of the free-running simulation. With a diagnosis also the missing force and

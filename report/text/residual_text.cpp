@@ -17,8 +17,8 @@ namespace {
 /// "velocity of levels"
 std::string name_of(const Job& job, const ResidualSeries& series) {
   const Recording& r = job.recordings[series.recording];
-  return fmt::format("{} of {}", info(r.measurements[series.measurement].signal, job.joint()).name,
-                     r.name);
+  return fmt::format(
+      "{} of {}", info(r.measurements[series.measurement].signal, job.vocabulary()).name, r.name);
 }
 
 /// "F_s1 -3.2 N, F_c1 10.2 N, period 0.036 m"
@@ -40,25 +40,25 @@ std::string estimate_of(const Job& job, const SuspectedEffect& suspected) {
 std::string forces_text(const Job& job, const Diagnosis& diagnosis) {
   std::vector<std::vector<std::string>> rows;
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
-    rows.push_back(force_cells(job.recordings[r].name, diagnosis.forces[r], job.joint()));
-  return forces_table("Missing force on the arm", std::move(rows), job.joint());
+    rows.push_back(force_cells(job.recordings[r].name, diagnosis.forces[r], job.vocabulary()));
+  return forces_table("Missing force on the arm", std::move(rows), job.vocabulary());
 }
 
 }  // namespace
 
 std::string forces_table(std::string_view title, std::vector<std::vector<std::string>> rows,
-                         Joint joint) {
-  rows.insert(rows.begin(),
-              {"", "rms", "from noise", std::string(words_on(joint, "of drive force")), "cutoff"});
-  return fmt::format("{}\n{}", words_on(joint, title),
+                         Vocabulary vocabulary) {
+  rows.insert(rows.begin(), {"", "rms", "from noise",
+                             std::string(words_on(vocabulary, "of drive force")), "cutoff"});
+  return fmt::format("{}\n{}", words_on(vocabulary, title),
                      format_table(rows, {Alignment::left, Alignment::right, Alignment::right,
                                          Alignment::right, Alignment::right}));
 }
 
 std::vector<std::string> force_cells(const std::string& name, const MissingForce& force,
-                                     Joint joint) {
+                                     Vocabulary vocabulary) {
   if (!force.found) return {name, "-", "-", "-", "-"};
-  const std::string_view unit = unit_on(joint, "N");
+  const std::string_view unit = unit_on(vocabulary, "N");
   return {
       name, fmt::format("{:.3g} {}", force.rms, unit), fmt::format("{:.2g} {}", force.noise, unit),
       force.drive_rms > 0.0 ? fmt::format("{:.3g} %", 100.0 * force.rms / force.drive_rms) : "-",
@@ -76,7 +76,7 @@ std::string residual_text(const Job& job, const Diagnosis& diagnosis) {
       if (on.size() < kNamed) on.push_back(fmt::format("{} {:.2g} %", d.on, 100.0 * d.fraction));
     rows.push_back(
         {series_name(recording, role_name(recording, test.series.fitted),
-                     recording.measurements[test.series.measurement].signal, job.joint()),
+                     recording.measurements[test.series.measurement].signal, job.vocabulary()),
          test.explained ? "noise only" : fmt::format("{:.3g} %", test.unexplained_percent),
          fmt::format("{}", fmt::join(on, ", "))});
   }
@@ -89,7 +89,7 @@ std::string instruments_text(const Job& job, const Diagnosis& diagnosis) {
   for (const SeriesTest& test : diagnosis.tests) {
     const Recording& recording = job.recordings[test.series.recording];
     const Measurement& m = recording.measurements[test.series.measurement];
-    const std::string_view unit = info(m.signal, job.joint()).unit;
+    const std::string_view unit = info(m.signal, job.vocabulary()).unit;
     const std::string name = name_of(job, test.series);
     const auto add_line = [&](const std::string& what) {
       text += paragraph(fmt::format("The {} {}.", name, what), 2);

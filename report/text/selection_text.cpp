@@ -14,9 +14,9 @@ namespace {
 
 /// "F_c = 24.95 +- 0.12 N"; of a curve the range of its coefficients.
 std::string estimates_text(const std::vector<ParameterResult>& parameters, bool is_curve,
-                           Joint joint) {
+                           Vocabulary vocabulary) {
   const auto quantity_of = [&](const ParameterResult& p) -> const Quantity& {
-    return find_quantity(p.name, joint)->quantity;
+    return find_quantity(p.name, vocabulary)->quantity;
   };
   if (parameters.empty()) return "";
   if (is_curve) {
@@ -44,24 +44,24 @@ Tone tone_of(Decision decision) {
 }
 
 /// What other recordings say of an accepted effect.
-std::string elsewhere_text(const EffectTrial& t, Joint joint) {
+std::string elsewhere_text(const EffectTrial& t, Vocabulary vocabulary) {
   if (!t.replication || t.candidate.is_curve) return "";
   return fmt::format("; the recordings to validate, fitted by themselves, {}: {}",
                      t.replication->is_alike ? "tell alike" : "tell otherwise",
-                     estimates_text(t.replication->parameters, false, joint));
+                     estimates_text(t.replication->parameters, false, vocabulary));
 }
 
 std::string effects_text(const EffectSelection& selection, bool colour) {
   if (selection.effects.empty()) return "";
-  const Joint joint = selection.result.job.joint();
+  const Vocabulary vocabulary = selection.result.job.vocabulary();
   std::vector<std::vector<std::string>> rows;
   for (const Decision decision : {Decision::accepted, Decision::undecided, Decision::rejected})
     for (const EffectTrial& t : selection.effects) {
       if (t.decision != decision) continue;
-      const std::string estimate = estimates_text(t.parameters, t.candidate.is_curve, joint);
+      const std::string estimate = estimates_text(t.parameters, t.candidate.is_curve, vocabulary);
       rows.push_back({toned(decision_name(decision), tone_of(decision), colour), t.candidate.name,
-                      estimate + (estimate.empty() ? "" : ": ") + reason_text(t, joint) +
-                          elsewhere_text(t, joint)});
+                      estimate + (estimate.empty() ? "" : ": ") + reason_text(t, vocabulary) +
+                          elsewhere_text(t, vocabulary)});
     }
   return "Effects tried\n" +
          format_table(rows, {Alignment::left, Alignment::left, Alignment::wrapped}) + "\n";
@@ -73,7 +73,7 @@ std::string model_name(const SelectionStep& model) {
 
 std::string errors_text(const RunResult& run_result) {
   const EffectSelection& selection = *run_result.selection;
-  const Joint joint = run_result.job().joint();
+  const Vocabulary vocabulary = run_result.job().vocabulary();
   const bool tracking =
       std::ranges::any_of(run_result.scores.front().signals,
                           [](const SignalScore& s) { return s.tracking.has_value(); });
@@ -82,8 +82,9 @@ std::string errors_text(const RunResult& run_result) {
   for (const SignalScore& head : run_result.scores.front().signals) {
     const Recording& recording = run_result.job().recordings[head.recording];
     const Measurement& m = recording.measurements[head.measurement];
-    const std::string_view unit = info(m.signal, joint).unit;
-    rows.push_back({series_name(recording, role_name(recording, head.fitted), m.signal, joint)});
+    const std::string_view unit = info(m.signal, vocabulary).unit;
+    rows.push_back(
+        {series_name(recording, role_name(recording, head.fitted), m.signal, vocabulary)});
     for (std::size_t i = 0; i < selection.models.size(); ++i) {
       const SignalScore* score = find_series(run_result.scores[i].signals, head);
       std::vector<std::string> row{model_name(selection.models[i]), "-", "-", "-", ""};
@@ -106,15 +107,15 @@ std::string errors_text(const RunResult& run_result) {
 
 std::string forces_text(const RunResult& run_result) {
   const EffectSelection& selection = *run_result.selection;
-  const Joint joint = run_result.job().joint();
+  const Vocabulary vocabulary = run_result.job().vocabulary();
   std::vector<std::vector<std::string>> rows;
   for (std::size_t r = 0; r < run_result.job().recordings.size(); ++r) {
     rows.push_back({run_result.job().recordings[r].name});
     for (std::size_t i = 0; i < selection.models.size(); ++i)
       rows.push_back(
-          force_cells(model_name(selection.models[i]), run_result.scores[i].forces[r], joint));
+          force_cells(model_name(selection.models[i]), run_result.scores[i].forces[r], vocabulary));
   }
-  return forces_table("Missing force on the arm, before and after", std::move(rows), joint);
+  return forces_table("Missing force on the arm, before and after", std::move(rows), vocabulary);
 }
 
 }  // namespace

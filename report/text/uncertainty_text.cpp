@@ -105,7 +105,7 @@ std::string second_opinion_text(const RunResult& run_result) {
     text += paragraph(
         fmt::format("The fit began from an inverse-dynamics estimate, the balance of {} without a "
                     "simulation: from the initial values it ended worse, or nowhere.",
-                    words_on(run_result.job().joint(), "forces")),
+                    words_on(run_result.job().vocabulary(), "forces")),
         2);
   if (!run_result.second_opinion) return text;
   const auto& [estimate, contradictions] = *run_result.second_opinion;
@@ -118,7 +118,7 @@ std::string second_opinion_text(const RunResult& run_result) {
     text += paragraph(
         fmt::format("Inverse dynamics, without a simulation: {}. Of the {} {:.2g} % remain "
                     "unexplained.",
-                    fmt::join(values, ", "), words_on(run_result.job().joint(), "drive force"),
+                    fmt::join(values, ", "), words_on(run_result.job().vocabulary(), "drive force"),
                     100.0 * estimate.residual / estimate.drive_rms),
         2);
   if (contradictions.empty()) return text;
@@ -176,16 +176,16 @@ std::string profiles_text(const RunResult& run_result) {
 }
 
 std::string suggestion_text(const RunResult& run_result) {
-  const Joint joint = run_result.job().joint();
-  const std::string_view metre = unit_on(joint, "m"), speed = unit_on(joint, "m/s");
+  const Vocabulary vocabulary = run_result.job().vocabulary();
+  const std::string_view metre = unit_on(vocabulary, "m"), speed = unit_on(vocabulary, "m/s");
   for (const Discrimination& discrimination : run_result.discriminations)
     if (discrimination.experiment)
       return "Next experiment\n" +
              paragraph(fmt::format("Record {}, for {:.3g} s, with the {}: it discriminates between "
                                    "the undecided effects.",
-                                   motion_text(discrimination.experiment->motion, joint),
+                                   motion_text(discrimination.experiment->motion, vocabulary),
                                    discrimination.experiment->duration,
-                                   info(*discrimination.signal, joint).name),
+                                   info(*discrimination.signal, vocabulary).name),
                        2);
   const std::string none = "Next experiment: none is suggested, for ";
   if (!run_result.grade.is_usable())
@@ -206,13 +206,14 @@ std::string suggestion_text(const RunResult& run_result) {
   std::string text = fmt::format(
       "Record {}, for {:.3g} s: it does most for {}, the least determined parameter. Of {} motions "
       "tried, {} stay within {:.4g} .. {:.4g} {}, {:.3g} {} and {:.3g} V.",
-      motion_text(s.experiment.motion, joint), s.experiment.duration, name, s.tried, s.feasible,
-      *s.limits.lowest, *s.limits.highest, metre, *s.limits.speed, speed, *s.limits.voltage);
+      motion_text(s.experiment.motion, vocabulary), s.experiment.duration, name, s.tried,
+      s.feasible, *s.limits.lowest, *s.limits.highest, metre, *s.limits.speed, speed,
+      *s.limits.command);
   text += fmt::format(
       " For all values within the 95 % intervals, or the bounds of what is not determined, the "
       "simulated {} stays within {:.4g} .. {:.4g} {} and {:.3g} {}, {:.2g} {} and {:.2g} {} from "
       "the limits.",
-      words_on(joint, "arm"), s.reach.lowest + 0.0, s.reach.highest, metre,  // no "-0"
+      words_on(vocabulary, "arm"), s.reach.lowest + 0.0, s.reach.highest, metre,  // no "-0"
       s.reach.speed, speed,
       std::max(0.0,
                std::min(s.reach.lowest - *s.limits.lowest, *s.limits.highest - s.reach.highest)),
@@ -222,7 +223,7 @@ std::string suggestion_text(const RunResult& run_result) {
     text += " These limits are what the recordings covered; set 'limits' in the job to allow more.";
   if (!s.predicted.parameters[s.parameter].determined) {
     const std::size_t quantity = run_result.job().free[s.parameter].quantity;
-    const std::string_view need = excitation_needed(quantity_list()[quantity], joint);
+    const std::string_view need = excitation_needed(quantity_list()[quantity], vocabulary);
     text += fmt::format(" Even then {} remains undetermined{}{}.", name,
                         need.empty() ? "" : ": it needs ", need);
   }
@@ -254,13 +255,14 @@ std::string forecast_text(const Job& job, const Forecast& forecast, bool colour)
     rows.push_back(
         {space.name(i),
          u.determined ? with_unit(fmt::format("{:.2g}", u.standard_error), unit) : "-",
-         most > 0.0 ? fmt::format(
-                          "{} of {}",
-                          info(recording.measurements[series.measurement].signal, job.joint()).name,
-                          recording.name)
-                    : "no signal"});
+         most > 0.0
+             ? fmt::format(
+                   "{} of {}",
+                   info(recording.measurements[series.measurement].signal, job.vocabulary()).name,
+                   recording.name)
+             : "no signal"});
     const std::string_view need =
-        excitation_needed(quantity_list()[space[i].quantity], job.joint());
+        excitation_needed(quantity_list()[space[i].quantity], job.vocabulary());
     if ((!u.determined || u.weak) && !u.at_bound && !need.empty())
       needs += paragraph(fmt::format("{} needs {}.", space.name(i), need), 2);
   }

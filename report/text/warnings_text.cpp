@@ -15,11 +15,11 @@ std::string short_number(double value) { return fmt::format("{:.4g}", value); }
 
 /// What the signals are called.
 struct Names {
-  Joint joint;
+  Vocabulary vocabulary;
 
-  std::string_view operator()(Signal signal) const { return info(signal, joint).name; }
+  std::string_view operator()(Signal signal) const { return info(signal, vocabulary).name; }
   std::string value(double value, Signal signal) const {
-    return with_unit(short_number(value), info(signal, joint).unit);
+    return with_unit(short_number(value), info(signal, vocabulary).unit);
   }
 };
 
@@ -77,9 +77,9 @@ constexpr Advice kOfTurning[]{
      "The velocity is per second: use 1/s instead of 1/min or rpm."},
 };
 
-std::string_view advice_on(const warning::WrongRate& w, Joint joint) {
+std::string_view advice_on(const warning::WrongRate& w, Vocabulary vocabulary) {
   const std::span<const Advice> known =
-      joint == Joint::prismatic ? std::span<const Advice>(kOfSliding) : kOfTurning;
+      vocabulary.joint == Joint::prismatic ? std::span<const Advice>(kOfSliding) : kOfTurning;
   const auto advice = std::ranges::find_if(
       known, [&](const Advice& a) { return a.rate == w.rate.rate && a.mistake == w.mistake; });
   if (advice == known.end()) return "No unit explains this: is there a gear between the two?";
@@ -122,7 +122,7 @@ std::string text_of(const warning::UnlikelyInterval& w, const Names&) {
 std::string text_of(const warning::WrongRate& w, const Names& name) {
   std::string text = fmt::format("{} is {:.5g} times the derivative of the {}.", name(w.rate.rate),
                                  w.rate.found.ratio, name(w.rate.of));
-  if (w.wrong_size) text += fmt::format(" {}", advice_on(w, name.joint));
+  if (w.wrong_size) text += fmt::format(" {}", advice_on(w, name.vocabulary));
   if (w.rate.found.ratio < 0.0) text += " Their signs differ: use 'sign: -1' for one of them.";
   return text;
 }
@@ -136,8 +136,9 @@ std::string text_of(const warning::UnlikelySpeed& w, const Names& name) {
       "The {} reaches {} {}, but at its largest command, {} V, the axis file gives {} {}. Check "
       "the "
       "units of the command and of the {}, and K_1, K_2, K_t and r_g.",
-      words_on(name.joint, "arm"), short_number(w.speed), unit_on(name.joint, "m/s"),
-      short_number(w.command), short_number(w.expected), unit_on(name.joint, "m/s"), name(w.from));
+      words_on(name.vocabulary, "arm"), short_number(w.speed), unit_on(name.vocabulary, "m/s"),
+      short_number(w.command), short_number(w.expected), unit_on(name.vocabulary, "m/s"),
+      name(w.from));
 }
 
 std::string text_of(const warning::Constant& w, const Names& name) {
@@ -148,7 +149,7 @@ std::string text_of(const warning::Stuck& w, const Names& name) {
   return fmt::format(
       "{} has the same value in {} samples from {} s on, while the {} moves: the sensor is stuck. "
       "Trim the recording, or do not fit the signal ('fit: false').",
-      name(w.signal), w.samples, short_number(w.at), words_on(name.joint, "arm"));
+      name(w.signal), w.samples, short_number(w.at), words_on(name.vocabulary, "arm"));
 }
 
 std::string text_of(const warning::Clipped& w, const Names& name) {
@@ -195,15 +196,15 @@ std::string text_of(const warning::UnlikelySigma& w, const Names& name) {
 
 }  // namespace
 
-std::string warning_text(const RecordingWarning& warning, Joint joint) {
-  return std::visit([&](const auto& w) { return text_of(w, Names{joint}); }, warning);
+std::string warning_text(const RecordingWarning& warning, Vocabulary vocabulary) {
+  return std::visit([&](const auto& w) { return text_of(w, Names{vocabulary}); }, warning);
 }
 
 std::vector<std::string> warnings_for(const Job& job, const Recording& recording,
                                       const RecordingCheck& check) {
   std::vector<std::string> texts;
   for (const RecordingWarning& warning : warnings_of(job, recording, check))
-    texts.push_back(warning_text(warning, job.joint()));
+    texts.push_back(warning_text(warning, job.vocabulary()));
   return texts;
 }
 

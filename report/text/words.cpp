@@ -59,12 +59,12 @@ std::string rejection_text(const Rejection& rejection) {
 }
 
 /// What to record where an effect cannot be judged.
-std::string advice_text(const EffectTrial& trial, Joint joint) {
+std::string advice_text(const EffectTrial& trial, Vocabulary vocabulary) {
   if (trial.rejection->test != Rejection::Test::power || trial.candidate.strengths.empty())
     return "";
   const auto effect = quantity_list()[trial.candidate.strengths.front()].effect;
   if (!effect) return "";
-  return fmt::format("; record {}", words_on(joint, kEffectTable[*effect].excitation));
+  return fmt::format("; record {}", words_on(vocabulary, kEffectTable[*effect].excitation));
 }
 
 std::string text_of(const StepMotion& motion) {
@@ -107,10 +107,10 @@ std::string text_of(const PrbsMotion& motion) {
                      std::abs(motion.amplitude), motion.bit);
 }
 
-std::string text_of(const MoveMotion& motion, Joint joint) {
+std::string text_of(const MoveMotion& motion, Vocabulary vocabulary) {
   return fmt::format("a move of {:.3g} {} at {:.3g} {} and {:.3g} {}", motion.distance,
-                     unit_on(joint, "m"), motion.speed, unit_on(joint, "m/s"), motion.acceleration,
-                     unit_on(joint, "m/s^2"));
+                     unit_on(vocabulary, "m"), motion.speed, unit_on(vocabulary, "m/s"),
+                     motion.acceleration, unit_on(vocabulary, "m/s^2"));
 }
 
 std::string text_of(const RecordedMotion&) { return "a recorded motion"; }
@@ -173,10 +173,11 @@ const char* grade_name(Grade grade) {
   return "";
 }
 
-std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour, Joint joint) {
+std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour,
+                       Vocabulary vocabulary) {
   const std::string heading = grade_heading(grade, colour);
   const auto signal = [&] {
-    return fmt::format("the {} of {}", info(grade.signal, joint).name, grade.recording);
+    return fmt::format("the {} of {}", info(grade.signal, vocabulary).name, grade.recording);
   };
   using enum FitGrade::Reason;
   switch (grade.reason) {
@@ -206,12 +207,12 @@ std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour,
       return fmt::format(
           "{}: the {} that the model lacks in {} is {:.3g} % of the drive's. Check the units and "
           "signs of the columns and what the axis file declares.",
-          heading, words_on(joint, "force"), grade.recording, grade.percent);
+          heading, words_on(vocabulary, "force"), grade.recording, grade.percent);
     case tracking_only:
       return fmt::format(
           "{} while it tracks recordings: the free-running simulation {}. The parameters describe "
           "the {}; do not simulate with them for long.",
-          heading, followed_text(grade.percent, signal()), words_on(joint, "forces"));
+          heading, followed_text(grade.percent, signal()), words_on(vocabulary, "forces"));
     case residual:
     case none:
       break;
@@ -271,7 +272,7 @@ std::string verdict_text(const EffectSelection& selection) {
                        "The declared model does not fit: of {}, {:.3g} % of the {} is missing. "
                        "Nothing can be said about effects yet.",
                        verdict.recording, verdict.force_percent,
-                       words_on(selection.result.job.joint(), "drive force"))
+                       words_on(selection.result.job.vocabulary(), "drive force"))
                  : fmt::format(
                        "The declared model does not fit: {} is at its bound. Nothing can be said "
                        "about effects yet.",
@@ -287,20 +288,20 @@ std::string verdict_text(const EffectSelection& selection) {
 
 std::string overall_verdict(const RunResult& run_result, bool colour) {
   const FitGrade& grade = run_result.grade;
-  const Joint joint = run_result.job().joint();
-  if (!run_result.selection) return grade_text(grade, run_result.fit(), colour, joint);
+  const Vocabulary vocabulary = run_result.job().vocabulary();
+  if (!run_result.selection) return grade_text(grade, run_result.fit(), colour, vocabulary);
   // Both judge the same model by the same residual.
   const bool by_residual =
       grade.reason == FitGrade::Reason::residual || grade.reason == FitGrade::Reason::none;
   return (by_residual ? grade_heading(grade, colour) + "."
-                      : grade_text(grade, run_result.fit(), colour, joint)) +
+                      : grade_text(grade, run_result.fit(), colour, vocabulary)) +
          " " + verdict_text(*run_result.selection);
 }
 
-std::string reason_text(const EffectTrial& trial, Joint joint) {
+std::string reason_text(const EffectTrial& trial, Vocabulary vocabulary) {
   switch (trial.reason) {
     case Reason::failed_test:
-      return rejection_text(trial.rejection.value()) + advice_text(trial, joint);
+      return rejection_text(trial.rejection.value()) + advice_text(trial, vocabulary);
     case Reason::explains_best:
       return fmt::format(
           "explains the residual best: {:.3g} % lower validation error ({:.3g} standard deviations "
@@ -340,11 +341,11 @@ std::string weak_direction_text(const WeakDirection& weak) {
                      fmt::join(changes, ", "));
 }
 
-std::string motion_text(const Motion& motion, Joint joint) {
+std::string motion_text(const Motion& motion, Vocabulary vocabulary) {
   return std::visit(
-      [joint]<class M>(const M& m) {
+      [vocabulary]<class M>(const M& m) {
         if constexpr (std::is_same_v<M, MoveMotion>)
-          return text_of(m, joint);
+          return text_of(m, vocabulary);
         else
           return text_of(m);
       },
@@ -374,14 +375,14 @@ std::string guess_text(const GuessInfluence& guess) {
                      guess.name, guess.elasticity);
 }
 
-std::string discrimination_text(const Discrimination& discrimination, Joint joint) {
+std::string discrimination_text(const Discrimination& discrimination, Vocabulary vocabulary) {
   std::string text = fmt::format("{} and {} explain these recordings equally well; ",
                                  discrimination.chosen, discrimination.rival);
   if (!discrimination.signal) return text + "no motion tried discriminates between them.";
   return text + fmt::format("they differ most in the {} during {}: by {:.2g} times its noise.",
-                            info(*discrimination.signal, joint).name,
+                            info(*discrimination.signal, vocabulary).name,
                             discrimination.experiment
-                                ? motion_text(discrimination.experiment->motion, joint)
+                                ? motion_text(discrimination.experiment->motion, vocabulary)
                                 : "the motion of " + discrimination.recording,
                             discrimination.size);
 }
@@ -399,8 +400,8 @@ std::string input_noise_text(const Job& job) {
   return fmt::format(
       "noise of {} in the {}{}",
       with_unit(fmt::format("{:.3g}", noisiest.command_sigma),
-                force ? unit_on(job.joint(), "N") : "V"),
-      force ? words_on(job.joint(), "drive force") : "command",
+                unit_on(job.vocabulary(), force ? "N" : kCommandUnit)),
+      force ? words_on(job.vocabulary(), "drive force") : "command",
       noisiest.command_noise == NoiseSource::given ? "" : ", estimated from its samples");
 }
 

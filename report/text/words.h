@@ -14,7 +14,7 @@ const char* grade_name(Grade grade);
 
 /// How far a fit can be relied on, and why, one sentence or a few.
 std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour = false,
-                       Joint joint = Joint::prismatic);
+                       Vocabulary vocabulary = {});
 
 /// What a search for effects comes to, a sentence or a few.
 std::string verdict_text(const EffectSelection& selection);
@@ -23,13 +23,13 @@ std::string verdict_text(const EffectSelection& selection);
 std::string overall_verdict(const RunResult& run_result, bool colour = false);
 
 /// What the decision on an effect rests on; no sentence, to follow its estimate.
-std::string reason_text(const EffectTrial& trial, Joint joint = Joint::prismatic);
+std::string reason_text(const EffectTrial& trial, Vocabulary vocabulary = {});
 
 /// What the recordings leave open in that direction, one sentence.
 std::string weak_direction_text(const WeakDirection& weak);
 
 /// "a step of 10 V"
-std::string motion_text(const Motion& motion, Joint joint = Joint::prismatic);
+std::string motion_text(const Motion& motion, Vocabulary vocabulary = {});
 
 /// "known only as a ratio to K_f, which is a guess"
 std::string guess_text(const GuessInfluence& guess);
@@ -42,8 +42,7 @@ std::string better_gain_text(const FitResult& fit);
 /// "(8.10 +- 0.20) N exp(-|v| / 0.02 m/s)".
 std::string closed_form_text(const ClosedForm& closed_form);
 /// In which motion and signal two undecided effects differ, one sentence.
-std::string discrimination_text(const Discrimination& discrimination,
-                                Joint joint = Joint::prismatic);
+std::string discrimination_text(const Discrimination& discrimination, Vocabulary vocabulary = {});
 
 /// Whether the input of a recording is a force, and no command.
 bool drives_by_force(const Recording& recording, const Model<double>& model);

@@ -16,7 +16,8 @@ struct CommandOffset {
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
-    visit(Quantity{"U_0", "V", "offset of the command", -1e3, 1e3}.typically(0.05), self.U_0);
+    visit(Quantity{"U_0", kCommandUnit, "offset of the command", -1e3, 1e3}.typically(0.05),
+          self.U_0);
   }
 
   static std::vector<SearchEntry> search(const SearchScales&) {

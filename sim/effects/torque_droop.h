@@ -18,7 +18,7 @@ struct TorqueDroop {
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
     visit(Quantity{"c_i", "1/A", "relative loss of K_m per ampere", -1, 1, kRequired,
-                   UsedBy::electric_drive}
+                   UsedBy::motor_constant}
               .typically(0.01),
           self.c_i);
   }

@@ -23,15 +23,15 @@ struct TorqueRipple {
   static void visit(Self& self, Visitor&& visit) {
     using enum UsedBy;
     visit(
-        Quantity{"r_s", "1", "sine coefficient, relative to K_m", -1, 1, kRequired, electric_drive}
+        Quantity{"r_s", "1", "sine coefficient, relative to K_m", -1, 1, kRequired, motor_constant}
             .typically(0.03),
         self.r_s);
     visit(Quantity{"r_c", "1", "cosine coefficient, relative to K_m", -1, 1, kRequired,
-                   electric_drive}
+                   motor_constant}
               .typically(-0.02),
           self.r_c);
     visit(Quantity{"order", "1", "periods per motor revolution", 0.01, 1e3, kRequired,
-                   electric_drive, true}
+                   motor_constant, true}
               .typically(2.0),
           self.order);
   }

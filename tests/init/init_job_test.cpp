@@ -142,8 +142,8 @@ TEST_F(InitJobTest, AnglesMakeARevoluteJoint) {
   folder_.write("a.csv", table);
   make({"a.csv"});
   const std::string made = folder_.read("axis.yaml"), job = folder_.read("job.yaml");
-  for (const char* expected : {"joint: revolute\n", "drive: torque_source ",
-                               "\n  J: ", "{T_c: ", "constant_torque: {T_0: ", "K_f: 1 N m/V"})
+  for (const char* expected : {"joint: revolute\n", "drive: motor_current ",
+                               "\n  J: ", "{T_c: ", "constant_torque: {T_0: ", "K_f: 1 N m/A"})
     EXPECT_NE(made.find(expected), std::string::npos) << expected << "\n" << made;
   for (const char* expected : {"position: {column: \"angle [deg]\", unit: deg}",
                                "velocity: {column: \"speed [rpm]\", unit: rpm}"})
@@ -166,7 +166,7 @@ TEST_F(InitJobTest, ARowOfUnitsCountsAsTheNames) {
   make({"a.csv"});
   const std::string job = folder_.read("job.yaml");
   for (const char* line :
-       {"time: {column: t, unit: ms}", "command: {column: iq, unit: V, factor: 0.001}",
+       {"time: {column: t, unit: ms}", "command: {column: iq, unit: mA}",
         "position: {column: pos, unit: um}", "velocity: {column: vel, unit: mm/s}"})
     EXPECT_NE(job.find(line), std::string::npos) << line << '\n' << job;
   // What the row says is checked as what a name says.
@@ -177,10 +177,10 @@ TEST_F(InitJobTest, ARowOfUnitsCountsAsTheNames) {
 TEST_F(InitJobTest, TheUsersGainIsAllThatABentScrewNeeds) {
   make({AXISFIT_TESTDATA "/screw/bent-sweep.csv", AXISFIT_TESTDATA "/screw/bent-move.csv"});
   std::string axis = folder_.read("axis.yaml");
-  const std::string guessed = "K_f: 1 N/V";
+  const std::string guessed = "K_f: 1 N/A";
   ASSERT_NE(axis.find(guessed), std::string::npos) << axis;
   EXPECT_EQ(read().job.guessed, std::vector{find_quantity("K_f")->index});
-  axis.replace(axis.find(guessed), guessed.size(), "K_f: 113.0973 N/V");
+  axis.replace(axis.find(guessed), guessed.size(), "K_f: 113.0973 N/A");
   axis.erase(axis.find("guessed: [K_f]"), axis.find("parameters:") - axis.find("guessed: [K_f]"));
   folder_.write("axis.yaml", axis);
   EXPECT_TRUE(read().job.guessed.empty());
@@ -203,7 +203,7 @@ TEST_F(InitJobTest, NothingButShortNamesIsEnough) {
   const InitialJob made = make({"a.csv", "b.csv"});
   const std::string text = folder_.read("job.yaml");
   EXPECT_NE(text.find("\n    # Not used: dummy\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("command: {column: iq, unit: V, sign: -1}"), std::string::npos) << text;
+  EXPECT_NE(text.find("command: {column: iq, unit: A, sign: -1}"), std::string::npos) << text;
   EXPECT_NE(text.find("times the derivative of the position: taken as mm/s"), std::string::npos);
   EXPECT_GE(made.guesses.size(), 3u);
   const JobFile file = read();
@@ -331,7 +331,7 @@ TEST_F(InitJobTest, AKnownGainIsAllThatACurrentNeeds) {
   EXPECT_THROW(make({"a.csv"}, {}, 60.0), std::runtime_error);
 }
 
-// Without the rating, a torque in per cent is no force: K_f is a guess.
+// Without the rating, a torque in per cent is no force: K_f, the rated force, is a guess.
 TEST_F(InitJobTest, APartOfARatingNeedsTheGain) {
   folder_.write("a.csv", renamed(driven(), {{"t_s", 1.0},
                                             {"TorqueActual [%]", 1.0},
@@ -339,10 +339,13 @@ TEST_F(InitJobTest, APartOfARatingNeedsTheGain) {
                                             {"v_mps", 1.0},
                                             {"a_mps2", 1.0}}));
   const InitialJob made = make({"a.csv"});
-  EXPECT_TRUE(std::ranges::any_of(made.guesses, [](const std::string& text) {
-    return text.starts_with("TorqueActual [%]: in per cent of the rated torque or force");
-  })) << fmt::format("{}", fmt::join(made.guesses, "; "));
+  ASSERT_EQ(made.guesses.size(), 1u);
+  EXPECT_TRUE(made.guesses[0].starts_with("the drive gain, K_f in axis.yaml")) << made.guesses[0];
+  EXPECT_NE(folder_.read("job.yaml").find("command: {column: \"TorqueActual [%]\", unit: \"%\"}"),
+            std::string::npos)
+      << folder_.read("job.yaml");
   const JobFile file = read();
+  EXPECT_EQ(file.job.model.structure.drive, Drive::rated_force);
   EXPECT_EQ(file.job.guessed, std::vector{find_quantity("K_f")->index});
   expect_the_driven_mass(fitted(file), 1.0 / 60.0);
 }

@@ -574,7 +574,7 @@ TEST(ResultTest, TheNextExperimentPredictsWhatIsKnownAfterIt) {
   run_result.options.suggest_experiment = true;
   Suggestion& s = run_result.suggestion.emplace();
   s.experiment = {.motion = StepMotion{3.0, 0.0}, .duration = 2.0};
-  s.limits = {.lowest = -1.0, .highest = 1.0, .speed = 0.5, .voltage = 10.0};
+  s.limits = {.lowest = -1.0, .highest = 1.0, .speed = 0.5, .command = 10.0};
   s.reach = {.lowest = -0.25, .highest = 0.875, .speed = 0.375};
   const auto known = [](double value, double error) {
     return ParameterUncertainty{.determined = true,

@@ -85,6 +85,13 @@ inline std::vector<double> instants(std::size_t n, double dt) {
   return times;
 }
 
+/// All drives that an axis can have.
+inline std::vector<Drive> every_drive() {
+  std::vector<Drive> drives;
+  for (std::size_t drive = 0; drive < kDrives; ++drive) drives.push_back(static_cast<Drive>(drive));
+  return drives;
+}
+
 /// A command in which every kind of motion occurs.
 inline Schedule step_command() { return {{0.0}, {10.0}}; }
 inline Schedule level_command() {

@@ -35,7 +35,7 @@ TEST(Derivatives, EqualDifferencesWithFrictionAndEffects) {
 }
 
 TEST(Derivatives, EqualDifferencesInTheRigidVariants) {
-  for (const Drive drive : {Drive::velocity_loop, Drive::current_source, Drive::force_source}) {
+  for (const Drive drive : every_drive()) {
     SCOPED_TRACE(static_cast<int>(drive));
     Experiment experiment = up_and_back();
     Model<double>& m = experiment.model;
@@ -45,7 +45,9 @@ TEST(Derivatives, EqualDifferencesInTheRigidVariants) {
     m.axis.F_s = 30.0;
     m.axis.K_f = 20.0;
     add_effect<CoulombFriction>(m).F_c = 15.0;
-    if (drive == Drive::force_source) experiment.command = {{0.0, 0.8, 1.6}, {10.0, 0.0, -7.0}};
+    if (capabilities(m.structure).is_direct())
+      experiment.command = {{0.0, 0.8, 1.6}, {10.0, 0.0, -7.0}};
+    if (drive == Drive::motor_voltage) experiment.command.values = {30.0, 0.0, -20.0};
     expect_derivatives(experiment);
   }
 }

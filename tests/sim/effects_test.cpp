@@ -26,6 +26,7 @@ constexpr Variant kVariants[] = {
     {"velocity loop with backlash", Drive::velocity_loop, Transmission::backlash},
     {"rigid current source", Drive::current_source, Transmission::rigid},
     {"rigid force source", Drive::force_source, Transmission::rigid},
+    {"rigid motor at a voltage", Drive::motor_voltage, Transmission::rigid},
 };
 
 /// Gives an effect to a model, at its typical shape and strength, or at strength zero.
@@ -48,6 +49,8 @@ Experiment to_and_fro(const Variant& variant, bool with_friction) {
     m.axis.K_f = 40.0;
     normalize(m);
     experiment.command = {{0.0, 0.2, 0.75}, {8.0, -7.0, 0.0}};
+  } else if (variant.drive == Drive::motor_voltage) {
+    experiment.command = {{0.0, 0.2, 0.75}, {20.0, -17.0, 0.1}};
   } else {
     experiment.command = {{0.0, 0.25, 0.6}, {4.0, -3.0, 0.0}};
   }

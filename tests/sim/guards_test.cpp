@@ -108,7 +108,7 @@ TEST(GuardForms, FollowTheGuardsOfAnArmAtRestThatIsHeldToATarget) {
 
 TEST(Guards, HaveRoomForThoseOfEveryMode) {
   std::size_t most = 0;
-  for (const Drive drive : {Drive::velocity_loop, Drive::current_source, Drive::force_source})
+  for (const Drive drive : every_drive())
     for (const Transmission transmission : {Transmission::backlash, Transmission::rigid}) {
       Model<double> model = paper_axis();
       model.structure = {drive, transmission, {}};

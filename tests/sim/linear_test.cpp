@@ -71,6 +71,30 @@ TEST(LinearCase, EqualsTheAnalyticStepResponse) {  // statement 1 of the paper
   }
 }
 
+// A motor at a constant voltage: its speed rises to where the back EMF leaves what friction takes,
+//   v' = (K_m (U - K_m v / r_g) / (R r_g) - (B_a + B_m / r_g^2) v) / (M + J_m / r_g^2).
+TEST(MotorAtAVoltage, ReachesItsSpeedLikeAFirstOrderLag) {
+  Model<double> model = paper_axis();
+  model.structure = {Drive::motor_voltage, Transmission::rigid};
+  const Axis<double>& a = model.axis;
+  const double U = 12.0, r2 = a.r_g * a.r_g;
+  const double rate = (a.K_m * a.K_m / (a.R * r2) + a.B_a + a.B_m / r2) / (a.M + a.J_m / r2);
+  const double speed = a.K_m * U / (a.R * a.r_g) / (a.M + a.J_m / r2) / rate;
+  const auto times = instants(500, 2e-3);
+  const auto result = run(model, {{0.0}, {U}}, times);
+  ASSERT_TRUE(result.finished);
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const double v = speed * (1.0 - std::exp(-rate * times[k]));
+    EXPECT_NEAR(result.states[k][1], v, 1e-12 * speed);
+  }
+  const Equations<double> equations(model);
+  Input<double> input;
+  input.command = U;
+  State<double> y{};
+  y[3] = 2.0;
+  EXPECT_DOUBLE_EQ(equations.current({}, y, input), (U - a.K_m * 2.0) / a.R);
+}
+
 /// Largest difference in velocity to the linear case, of the whole model with its limits out of the
 /// way, no backlash, and the given stiffness and gain.
 double distance_to_linear(double k_g, double K_v) {

@@ -162,6 +162,12 @@ TEST(IsUsed, FollowsTheStructure) {
        force + supply + soft},
       {Drive::force_source, Transmission::backlash, selection + electric,
        of_electric + supply + soft},
+      {Drive::motor_current, Transmission::backlash, selection + electric,
+       of_electric + supply + soft},
+      {Drive::rated_force, Transmission::backlash, selection + electric,
+       of_electric + supply + soft},
+      {Drive::motor_voltage, Transmission::backlash,
+       selection - Names{"R"} + electric - Names{"K_m"} + Names{"K_f"}, force + supply + soft},
       {Drive::velocity_loop, Transmission::rigid, gear + Names{"K_f"}, force},
       {Drive::current_source, Transmission::rigid, gear + selection + Names{"K_f"}, force + supply},
       {Drive::force_source, Transmission::rigid, gear + selection + electric + motor,
@@ -182,7 +188,7 @@ TEST(IsUsed, FollowsTheStructure) {
 
 TEST(IsUsed, WhatIsNotUsedHasNoInfluence) {
   const auto times = instants(100, 1e-3);
-  for (const Drive drive : {Drive::velocity_loop, Drive::current_source, Drive::force_source})
+  for (const Drive drive : every_drive())
     for (const Transmission transmission : {Transmission::backlash, Transmission::rigid}) {
       Model<double> model = paper_axis();
       model.structure = {drive, transmission, {}};
@@ -190,7 +196,7 @@ TEST(IsUsed, WhatIsNotUsedHasNoInfluence) {
       const auto before = run(model, step_command(), times);
       for (const QuantityEntry& entry : quantity_list()) {
         if (is_used(entry, model.structure) || entry.group == "initial") continue;
-        if (drive == Drive::force_source && transmission == Transmission::rigid &&
+        if (capabilities(model.structure).is_force_driven && transmission == Transmission::rigid &&
             (entry.name == "J_m" || entry.name == "B_m" || entry.name == "r_g"))
           continue;
         Model<double> changed = model;

@@ -79,7 +79,7 @@ TEST(SuggestExperiment, IsFollowedWithTheSuccessPredicted) {
     EXPECT_GE(s.position, *kLimits.lowest - 1e-3);
     EXPECT_LE(s.position, *kLimits.highest + 1e-3);
     EXPECT_LE(std::abs(s.velocity), *kLimits.speed + 1e-3);
-    EXPECT_LE(std::abs(s.command), *kLimits.voltage);
+    EXPECT_LE(std::abs(s.command), *kLimits.command);
   }
 }
 

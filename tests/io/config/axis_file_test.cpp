@@ -171,7 +171,7 @@ Rig random_rig(std::mt19937_64& generator, const Structure& structure) {
   rig.name = "rig " + structure.effects.to_string();
   rig.model.structure = structure;
   const auto member = members(rig.model);
-  for (const QuantityEntry& entry : quantity_list(structure.joint))
+  for (const QuantityEntry& entry : quantity_list(vocabulary_of(structure)))
     *member[entry.index] = random_value(generator, entry.quantity.lower, entry.quantity.upper);
   for (double& noise : rig.noise) noise = random_value(generator, 1e-9, 1e6);
   visit_settings(rig.controller, [&](const Quantity& setting, double& value) {
@@ -195,9 +195,9 @@ TEST_F(AxisFileTest, EveryVariantSurvivesWritingDigitForDigit) {
   std::mt19937_64 generator(7);
   std::vector<Structure> structures;
   for (const Joint joint : kJoints)
-    for (const Drive drive : {Drive::velocity_loop, Drive::current_source, Drive::force_source})
+    for (std::size_t drive = 0; drive < kDrives; ++drive)
       for (const Transmission transmission : {Transmission::backlash, Transmission::rigid})
-        structures.push_back({drive, transmission, {}, joint});
+        structures.push_back({static_cast<Drive>(drive), transmission, {}, joint});
   for (Structure structure : structures) {
     // None, each alone, and all, of those that have a part in the axis.
     const EffectSet all = usable_effects(structure);
@@ -347,7 +347,8 @@ TEST_F(AxisFileTest, EveryMistakeIsNamedWithItsPlace) {
           // Kinds of values.
           {"name: test axis", "name:", "1:1: name must be text, not empty"},
           {"current_source", "curent_source",
-           "2:8: drive must be one of velocity_loop, current_source, force_source, not "
+           "2:8: drive must be one of velocity_loop, current_source, force_source, motor_current, "
+           "rated_force, motor_voltage, not "
            "'curent_source'; did you mean 'current_source'?"},
           {"transmission: backlash", "transmission: belt",
            "3:15: transmission must be one of backlash, rigid, not 'belt'"},

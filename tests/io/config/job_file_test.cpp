@@ -305,7 +305,7 @@ TEST_F(JobFileTest, LimitsOfTheMachineAreRead) {
   EXPECT_DOUBLE_EQ(file.job.limits.lowest.value(), -0.01);
   EXPECT_DOUBLE_EQ(file.job.limits.highest.value(), 1.2);
   EXPECT_DOUBLE_EQ(file.job.limits.speed.value(), 0.9);
-  EXPECT_FALSE(file.job.limits.voltage);
+  EXPECT_FALSE(file.job.limits.command);
 }
 
 TEST_F(JobFileTest, NoiseIsEstimatedFromTheSamplesThatAreKept) {

@@ -180,7 +180,7 @@ TEST_F(KeyAgreement, AxisFile) {
   };
   for (const Joint joint : kJoints) {
     Json axis = example(axis_keys(joint));
-    axis["joint"] = joint_names()[static_cast<std::size_t>(joint)];
+    axis["joint"] = joint_name(joint);
     expect_agreement(axis, axis_keys(joint), read, [](const std::string& at) {
       return at != "/parameters/K_f";  // has no part in a velocity loop, whatever its value
     });

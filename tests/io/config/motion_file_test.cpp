@@ -138,7 +138,7 @@ TEST_F(MotionFileTest, AMoveNeedsASetVelocityInput) {
   EXPECT_EQ(errors(kMove), "");
   rig_ = shipped_axis("emps");
   EXPECT_EQ(errors(kMove),
-            "motion.yaml:1:7: a move needs a set-velocity input, which the force source of this "
+            "motion.yaml:1:7: a move needs a set-velocity input, which the drive of this "
             "axis does not have");
   EXPECT_EQ(errors("type: step\nlevel: 1 V\nduration: 1 s\n"), "");
 }

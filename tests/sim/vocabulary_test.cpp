@@ -1,5 +1,5 @@
 // Names, units and ranges on a revolute joint follow from those of a prismatic one.
-#include "sim/joint.h"
+#include "sim/vocabulary.h"
 
 #include <gtest/gtest.h>
 

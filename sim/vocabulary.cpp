@@ -1,4 +1,4 @@
-#include "sim/joint.h"
+#include "sim/vocabulary.h"
 
 #include <algorithm>
 #include <array>
@@ -24,6 +24,7 @@ constexpr auto kUnits = std::to_array<UnitPair>({
     {"kg", "kg m^2", 1e-6, 1.0},
     {"N", "N m"},
     {"N/V", "N m/V", 1e-3, 1.0},
+    {"N/A", "N m/A", 1e-3, 1.0},
     {"N/m", "N m/rad", 1e-3, 1.0},
     {"N/m^2", "N m/rad^2"},
     {"N s/m", "N m s/rad"},
@@ -35,6 +36,19 @@ constexpr auto kUnits = std::to_array<UnitPair>({
     {"1/N", "1/(N m)", 1.0, 1e3},
     {"1/m", "1/rad"},
     {"V s/m", "V s/rad", 1e-3, 1.0},
+    {"A s/m", "A s/rad", 1e-3, 1.0},
+    {"s/m", "s/rad", 1e-3, 1.0},
+});
+
+/// A unit with that of the command in it, by what the command is.
+struct UnitOfCommand {
+  std::string_view written;
+  std::array<std::string_view, std::size(kCommands)> of;
+};
+constexpr auto kOfCommand = std::to_array<UnitOfCommand>({
+    {kCommandUnit, {"V", "A", "1"}},
+    {"N/U", {"N/V", "N/A", "N"}},
+    {"U s/m", {"V s/m", "A s/m", "s/m"}},
 });
 
 using Exchange = std::pair<std::string_view, std::string_view>;
@@ -92,13 +106,16 @@ std::string_view kept(std::string text) {
 
 }  // namespace
 
-std::string_view unit_on(Joint joint, std::string_view unit) {
-  const UnitPair* pair = joint == Joint::revolute ? find_unit(unit) : nullptr;
+std::string_view unit_on(Vocabulary vocabulary, std::string_view unit) {
+  if (const auto* by_command = std::ranges::find(kOfCommand, unit, &UnitOfCommand::written);
+      by_command != kOfCommand.end())
+    unit = by_command->of[static_cast<std::size_t>(vocabulary.command)];
+  const UnitPair* pair = vocabulary.joint == Joint::revolute ? find_unit(unit) : nullptr;
   return pair == nullptr ? unit : pair->revolute;
 }
 
-std::string_view words_on(Joint joint, std::string_view text) {
-  if (joint == Joint::prismatic) return text;
+std::string_view words_on(Vocabulary vocabulary, std::string_view text) {
+  if (vocabulary.joint == Joint::prismatic) return text;
   if (const Exchange* whole = find(kPhrases, text)) return whole->second;
   const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
   std::string said;
@@ -112,25 +129,27 @@ std::string_view words_on(Joint joint, std::string_view text) {
   return kept(std::move(said));
 }
 
-Quantity quantity_on(Joint joint, const Quantity& quantity) {
-  if (joint == Joint::prismatic) return quantity;
-  Quantity turned = quantity;
-  turned.meaning = words_on(joint, quantity.meaning);
+Quantity quantity_on(Vocabulary vocabulary, const Quantity& quantity) {
+  Quantity called = quantity;
+  called.unit = unit_on({Joint::prismatic, vocabulary.command}, quantity.unit);
+  if (quantity.symbol == "K_f" && vocabulary.command == Command::current)
+    called.meaning = "force per ampere of the motor";
+  if (quantity.symbol == "K_f" && vocabulary.command == Command::share_of_rated)
+    called.meaning = "rated force";
+  if (vocabulary.joint == Joint::prismatic) return called;
+  called.meaning = words_on(vocabulary, called.meaning);
   if (const Exchange* symbol = find(kSymbols, quantity.symbol))
-    turned.symbol = symbol->second;
+    called.symbol = symbol->second;
   else if (quantity.symbol.starts_with("F_"))
-    turned.symbol = kept("T_" + std::string(quantity.symbol.substr(2)));
+    called.symbol = kept("T_" + std::string(quantity.symbol.substr(2)));
   if (quantity.symbol == "r_g") {
-    turned.unit = "1";  // of angles
-  } else if (const UnitPair* unit = find_unit(quantity.unit)) {
-    turned.unit = unit->revolute;
-    if (quantity.lower > 0.0)
-      turned.lower *= unit->lower;
-    else
-      turned.lower *= unit->upper;
-    turned.upper *= unit->upper;
+    called.unit = "1";  // of angles
+  } else if (const UnitPair* unit = find_unit(called.unit)) {
+    called.unit = unit->revolute;
+    called.lower *= called.lower > 0.0 ? unit->lower : unit->upper;
+    called.upper *= unit->upper;
   }
-  return turned;
+  return called;
 }
 
 }  // namespace axisfit
