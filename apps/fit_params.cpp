@@ -21,6 +21,7 @@
 #include "fit/design/run_time_estimate.h"
 #include "fit/run.h"
 #include "init/init_job.h"
+#include "init/starter_axis.h"
 #include "io/config/axis_file.h"
 #include "io/config/config.h"
 #include "io/config/job_file.h"
@@ -88,7 +89,7 @@ struct Arguments {
   std::string data;
   std::string output;
   std::string from;
-  std::string axis;
+  std::string axis, machine;
   std::optional<double> gain;        ///< N/V
   std::vector<std::string> answers;  ///< what columns are
   bool init = false;
@@ -179,8 +180,10 @@ int init(const Arguments& arguments, std::optional<ProgressLine>& line) {
   const fs::path folder = arguments.output.empty() ? "." : arguments.output;
   std::vector<ColumnAnswer> answers;
   for (const std::string& text : arguments.answers) answers.push_back(read_answer(text));
+  const bool is_machine = !arguments.machine.empty();
   const InitialJob created =
-      initial_job(arguments.files, arguments.axis, folder.string(), arguments.gain, answers);
+      initial_job(arguments.files, is_machine ? arguments.machine : arguments.axis, folder.string(),
+                  arguments.gain, answers, is_machine);
   const auto path = [&](const std::string& name) {
     return (folder / name).lexically_normal().string();
   };
@@ -455,12 +458,21 @@ int main(int argc, char** argv) {
                    ->needs(init)
                    ->check(kNotEmpty)
                    ->type_name("AXIS.yaml");
+  std::vector<std::string> machines;
+  for (const MachineAxis& machine : machine_axes()) machines.emplace_back(machine.name);
+  auto* machine = app.add_option("--machine", arguments.machine,
+                                 "with --init: begin with the axis file of such a machine")
+                      ->needs(init)
+                      ->excludes(axis)
+                      ->check(CLI::IsMember(machines))
+                      ->type_name("NAME");
   const Quantity& gain = find_quantity("K_f", Joint::revolute)->quantity;
   app.add_option("--gain", arguments.gain,
                  "with --init: force in N, or torque in N m, per unit of the recorded current or "
-                 "command")
+                 "command, or at 100 % of the rating")
       ->needs(init)
       ->excludes(axis)
+      ->excludes(machine)
       ->check(number(gain.lower, gain.upper))
       ->type_name("K_f");
   app.add_option("--column", arguments.answers,

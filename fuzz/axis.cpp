@@ -22,16 +22,16 @@ bool same(Rig a, Rig b) {
   for (std::size_t i = 0; i < p.size(); ++i)
     equal = equal && (same(*p[i], *q[i]) || !is_used(quantity_list()[i], s));
   std::vector<double> settings;
-  visit_settings(a.controller, [&](const Quantity&, double x) { settings.push_back(x); });
+  visit_settings(a.model.controller, [&](const Quantity&, double x) { settings.push_back(x); });
   std::size_t setting = 0;
-  visit_settings(b.controller,
+  visit_settings(b.model.controller,
                  [&](const Quantity&, double x) { equal = equal && same(x, settings[setting++]); });
   return equal && a.noise == b.noise;
 }
 
 void check_motion(const Folder& folder, const MotionFile& file, const Rig& rig) {
   if (std::holds_alternative<RecordedMotion>(file.motion)) return;
-  const std::string text = format_motion_file(file, "Motion.");
+  const std::string text = format_motion_file(file, "Motion.", vocabulary_of(rig.model.structure));
   try {
     const MotionFile again = read_motion_file(folder.write("again.yaml", text), rig);
     require(format_motion_file(again, "Motion.") == text, "a motion changes when written", text);

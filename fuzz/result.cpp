@@ -100,7 +100,7 @@ std::string axis_text(Draw& draw, const std::string& name) {
   const std::string named = name.empty() ? "" : fmt::format("name: {}\n", quoted(name));
   switch (draw.below(8)) {
     case 0: {
-      const std::string text(paper_axis());
+      const std::string text(machine_axes().front().text);
       return named + text.substr(text.find("drive:"));
     }
     case 1:

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <set>
 
 #include "base/plain_text.h"
@@ -119,9 +120,18 @@ std::optional<Input> velocity_input(const RecordingGuess& recording, bool known_
   for (const Kind kind : {Kind::set_velocity, Kind::command})
     if (recording.find(kind)) return Input{"command", kind};
   if (recording.find(Kind::velocity, true))
-    return Input{"command", Kind::velocity, true, ControllerSettings().gain};
+    return Input{"command", Kind::velocity, true, ControllerGains<double>().gain};
   if (known_controller && recording.find(Kind::position, true) && recording.find(Kind::position))
     return Input{"position_reference", Kind::position, true};
+  return std::nullopt;
+}
+
+/// What a motor is driven by, of which voltage and position controller are known.
+std::optional<Input> voltage_input(const RecordingGuess& recording) {
+  if (recording.find(Kind::motor_voltage)) return Input{"command", Kind::motor_voltage};
+  if (recording.find(Kind::position, true) && recording.find(Kind::position))
+    return Input{"position_reference", Kind::position, true};
+  if (recording.find(Kind::command)) return Input{"command", Kind::command};
   return std::nullopt;
 }
 
@@ -152,9 +162,9 @@ struct Candidate {
 
 class Initialiser {
  public:
-  Initialiser(const std::string& axis, const std::string& folder, std::optional<double> gain,
-              const std::vector<ColumnAnswer>& answers)
-      : axis_(axis), folder_(folder), gain_(gain), answers_(answers) {}
+  Initialiser(const std::string& axis, bool is_machine, const std::string& folder,
+              std::optional<double> gain, const std::vector<ColumnAnswer>& answers)
+      : axis_(axis), is_machine_(is_machine), folder_(folder), gain_(gain), answers_(answers) {}
 
   InitialJob make(const std::vector<std::string>& paths) {
     for (auto path = paths.begin(); path != paths.end(); ++path) {
@@ -172,7 +182,11 @@ class Initialiser {
       choose_drive();
     } else {
       Diagnostics diagnostics;
-      const auto rig = read_axis_file(axis_, diagnostics);
+      if (is_machine_) take_machine();
+      const auto rig =
+          is_machine_
+              ? read_axis(*ConfigNode::parse(axis_text_, kAxisName, diagnostics), diagnostics)
+              : read_axis_file(axis_, diagnostics);
       diagnostics.throw_if_any();
       structure_ = rig->model.structure;
     }
@@ -190,6 +204,18 @@ class Initialiser {
   }
 
  private:
+  /// Its axis file, without the line for editors, which says where the schema is.
+  void take_machine() {
+    const auto machine = std::ranges::find(machine_axes(), axis_, &MachineAxis::name);
+    if (machine == machine_axes().end())
+      throw std::runtime_error(
+          fmt::format("there is no machine '{}': choose one of {}", sanitized(axis_),
+                      fmt::join(machine_axes() | std::views::transform(&MachineAxis::name), ", ")));
+    std::string_view text = machine->text;
+    if (text.starts_with("# yaml-language-server")) text.remove_prefix(text.find('\n') + 1);
+    axis_text_ = text;
+  }
+
   /// From the folder of the job, unless that climbs through half of the disk.
   std::string relative(const std::string& path) const {
     const fs::path near = fs::proximate(fs::absolute(path), fs::absolute(folder_));
@@ -381,7 +407,9 @@ class Initialiser {
   void choose_inputs() {
     if (!force_source()) {
       for (Source& source : sources_) {
-        source.input = velocity_input(source.guess, !axis_.empty());
+        source.input = capabilities(structure_).has_back_emf
+                           ? voltage_input(source.guess)
+                           : velocity_input(source.guess, !axis_.empty());
         if (!source.input || source.input->kind != Kind::velocity) continue;
         GuessedColumn& column = *source.guess.find(Kind::velocity, true);
         column.reasons.push_back(fmt::format("a set velocity, taken as a command of {:g} V per m/s",
@@ -480,6 +508,7 @@ class Initialiser {
           force_source() ? say("a force") : "a velocity that is asked for"));
     if (!force_source()) {
       starter_ = velocity_loop_starter(first.file);
+      axis_text_ = starter_->text;
       guesses_.push_back("axis.yaml describes a velocity loop with the values of a published axis");
       return;
     }
@@ -495,6 +524,7 @@ class Initialiser {
     seen.has_gravity = seen.balance && seen.balance->gravity_sine != 0.0;
     starter_ = mass_starter(first.file, seen);
     structure_ = starter_->structure;
+    axis_text_ = starter_->text;
     if (starter_->gain_guessed)
       guesses_.push_back(
           fmt::format("the drive gain, K_f in axis.yaml: {}, B_a and the friction {} scale with it",
@@ -732,7 +762,7 @@ class Initialiser {
 
   Files files() const {
     Files files;
-    if (starter_) files.emplace_back(kAxisName, modeline("axis") + starter_->text);
+    if (!axis_text_.empty()) files.emplace_back(kAxisName, modeline("axis") + axis_text_);
     files.emplace_back(kJobName, modeline("job") + job_text());
     return files;
   }
@@ -745,7 +775,7 @@ class Initialiser {
         "what the recordings show, before the fit\n#   fit-params {}\n#\n# Values marked GUESSED "
         "do not follow from the recordings: check them first. All\n# keys: "
         "docs/job-file.md.\naxis: {}\nrecordings:\n",
-        version(), kJobName, kJobName, scalar(starter_ ? kAxisName : relative(axis_)));
+        version(), kJobName, kJobName, scalar(axis_text_.empty() ? relative(axis_) : kAxisName));
     for (std::size_t i = 0; i < sources_.size(); ++i)
       text += recording_text(sources_[i], sources_.size() > 1 && i + 1 == sources_.size());
     text +=
@@ -849,7 +879,8 @@ class Initialiser {
     const GuessedColumn *position = guess.find(Kind::position),
                         *velocity = guess.find(Kind::velocity);
     if (position == nullptr && velocity == nullptr) return {};
-    if (force_source()) return "    initial_state: data   # from the first samples\n";
+    if (capabilities(structure_).is_direct())
+      return "    initial_state: data   # from the first samples\n";
     constexpr std::size_t kFirst = 4;
     double speed = 0.0, noise = 0.0;
     if (velocity) {
@@ -890,7 +921,9 @@ class Initialiser {
     const RecordingGuess& first = sources_.front().guess;
     const GuessedColumn *position = first.find(Kind::position),
                         *velocity = first.find(Kind::velocity);
-    if (!force_source() || position == nullptr) return {};
+    const bool is_open = capabilities(structure_).is_direct() &&
+                         sources_.front().input->key != std::string_view("position_reference");
+    if (!is_open || position == nullptr) return {};
     const std::vector<double> none;
     const double rate = suggested_observer_gain(
         first.time.values, position->values, velocity && !velocity->idle ? velocity->values : none,
@@ -912,7 +945,10 @@ class Initialiser {
            fmt::format("  observer: {{fixed: {} 1/s}}\n", round_to_digits(rate, 2));
   }
 
-  std::string axis_, folder_;
+  std::string axis_;  ///< file, or name of a machine
+  bool is_machine_ = false;
+  std::string folder_;
+  std::string axis_text_;       ///< of the axis file to write; empty: that of the user
   std::optional<double> gain_;  ///< N/V, of the user
   std::vector<ColumnAnswer> answers_;
   bool joined_ = false;  ///< of two files: their clocks may differ
@@ -927,8 +963,8 @@ class Initialiser {
 
 InitialJob initial_job(const std::vector<std::string>& recordings, const std::string& axis,
                        const std::string& folder, std::optional<double> gain,
-                       const std::vector<ColumnAnswer>& answers) {
-  return Initialiser(axis, folder, gain, answers).make(recordings);
+                       const std::vector<ColumnAnswer>& answers, bool is_machine) {
+  return Initialiser(axis, is_machine, folder, gain, answers).make(recordings);
 }
 
 }  // namespace axisfit

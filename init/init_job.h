@@ -16,7 +16,8 @@ struct InitialJob {
 };
 
 /// Looks at the recordings and writes a job that fits them as it is: columns, units and signs by
-/// recording_guess.h, an axis of its own making unless `axis` names a file, and as free what the
+/// recording_guess.h, an axis of its own making unless `axis` names a file, or a machine of
+/// machine_axes() where `is_machine`, and as free what the
 /// recordings can determine of it. What had to be guessed is marked GUESSED in the files. The first
 /// recording is fitted, the last of several validates. Paths in the job start at `folder`, where
 /// the files are meant to go; nothing is written there. `gain` is K_f of the axis to be made, the
@@ -27,6 +28,6 @@ struct InitialJob {
 /// Throws std::runtime_error where the recordings make no job.
 InitialJob initial_job(const std::vector<std::string>& recordings, const std::string& axis,
                        const std::string& folder, std::optional<double> gain = {},
-                       const std::vector<ColumnAnswer>& answers = {});
+                       const std::vector<ColumnAnswer>& answers = {}, bool is_machine = false);
 
 }  // namespace axisfit

@@ -69,7 +69,7 @@ StarterAxis velocity_loop_starter(const std::string& recording) {
       "the values of a published axis. Replace them by yours; docs/axis-file.md.\n#\n{}guessed:   "
       "# "
       "delete what you have replaced\n  [{}]\n",
-      origin(recording), paper_axis(), fmt::join(guessed, ", "));
+      origin(recording), machine_axes().front().text, fmt::join(guessed, ", "));
   return starter;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "init/force_balance.h"
 #include "sim/model.h"
@@ -17,8 +18,12 @@ struct StarterAxis {
   bool gain_guessed = false;   ///< K_f is the user's to put, and what is fitted goes with it
 };
 
-/// The axis file of the paper's axis.
-std::string_view paper_axis();
+/// The axis file of a kind of machine, with starting values.
+struct MachineAxis {
+  std::string_view name;  ///< "screw"
+  std::string_view text;
+};
+const std::vector<MachineAxis>& machine_axes();
 
 /// One with a velocity loop: the paper's. `recording` is the file that it is for.
 StarterAxis velocity_loop_starter(const std::string& recording);

@@ -54,8 +54,8 @@ void visit_axis(AxisOfT& a, Visitor&& visit) {
   visit(Q{"L", "H", "armature inductance", 1e-6, 1, kRequired, velocity_loop}, a.L);
   visit(Q{"K_e", "V s/rad", "motor EMF constant", 0, 100, kRequired, velocity_loop}, a.K_e);
   visit(Q{"K_m", "N m/A", "motor torque constant", 1e-4, 100, kRequired, motor_constant}, a.K_m);
-  visit(Q{"J_m", "kg m^2", "armature inertia", 0, 100, kRequired, motor}, a.J_m);
-  visit(Q{"B_m", "N m s/rad", "armature damping", 0, 100, kRequired, motor}, a.B_m);
+  visit(Q{"J_m", "kg m^2", "armature inertia", 0, 100, 0.0, motor}, a.J_m);
+  visit(Q{"B_m", "N m s/rad", "armature damping", 0, 100, 0.0, motor}, a.B_m);
   visit(Q{"K_t", "V s/rad", "tachometer gain", 0, 100, kRequired, electric_drive}, a.K_t);
   visit(Q{"r_g", "m", "pinion radius", 1e-5, 10, kRequired, motor}, a.r_g);
   visit(Q{"H", "m", "half the gear backlash", 0, 0.1, kRequired, backlash}, a.H);

@@ -1,6 +1,15 @@
 #include "sim/command.h"
 
+#include <algorithm>
+
 namespace axisfit {
+
+double Schedule::value_at(double time) const {
+  const auto after = std::ranges::upper_bound(times, time);
+  if (after == times.begin()) return hold == Hold::linear && !values.empty() ? values[0] : 0.0;
+  const auto k = static_cast<std::size_t>(after - times.begin()) - 1;
+  return values[k] + slope_after(k) * (time - times[k]);
+}
 
 Schedule schedule_from_samples(const std::vector<double>& times, const std::vector<double>& values,
                                Hold hold) {

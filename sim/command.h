@@ -1,4 +1,5 @@
-// The input of the axis: a set-velocity voltage, as it was commanded or measured.
+// The input of the axis, as it was commanded or measured: what its drive takes, or a position that
+// its controller follows.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +15,26 @@ enum class Hold {
   linear,      ///< goes straight to the second: as what is measured
 };
 
-/// A command of `values[k]` (V) from `times[k]` (s) on, later by the dead time T_d of the axis.
+/// What the values are.
+enum class Meaning {
+  command,    ///< of the drive, in its unit
+  reference,  ///< position that the controller shall reach, m
+};
+
+/// A command of `values[k]` from `times[k]` (s) on, later by the dead time T_d of the axis.
 /// Before the first instant it is zero, or if linear the first value; behind the last, the last.
 struct Schedule {
   Samples times;  ///< increasing
   Samples values;
   Hold hold = Hold::zero_order;
+  Meaning meaning = Meaning::command;
 
   void append(double time, double value) {
     times.edit().push_back(time);
     values.edit().push_back(value);
   }
+  /// What acts at a time, s, without dead time.
+  double value_at(double time) const;
   /// V/s, from the instant k to the next one.
   double slope_after(std::size_t k) const {
     if (hold == Hold::zero_order || k + 1 >= times.size()) return 0.0;

@@ -1,4 +1,4 @@
-// The settings of the slave control unit (controller.h) and the reference that it follows.
+// The settings of the position controller (controller.h) and the reference that it follows.
 #pragma once
 
 #include <functional>
@@ -7,33 +7,82 @@
 
 namespace axisfit {
 
-struct ControllerSettings {
+/// When the controller acts, and how finely it sees.
+struct ControllerTiming {
   double period = 5e-3;                 ///< s, of sampling
-  double track_period = 80e-3;          ///< s, between track points
-  double k_ff = 1.0;                    ///< speed feed-forward
-  double k_p = 6.0;                     ///< 1/s
-  double k_i = 2.0;                     ///< 1/s^2
-  double gain = 10.0;                   ///< V/(m/s), set-velocity voltage per speed
-  double limit = 10.0;                  ///< V, of U either way
+  double track_period = 80e-3;          ///< s, between track points of a move
   double counts_per_revolution = 4000;  ///< of the encoder on the motor shaft; zero: not quantised
 };
 
-/// Calls visit(quantity, member) for every setting; the standard values are those above.
-template <class SettingsT, class Visitor>
-void visit_settings(SettingsT& c, Visitor&& visit) {
+/// The law of the controller; see control().
+template <class T>
+struct ControllerGains {
+  T k_ff{1.0};
+  T k_p{6.0};          ///< 1/s
+  T k_i{2.0};          ///< 1/s^2
+  T gain{10.0};        ///< command per m/s
+  T k_v{0.0};          ///< 1 closes a velocity loop
+  T k_n{0.0};          ///< 1/s
+  T k_a{0.0};          ///< command per m/s^2
+  T limit{10.0};       ///< of the command, either way
+  T speed_limit{1e3};  ///< m/s, of the set velocity
+  T u_0{0.0};          ///< command that the integral of the velocity loop begins with
+};
+
+template <class T>
+struct Controller {
+  ControllerTiming timing;
+  ControllerGains<T> gains;
+};
+
+/// Calls visit(quantity, member) for what is chosen; the standard values are those above.
+template <class Timing, class Visitor>
+void visit_timing(Timing& c, Visitor&& visit) {
   using Q = Quantity;
-  constexpr ControllerSettings defaults;
+  constexpr ControllerTiming defaults;
   visit(Q{"period", "s", "sampling period", 1e-5, 1, defaults.period}, c.period);
-  visit(Q{"track_period", "s", "time between track points", 1e-5, 10, defaults.track_period},
+  visit(Q{"track_period", "s", "time between track points of a move", 1e-5, 10,
+          defaults.track_period},
         c.track_period);
-  visit(Q{"k_ff", "1", "velocity feedforward", 0, 100, defaults.k_ff}, c.k_ff);
-  visit(Q{"k_p", "1/s", "position gain", 0, 1e5, defaults.k_p}, c.k_p);
-  visit(Q{"k_i", "1/s^2", "integral gain", 0, 1e6, defaults.k_i}, c.k_i);
-  visit(Q{"gain", "U s/m", "set-velocity voltage per speed", 1e-3, 1e6, defaults.gain}, c.gain);
-  visit(Q{"limit", "U", "largest magnitude of the command", 1e-3, 1e4, defaults.limit}, c.limit);
   visit(Q{"counts_per_revolution", "1", "encoder counts per motor revolution; 0: no quantisation",
           0, 1e9, defaults.counts_per_revolution},
         c.counts_per_revolution);
+}
+
+/// The same for what can be fitted.
+template <class Gains, class Visitor>
+void visit_gains(Gains& c, Visitor&& visit) {
+  using Q = Quantity;
+  constexpr auto of_loop = UsedBy::controller;
+  constexpr ControllerGains<double> defaults;
+  visit(Q{"k_ff", "1", "velocity feedforward", 0, 100, defaults.k_ff, of_loop}, c.k_ff);
+  visit(Q{"k_p", "1/s", "position gain", 0, 1e5, defaults.k_p, of_loop}, c.k_p);
+  visit(Q{"k_i", "1/s^2", "integral gain", 0, 1e6, defaults.k_i, of_loop}, c.k_i);
+  visit(Q{"gain", "U s/m", "command per set velocity, or per velocity error with k_v", 1e-3, 1e6,
+          defaults.gain, of_loop},
+        c.gain);
+  visit(Q{"k_v", "1", "velocity feedback: 1 in a cascade, 0 for a law of the position alone", 0,
+          100, defaults.k_v, of_loop},
+        c.k_v);
+  visit(Q{"k_n", "1/s", "integral gain of the velocity loop, one over its reset time", 0, 1e6,
+          defaults.k_n, of_loop},
+        c.k_n);
+  visit(Q{"k_a", "U s^2/m", "acceleration feedforward", 0, 1e6, defaults.k_a, of_loop}, c.k_a);
+  visit(Q{"limit", "U", "largest magnitude of the command", 1e-3, 1e4, defaults.limit, of_loop},
+        c.limit);
+  visit(Q{"speed_limit", "m/s", "largest magnitude of the set velocity", 1e-6, 1e3,
+          defaults.speed_limit, of_loop},
+        c.speed_limit);
+  visit(Q{"u_0", "U", "command that the velocity loop's integral begins with", -1e4, 1e4,
+          defaults.u_0, of_loop},
+        c.u_0);
+}
+
+/// Both.
+template <class ControllerT, class Visitor>
+void visit_settings(ControllerT& controller, Visitor&& visit) {
+  visit_timing(controller.timing, visit);
+  visit_gains(controller.gains, visit);
 }
 
 /// Where the axis should be, m, at a time since the start of the motion, s.

@@ -32,6 +32,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/controller.h"
 #include "sim/equations.h"
 #include "sim/guards.h"
 #include "sim/propagator.h"
@@ -126,11 +127,15 @@ class Integrator {
   /// source's lag at zero, which delays like it.
   T command_delay() const { return model_.axis.T_d + equations_.lag_of_switching(); }
 
-  /// Lets `change(state, memory)` give new derivatives to the state and to what is remembered of
-  /// the motion: with those of the disturbance all that the future depends on. Values must stay.
+  /// What the axis' controller remembers, where it has one.
+  ControllerMemory<T>& controller_memory() { return controller_memory_; }
+
+  /// Lets `change(state, input, memory of the controller)` give new derivatives to the state, the
+  /// command and what is remembered: with those of the disturbance all that the future depends on.
+  /// Values must stay.
   template <class Change>
   void differentiate(Change&& change) {
-    change(y_, input_.memory);
+    change(y_, input_, controller_memory_);
   }
 
   const T& time() const { return input_.time; }
@@ -346,7 +351,8 @@ class Integrator {
   Input<T> input_;
   Input<double> plain_input_;
   Target slope_;
-  double command_slope_ = 0.0;  // V/s
+  double command_slope_ = 0.0;  // per second
+  ControllerMemory<T> controller_memory_{};
   Flow* flow_ = nullptr;
   int level_ = 0;  // of the longest step now allowed; falls to 0 as steps grow after an event
   std::optional<GuardValues> here_;  // the guards at the present state, while they are known

@@ -47,6 +47,8 @@ bool is_used(UsedBy used_by, const Structure& structure) {
       return has.has_current();
     case UsedBy::armature:
       return has.has_voltage_loop || has.has_back_emf;
+    case UsedBy::controller:
+      return structure.closed_loop;
     case UsedBy::backlash:
       return has.has_backlash;
     case UsedBy::rigid:

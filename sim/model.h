@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/axis.h"
+#include "sim/controller_settings.h"
 #include "sim/effects/effects.h"
 #include "sim/scalar.h"
 #include "sim/signal.h"
@@ -21,6 +22,7 @@ struct Structure {
   Transmission transmission = Transmission::backlash;
   EffectSet effects{};
   Joint joint = Joint::prismatic;
+  bool closed_loop = false;  ///< the controller is part of what is simulated
 };
 
 /// What an axis has by its drive and its transmission.
@@ -77,6 +79,7 @@ struct Model {
   Axis<T> axis{};
   Effects<T> effects{};
   Instruments<T> instruments{};
+  Controller<T> controller{};
   std::array<T, kPaperStates>
       initial{};  ///< with x = r_g y2 - y0 and its rate in place of y2 and y3
 };
@@ -93,8 +96,8 @@ State<T> initial_state(const Model<T>& model) {
 }
 
 /// Calls visit(group, quantity, member) for every quantity of the model, always in the same order.
-/// Groups: "" for the axis, the effect's name, the signal's name, "initial". All are named as on a
-/// prismatic joint.
+/// Groups: "" for the axis, the effect's name, the signal's name, "controller", "initial". All are
+/// named as on a prismatic joint.
 template <class ModelOfT, class Visitor>
 void visit_quantities(ModelOfT& model, Visitor&& visit) {
   visit_axis(model.axis, [&](const Quantity& quantity, auto& member) {
@@ -118,6 +121,9 @@ void visit_quantities(ModelOfT& model, Visitor&& visit) {
     visit(entry.name, Quantity{"drift", "1", "growth of the delay per time", -0.1, 0.1, 0.0},
           instrument.drift);
   }
+  visit_gains(model.controller.gains, [&](const Quantity& quantity, auto& member) {
+    visit(std::string_view("controller"), quantity, member);
+  });
   using enum UsedBy;
   constexpr Quantity kInitial[kPaperStates] = {
       {"y0", "m", "initial arm position", -1e3, 1e3, 0.0},
@@ -157,6 +163,7 @@ Model<To> convert(const Model<From>& from) {
   });
   Model<To> to;
   to.structure = from.structure;
+  to.controller.timing = from.controller.timing;
   std::size_t index = 0;
   visit_quantities(
       to, [&](std::string_view, const Quantity&, To& member) { member = To(values[index++]); });

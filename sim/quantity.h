@@ -22,6 +22,7 @@ enum class UsedBy {
   force_source,    ///< drive: force_source, motor_current or rated_force
   motor_constant,  ///< drive: one whose motor current is known
   armature,        ///< drive: velocity_loop or motor_voltage
+  controller,      ///< closed_loop
   backlash,        ///< transmission: backlash
   rigid,           ///< transmission: rigid
   motor,           ///< needed unless what drives a rigid transmission is a force

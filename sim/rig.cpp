@@ -66,12 +66,11 @@ std::vector<Column> record(const Rig& rig, const Motion& motion, const Recording
   integrator.step = options.step;
   Schedule command;
   if (const auto* move = std::get_if<MoveMotion>(&motion)) {
-    ControllerSettings settings = rig.controller;
-    if (!options.noise) settings.counts_per_revolution = 0.0;
-    SlaveControlUnit unit(settings, reference_of(*move));
-    command = simulate_controlled(rig.model, unit, recorder.instants(), read, integrator);
+    Model<double> model = rig.model;
+    if (!options.noise) model.controller.timing.counts_per_revolution = 0.0;
+    command = simulate_move(model, reference_of(*move), recorder.instants(), read, integrator);
   } else {
-    command = schedule_of(motion, options.duration, rig.controller.period);
+    command = schedule_of(motion, options.duration, rig.model.controller.timing.period);
     simulate<double>(rig.model, command, recorder.instants(), read, {}, {}, integrator);
   }
   if (reached + 1 != recorder.instants().size())
@@ -99,7 +98,8 @@ std::vector<Column> record(const Rig& rig, const Motion& motion, const Recording
       if (!options.noise) break;
       x += rig.noise[index_of(signal)] * stream.next();
       if (signal == Signal::position)
-        x = encoder_reading(x, rig.model.axis.r_g, rig.controller.counts_per_revolution);
+        x = encoder_reading(x, rig.model.axis.r_g,
+                            rig.model.controller.timing.counts_per_revolution);
     }
     columns.push_back(std::move(column));
   }

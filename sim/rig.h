@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/column.h"
-#include "sim/controller_settings.h"
 #include "sim/model.h"
 #include "sim/motion.h"
 
@@ -18,7 +17,6 @@ namespace axisfit {
 struct Rig {
   std::string name;
   Model<double> model;
-  ControllerSettings controller;
   std::array<double, kSignals> noise{};  ///< standard deviation of white noise, signal's unit
   std::vector<std::size_t> guessed{};    ///< quantities whose values nobody knows, in the list
 };

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
+#include <optional>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "sim/command.h"
+#include "sim/controller.h"
 #include "sim/integrator.h"
 #include "sim/sampling.h"
 
@@ -45,42 +49,126 @@ inline IntegratorOptions recording_options(std::span<const double> times, double
   return options;
 }
 
+/// Commands that are known, one after the other.
+template <class T>
+class KnownCommands {
+ public:
+  explicit KnownCommands(const Schedule& command) : command_(command) {}
+
+  void start(Integrator<T>& axis, double time, const Target& target) {
+    const bool linear = command_.hold == Hold::linear;
+    delay_ = axis.command_delay();
+    // What was measured had about its first value before.
+    T in_force(linear && !command_.values.empty() ? command_.values.front() : 0.0);
+    // Commands that acted before the first instant.
+    for (; next_ < command_.times.size() && command_.times[next_] + value_of(delay_) < time;
+         ++next_)
+      in_force = T(command_.values[next_]);
+    double slope = 0.0;
+    if (linear && next_ > 0) {
+      slope = command_.slope_after(next_ - 1);
+      in_force += slope * (time - (command_.times[next_ - 1] + delay_));
+    }
+    axis.start(time, in_force, target);
+    if (linear) axis.set_command_ramp(in_force, slope);
+  }
+  /// When something happens next, s.
+  std::optional<T> next() const {
+    if (next_ == command_.times.size()) return std::nullopt;
+    return command_.times[next_] + delay_;
+  }
+  /// Lets it happen, now.
+  void act(Integrator<T>& axis) {
+    if (command_.hold == Hold::linear)
+      axis.set_command_ramp(T(command_.values[next_]), command_.slope_after(next_));
+    else
+      axis.set_command(T(command_.values[next_]));
+    ++next_;
+  }
+
+ private:
+  const Schedule& command_;
+  std::size_t next_ = 0;
+  T delay_{0.0};
+};
+
+/// Commands that the model's controller writes while it reads the encoder: at each of its samples,
+/// from the first instant on, and in force later by the dead time. One below zero is that of a log,
+/// not of a machine. Before the first the command is zero.
+template <class T>
+class ControlledCommands {
+ public:
+  /// `read` is what the controller sees of the axis, m; `written` is told of every command.
+  using Read = std::function<T(const Integrator<T>&)>;
+  using Written = std::function<void(double time, const T& command)>;
+  ControlledCommands(const Controller<T>& controller, ReferenceSamples reference, Read read,
+                     Written written = {})
+      : controller_(controller),
+        reference_(std::move(reference)),
+        read_(std::move(read)),
+        written_(std::move(written)) {}
+
+  void start(Integrator<T>& axis, double time, const Target& target) {
+    start_ = time;
+    delay_ = axis.command_delay();
+    if (value_of(delay_) < 0.0) delay_ = T(0.0);
+    axis.start(time, T(0.0), target);
+  }
+  std::optional<T> next() const { return is_pending_ ? sample_time() + delay_ : T(sample_time()); }
+  void act(Integrator<T>& axis) {
+    ControllerMemory<T>& memory = axis.controller_memory();
+    if (!is_pending_) {
+      const T position = read_(axis);
+      const T before = memory.has_read
+                           ? memory.position
+                           : position - controller_.timing.period *
+                                            axis.equations().model().axis.r_g * axis.state()[3];
+      memory.pending = control(controller_, reference_(sample_), position, before, memory);
+      if (written_) written_(sample_time(), memory.pending);
+      is_pending_ = true;
+      if (value_of(delay_) > 0.0 || ScalarTraits<T>::has_derivative(delay_)) return;
+    }
+    axis.set_command(memory.pending);
+    is_pending_ = false;
+    ++sample_;
+  }
+
+ private:
+  double sample_time() const {
+    return start_ + static_cast<double>(sample_) * controller_.timing.period;
+  }
+
+  const Controller<T>& controller_;
+  ReferenceSamples reference_;
+  Read read_;
+  Written written_;
+  double start_ = 0.0;
+  long sample_ = 0;
+  bool is_pending_ = false;
+  T delay_{0.0};
+};
+
 /// Simulates from times[0] on and calls read(i, integrator) at every instant times[i] (s,
 /// increasing).
 ///
 /// A reading precedes a command that switches at the same instant. With an observer, the target
 /// runs linearly between the measured values. A dead time below zero, of a log that is late, is
-/// allowed: the command is all known.
+/// allowed where the command is all known.
 ///
 /// Disturbances, where there are any, are those at the instants. Between two of them their mean
 /// acts.
-template <class T, class Read>
-SimulationResult simulate(const Model<T>& model, const Schedule& command,
-                          std::span<const double> times, Read&& read, const Observer& observer = {},
-                          const TargetSeries& measured = {}, const IntegratorOptions& options = {},
-                          std::span<const Disturbance<T>> disturbances = {}) {
+template <class T, class Commands, class Read>
+SimulationResult simulate_commands(const Model<T>& model, Commands&& commands,
+                                   std::span<const double> times, Read&& read,
+                                   const Observer& observer, const TargetSeries& measured,
+                                   const IntegratorOptions& options,
+                                   std::span<const Disturbance<T>> disturbances = {}) {
   SimulationResult simulation_result;
   IntegratorOptions even = options;
   even.has_disturbance = !disturbances.empty();
   if (times.size() > 1) even.interval = mean_interval(times);
-  const bool linear = command.hold == Hold::linear;
-  even.has_command_ramp = linear;
   Integrator<T> axis(model, observer, even);
-  std::size_t next = 0;
-  // What was measured had about its first value before.
-  T in_force(linear && !command.values.empty() ? command.values.front() : 0.0);
-  const T delay = axis.command_delay();
-  // Commands that acted before the first instant.
-  for (; next < command.times.size() && command.times[next] + value_of(delay) < times.front();
-       ++next)
-    in_force = T(command.values[next]);
-  double slope = 0.0;
-  if (linear && next > 0) {
-    slope = command.slope_after(next - 1);
-    in_force += slope * (times.front() - (command.times[next - 1] + delay));
-  }
-  axis.start(times.front(), in_force, measured.at(0));
-  if (linear) axis.set_command_ramp(in_force, slope);
+  commands.start(axis, times.front(), measured.at(0));
   const auto reaches = [&](const T& instant) {
     const bool reached = axis.advance_to(instant);
     simulation_result.events = axis.events();
@@ -98,14 +186,10 @@ SimulationResult simulate(const Model<T>& model, const Schedule& command,
       const Disturbance<T>&from = disturbances[i - 1], &to = disturbances[i];
       axis.set_disturbance({0.5 * (from.arm + to.arm), 0.5 * (from.motor + to.motor)});
     }
-    for (; next < command.times.size(); ++next) {
-      const T instant = command.times[next] + delay;
-      if (!(value_of(instant) < times[i])) break;
-      if (!reaches(instant)) return simulation_result;
-      if (linear)
-        axis.set_command_ramp(T(command.values[next]), command.slope_after(next));
-      else
-        axis.set_command(T(command.values[next]));
+    while (const std::optional<T> instant = commands.next()) {
+      if (!(value_of(*instant) < times[i])) break;
+      if (!reaches(*instant)) return simulation_result;
+      commands.act(axis);
     }
     if (!reaches(T(times[i]))) return simulation_result;
     if (even.has_disturbance) axis.set_disturbance(disturbances[i]);
@@ -114,6 +198,51 @@ SimulationResult simulate(const Model<T>& model, const Schedule& command,
   }
   simulation_result.finished = true;
   return simulation_result;
+}
+
+/// The same with a schedule: of commands, or of the reference that the model's controller follows.
+/// It then reads what the recorded position shows, without noise.
+template <class T, class Read>
+SimulationResult simulate(const Model<T>& model, const Schedule& schedule,
+                          std::span<const double> times, Read&& read, const Observer& observer = {},
+                          const TargetSeries& measured = {}, const IntegratorOptions& options = {},
+                          std::span<const Disturbance<T>> disturbances = {}) {
+  IntegratorOptions with_hold = options;
+  if (schedule.meaning == Meaning::command) {
+    with_hold.has_command_ramp = schedule.hold == Hold::linear;
+    return simulate_commands(model, KnownCommands<T>(schedule), times, read, observer, measured,
+                             with_hold, disturbances);
+  }
+  const auto encoder = [](const Integrator<T>& axis) {
+    return reading(axis.equations(), Signal::position, axis.mode(), axis.state(), axis.input());
+  };
+  return simulate_commands(
+      model,
+      ControlledCommands<T>(model.controller,
+                            recorded_reference(model.controller.timing, schedule, times.front()),
+                            encoder),
+      times, read, observer, measured, with_hold, disturbances);
+}
+
+/// Simulates the axis under its controller through a motion with this reference (m), from times[0]
+/// on, with the encoder read in counts, and calls read(i, axis) at every instant; returns the
+/// commands that were written. The schedule ends early if the simulation fails.
+template <class Read>
+Schedule simulate_move(const Model<double>& model, Reference reference,
+                       std::span<const double> times, Read&& read,
+                       const IntegratorOptions& options = {}) {
+  Schedule written;
+  const ControllerTiming& timing = model.controller.timing;
+  const auto encoder = [&](const Integrator<double>& axis) {
+    return encoder_reading(model.axis.r_g * axis.state()[2], model.axis.r_g,
+                           timing.counts_per_revolution);
+  };
+  simulate_commands(model,
+                    ControlledCommands<double>(
+                        model.controller, track_points(timing, std::move(reference)), encoder,
+                        [&](double time, double command) { written.append(time, command); }),
+                    times, read, {}, {}, options);
+  return written;
 }
 
 }  // namespace axisfit

@@ -38,6 +38,9 @@ constexpr auto kUnits = std::to_array<UnitPair>({
     {"V s/m", "V s/rad", 1e-3, 1.0},
     {"A s/m", "A s/rad", 1e-3, 1.0},
     {"s/m", "s/rad", 1e-3, 1.0},
+    {"V s^2/m", "V s^2/rad"},
+    {"A s^2/m", "A s^2/rad"},
+    {"s^2/m", "s^2/rad"},
 });
 
 /// A unit with that of the command in it, by what the command is.
@@ -49,6 +52,7 @@ constexpr auto kOfCommand = std::to_array<UnitOfCommand>({
     {kCommandUnit, {"V", "A", "1"}},
     {"N/U", {"N/V", "N/A", "N"}},
     {"U s/m", {"V s/m", "A s/m", "s/m"}},
+    {"U s^2/m", {"V s^2/m", "A s^2/m", "s^2/m"}},
 });
 
 using Exchange = std::pair<std::string_view, std::string_view>;
@@ -144,6 +148,7 @@ Quantity quantity_on(Vocabulary vocabulary, const Quantity& quantity) {
     called.symbol = kept("T_" + std::string(quantity.symbol.substr(2)));
   if (quantity.symbol == "r_g") {
     called.unit = "1";  // of angles
+    called.default_value = 1.0;
   } else if (const UnitPair* unit = find_unit(called.unit)) {
     called.unit = unit->revolute;
     called.lower *= called.lower > 0.0 ? unit->lower : unit->upper;

@@ -11,7 +11,6 @@
 
 #include "fit/data/filter.h"
 #include "sim/command.h"
-#include "sim/controller_settings.h"
 #include "sim/model.h"
 
 namespace axisfit {
@@ -73,7 +72,7 @@ struct Recording {
   std::string file;  ///< as the user wrote it
   Role role = Role::fit;
   Samples times;     ///< s, increasing, at least two
-  Schedule command;  ///< in the unit of the drive
+  Schedule command;  ///< in the unit of the drive, or the reference of its controller, m
   /// Standard deviation of the noise with which the command was recorded, V: white, of each value
   /// of the schedule. Zero: the axis received exactly this command.
   double command_sigma = 0.0;
@@ -168,8 +167,7 @@ struct MachineLimits {
 struct Job {
   std::string axis;  ///< its name, for reports
   Model<double> model;
-  ControllerSettings controller;  ///< of experiments yet to be made, as are the
-  MachineLimits limits;
+  MachineLimits limits;  ///< of experiments yet to be made
   std::vector<Recording> recordings;
   std::vector<FreeParameter> free;
   std::vector<std::size_t> guessed{};  ///< quantities whose values are guesses, in quantity_list()

@@ -63,8 +63,8 @@ Discrimination discriminate(const EffectSelection& selection, const UndecidedPai
   std::vector<Experiment> candidates;
   if (new_motions) candidates = candidate_motions(job.model.structure, within, times.back());
   for (const Experiment& experiment : candidates)
-    trials.push_back({nullptr, &experiment,
-                      commands_of(experiment, rivals.with_chosen, job.controller, times), times});
+    trials.push_back(
+        {nullptr, &experiment, commands_of(experiment, rivals.with_chosen, times), times});
 
   const ThreadPool pool(job.options.threads);
   std::vector<Discrimination> found(trials.size());

@@ -79,7 +79,7 @@ std::vector<Linearization> sensitivities_of(const std::vector<Experiment>& candi
     context.check_stop();
     Job trial = next;
     Recording& recording = trial.recordings[added];
-    recording.command = commands_of(candidates[i], model, next.controller, recording.times);
+    recording.command = commands_of(candidates[i], model, recording.times);
     const SimulatedRecording simulation = simulate_recording(trial, space, added, u.data(), {});
     if (is_feasible(limits, simulation)) {
       for (std::size_t m = 0; m < recording.measurements.size(); ++m)
@@ -155,8 +155,8 @@ MachineLimits complete_limits(const Job& job, const FitResult& fit) {
   if (!limits.command)
     limits.command = capabilities(job.model.structure).is_force_driven
                          ? force / fitted_model(job, fit).axis.K_f
-                         : job.controller.limit;
-  limits.command = std::min(*limits.command, job.controller.limit);
+                         : job.model.controller.gains.limit;
+  limits.command = std::min(*limits.command, job.model.controller.gains.limit);
   return limits;
 }
 
@@ -171,7 +171,9 @@ std::vector<Experiment> candidate_motions(const Structure& structure, const Mach
                                           double duration) {
   std::vector<Experiment> candidates;
   const auto add = [&](const Motion& motion) { candidates.push_back({motion, duration}); };
-  for (const double share : {1.0, 0.5, 0.2, 0.1, 0.05})
+  constexpr std::array kShares{1.0, 0.5, 0.2, 0.1, 0.05};
+  const auto shares = structure.closed_loop ? std::span<const double>() : std::span(kShares);
+  for (const double share : shares)
     for (const double sign : {1.0, -1.0}) {
       const double u = sign * share * *limits.command;
       add(StepMotion{u, 0.0});
@@ -184,7 +186,7 @@ std::vector<Experiment> candidate_motions(const Structure& structure, const Mach
       for (const double f : {5.0, 20.0, 60.0}) add(SineMotion{u, 0.5, f});
       for (const double bit : {0.01, 0.025, 0.05, 0.1, 0.2}) add(PrbsMotion{u, bit, 0.0, 1});
     }
-  if (!capabilities(structure).is_electric) return candidates;  // no set-velocity input
+  if (!capabilities(structure).is_electric && !structure.closed_loop) return candidates;
   for (const double part : {0.9, 0.5, 0.2, -0.9, -0.5, -0.2})
     for (const double share : {0.9, 0.5, 0.2}) {
       const MoveMotion move{part * (*limits.highest - *limits.lowest), share * *limits.speed,
@@ -196,13 +198,13 @@ std::vector<Experiment> candidate_motions(const Structure& structure, const Mach
 }
 
 Schedule commands_of(const Experiment& experiment, const Model<double>& model,
-                     const ControllerSettings& controller, std::span<const double> times) {
+                     std::span<const double> times) {
+  const double period = model.controller.timing.period;
   const auto* move = std::get_if<MoveMotion>(&experiment.motion);
-  if (move == nullptr)
-    return schedule_of(experiment.motion, experiment.duration, controller.period);
-  if (!(model.axis.T_d < controller.period)) return {};  // nor can it be simulated
-  SlaveControlUnit unit(controller, reference_of(*move));
-  return simulate_controlled(model, unit, times, [](std::size_t, const Integrator<double>&) {});
+  if (move == nullptr) return schedule_of(experiment.motion, experiment.duration, period);
+  if (!(model.axis.T_d < period)) return {};  // nor can it be simulated
+  return simulate_move(model, reference_of(*move), times,
+                       [](std::size_t, const Integrator<double>&) {});
 }
 
 std::vector<double> next_sampling_times(const Job& job) {
@@ -258,7 +260,7 @@ std::optional<Reach> reach_of(const Experiment& experiment, const Job& job, cons
     };
     // A fit rejects parameters with which the teeth chatter; the arm hardly moves meanwhile.
     const SimulationResult simulation =
-        simulate(model, commands_of(experiment, model, next.controller, times), times, read);
+        simulate(model, commands_of(experiment, model, times), times, read);
     if (!simulation.finished || !within) return std::nullopt;
   }
   return reach;

@@ -26,16 +26,16 @@ struct Experiment {
 };
 
 /// Steps, levels, sines, chirps, pseudo-random sequences, each at several amplitudes up to the
-/// voltage and either way, and moves up to the travel and the speed where the axis has a
-/// set-velocity input. Limits are complete; only the simulation of a motion shows whether it stays
-/// within them.
+/// largest command and either way, where nothing else commands the axis, and moves up to the travel
+/// and the speed where it has a set-velocity input or a controller. Limits are complete; only the
+/// simulation of a motion shows whether it stays within them.
 std::vector<Experiment> candidate_motions(const Structure& structure, const MachineLimits& limits,
                                           double duration);
 
 /// The commands of an experiment over the times (s) from zero; those of a move as the controller
 /// writes them to the axis.
 Schedule commands_of(const Experiment& experiment, const Model<double>& model,
-                     const ControllerSettings& controller, std::span<const double> times);
+                     std::span<const double> times);
 
 /// The sampling times (s) of one more recording: those of the first one that is fitted, from zero
 /// and for at most 10 s.

@@ -8,6 +8,7 @@
 #include "fit/estimation/jet.h"
 #include "fit/estimation/least_squares.h"
 #include "fit/estimation/parameters.h"
+#include "sim/controller.h"
 #include "sim/equations.h"
 #include "sim/sampling.h"
 
@@ -97,6 +98,7 @@ struct Trajectory {
   double interval = 0.0;                         ///< s
   std::vector<double> position, velocity, rate;  ///< m, m/s, m/s^2
   std::vector<double> current;                   ///< A, of an electric drive
+  Schedule command;               ///< of the drive, by its controller where that wrote it
   std::vector<double> counts;     ///< 1 where forces are balanced, 0 at rest and near the ends
   double cutoff = 0.0;            ///< Hz, of the low-pass of both sides
   std::vector<std::size_t> rows;  ///< samples that remain after it
@@ -140,6 +142,16 @@ std::optional<Trajectory> trajectory_of(const Job& job, const Model<double>& mod
     auto current = truth_of(recording, model, Signal::motor_current);
     if (!current) return std::nullopt;
     path.current = *std::move(current);
+  }
+  path.command = recording.command;
+  if (recording.command.meaning == Meaning::reference) {
+    if (!position) return std::nullopt;
+    path.command = {
+        recording.times,
+        command_from_reference(
+            model.controller, recording.times,
+            recorded_reference(model.controller.timing, recording.command, recording.times.front()),
+            recording.find(Signal::position)->values)};
   }
   const double h = path.interval = mean_interval(recording.times);
   const double sigma = recording.find(velocity ? Signal::velocity : Signal::position)->sigma;
@@ -268,7 +280,7 @@ class BalanceCost : public ceres::CostFunction {
   std::vector<T> commands_of(const Equations<T>& equations, const Recording& recording) const {
     std::vector<T> commands(path_.velocity.size(), T(0.0));
     if (!path_.current.empty()) return commands;
-    const MeanCommand command(recording.command);
+    const MeanCommand command(path_.command);
     const T delay = equations.model().axis.T_d + equations.lag_of_switching();
     for (std::size_t i = 0; i < commands.size(); ++i)
       commands[i] =
@@ -381,7 +393,7 @@ double drive_rms_of(const Job& job, const ParameterSpace& space, const Eigen::Ve
     const Model<double> model = balanced_model(model_at(job, space, u.data(), path.recording));
     const Equations<double> equations(model);
     const Recording& recording = job.recordings[path.recording];
-    const MeanCommand command(recording.command);
+    const MeanCommand command(path.command);
     std::vector<double> drive;
     for (std::size_t i = 0; i < path.counts.size(); ++i) {
       State<double> y{};

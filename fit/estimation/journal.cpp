@@ -57,7 +57,9 @@ class Hash {
 };
 
 void add_model(Hash& hash, const Model<double>& model) {
-  hash << model.structure.drive << model.structure.transmission << model.structure.joint;
+  hash << model.structure.drive << model.structure.transmission << model.structure.joint
+       << model.structure.closed_loop;
+  visit_timing(model.controller.timing, [&](const Quantity&, double value) { hash << value; });
   for (std::size_t i = 0; i < model.structure.effects.size(); ++i)
     hash << model.structure.effects[i];
   visit_quantities(model, [&](std::string_view, const Quantity&, double value) { hash << value; });
@@ -66,8 +68,8 @@ void add_model(Hash& hash, const Model<double>& model) {
 void add_recording(Hash& hash, const Recording& r) {
   hash << r.role;
   if (r.role != Role::fit) return;
-  hash << r.times << r.command.times << r.command.values << r.command.hold << r.held_out
-       << r.overrides.size();
+  hash << r.times << r.command.times << r.command.values << r.command.hold << r.command.meaning
+       << r.held_out << r.overrides.size();
   for (const auto& [quantity, value] : r.overrides) hash << quantity << value;
   hash << r.measurements.size();
   for (const Measurement& m : r.measurements)

@@ -25,7 +25,12 @@ SimulationResult run(const Job& job, const Recording& recording, const Model<T>&
                      const Observer& observer, const Recorder<T>& recorder, Read&& read,
                      std::vector<ModeChange>* modes = nullptr, const StopFlag* stop = nullptr,
                      std::span<const Disturbance<T>> disturbances = {}) {
-  IntegratorOptions options = recording_options(recording.times, job.options.step);
+  // A controller switches the command at each of its samples.
+  const double step = recording.command.meaning == Meaning::reference
+                          ? std::min(job.options.step, model.controller.timing.period)
+                          : job.options.step;
+  IntegratorOptions options = recording_options(recording.times, step);
+  options.step = job.options.step;
   options.modes = modes;
   options.stop = stop;
   // The velocity of a force source turns where its command switches, at samples: there its chords
@@ -46,7 +51,8 @@ SimulationResult run(const Job& job, const Recording& recording, const Model<T>&
 
 /// Calls visit(x) for the states in use, and for what is remembered where that counts.
 template <class T, class Visitor>
-void visit_followed(const ActiveTerms& parts, State<T>& y, RestMemory<T>& memory, Visitor&& visit) {
+void visit_followed(const ActiveTerms& parts, bool is_controlled, State<T>& y, Input<T>& input,
+                    ControllerMemory<T>& controller, Visitor&& visit) {
   const std::array<bool, kStates> is_used{true,
                                           true,
                                           true,
@@ -59,17 +65,25 @@ void visit_followed(const ActiveTerms& parts, State<T>& y, RestMemory<T>& memory
                                           parts.elastic};
   for (std::size_t i = 0; i < kStates; ++i)
     if (is_used[i]) visit(y[i]);
+  if (is_controlled) {
+    visit(input.command);
+    visit(controller.pending);
+    visit(controller.sum);
+    visit(controller.held);
+    visit(controller.position);
+  }
   if (!parts.needs.hysteresis) return;
-  visit(memory.position);
-  for (T& hysteresis : memory.hystereses) visit(hysteresis);
+  visit(input.memory.position);
+  for (T& hysteresis : input.memory.hystereses) visit(hysteresis);
 }
 
 /// How many these are.
-Eigen::Index states_to_follow(const ActiveTerms& parts) {
+Eigen::Index states_to_follow(const ActiveTerms& parts, bool is_controlled) {
   State<double> y{};
-  RestMemory<double> memory;
+  Input<double> input;
+  ControllerMemory<double> controller;
   Eigen::Index count = 0;
-  visit_followed(parts, y, memory, [&](double&) { ++count; });
+  visit_followed(parts, is_controlled, y, input, controller, [&](double&) { ++count; });
   return count;
 }
 
@@ -241,7 +255,7 @@ std::optional<RecordingCost::Transitions> RecordingCost::transitions(
   const Recorder<T> recorder(model.instruments, signals_, recording.times);
   const auto instants = static_cast<Eigen::Index>(recorder.instants().size());
   Transitions result;
-  result.states = states_to_follow(Equations<double>(values).parts());
+  result.states = states_to_follow(Equations<double>(values).parts(), is_controlled());
   const Eigen::Index n = result.states, wide = n + Transitions::kDisturbances;
   const auto signals = static_cast<Eigen::Index>(signals_.size());
   result.states_to.setZero(instants * n, wide);
@@ -253,9 +267,9 @@ std::optional<RecordingCost::Transitions> RecordingCost::transitions(
   const std::vector<Disturbance<T>> disturbances(recorder.instants().size(), unit);
   const auto read = [&](std::size_t i, Integrator<T>& axis) {
     const auto at = static_cast<Eigen::Index>(i);
-    axis.differentiate([&](State<T>& y, RestMemory<T>& memory) {
+    axis.differentiate([&](State<T>& y, Input<T>& input, ControllerMemory<T>& controller) {
       Eigen::Index k = 0;
-      visit_followed(axis.equations().parts(), y, memory, [&](T& x) {
+      visit_followed(axis.equations().parts(), is_controlled(), y, input, controller, [&](T& x) {
         if (i > 0) result.states_to.row(at * n + k) = x.v.head(wide);
         x.v.setZero();
         x.v[k++] = 1.0;
@@ -280,8 +294,9 @@ Eigen::MatrixXd RecordingCost::disturbance_response(const double* u,
                                                     const Disturbances& disturbances) const {
   const Model<double> values = model_at(job_, space_, u, recording_);
   constexpr Eigen::Index kNarrow = 12;
-  const bool is_narrow =
-      states_to_follow(Equations<double>(values).parts()) + Transitions::kDisturbances <= kNarrow;
+  const bool is_narrow = states_to_follow(Equations<double>(values).parts(), is_controlled()) +
+                             Transitions::kDisturbances <=
+                         kNarrow;
   const std::optional<Transitions> found =
       is_narrow ? transitions<ceres::Jet<double, kNarrow>>(values)
                 : transitions<ceres::Jet<double, kWidestJet>>(values);

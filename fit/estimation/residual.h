@@ -79,6 +79,9 @@ class RecordingCost : public ceres::CostFunction {
   template <class T>
   std::optional<Transitions> transitions(const Model<double>& model) const;
   bool evaluate_with_jacobian(const double* u, double* residuals, double* jacobian) const;
+  bool is_controlled() const {
+    return job_.recordings[recording_].command.meaning == Meaning::reference;
+  }
 
   const Job& job_;
   const ParameterSpace& space_;

@@ -60,8 +60,8 @@ Section instrument_keys(Vocabulary vocabulary) {
 
 Section controller_keys(Vocabulary vocabulary) {
   Section keys;
-  ControllerSettings settings;
-  visit_settings(settings, [&](const Quantity& quantity, double) {
+  const Controller<double> controller;
+  visit_settings(controller, [&](const Quantity& quantity, double) {
     keys.push_back(Key::of(quantity_on(vocabulary, quantity)));
   });
   return keys;
@@ -119,7 +119,7 @@ void read_instruments(const ConfigNode& node, Rig& rig) {
   map.finish();
 }
 
-void read_controller(const ConfigNode& node, Vocabulary vocabulary, ControllerSettings& settings) {
+void read_controller(const ConfigNode& node, Vocabulary vocabulary, Controller<double>& settings) {
   ConfigMap map(node, keys_below(axis_keys(vocabulary), "controller"));
   visit_settings(settings,
                  [&](const Quantity& setting, double& value) { map.read(setting.symbol, value); });
@@ -180,8 +180,8 @@ Section make_axis_keys(Vocabulary vocabulary) {
                     "gain, bias, lag, delay, drift and noise of each signal"),
       Key::optional("controller", Map{controller_keys(vocabulary)},
                     DefaultText{"those of its keys"},
-                    "the slave control unit: limits, moves and the encoder; a fit uses it only to "
-                    "compute the command from a `position_reference`")};
+                    "the position controller: limits, moves and the encoder; a fit uses it for "
+                    "recordings with a `position_reference`")};
 }
 
 std::vector<std::string> choices_of(Vocabulary vocabulary, std::string_view key) {
@@ -259,6 +259,9 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
     key.error(
         parameter
             ? fmt::format("{} is not used by this axis, because of its drive or transmission", name)
+        : entry->group == "controller"
+            ? fmt::format("{} needs a recording with a position_reference whose loop is simulated",
+                          name)
             : fmt::format("{} belongs to an effect that is not active: add it to the axis or job, "
                           "as in 'effects: {{{}: "
                           "{{{}: ...}}}}'",
@@ -335,9 +338,10 @@ std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
   normalize(rig.model);
   if (const auto instruments = map.optional("instruments")) read_instruments(*instruments, rig);
   // Without a pinion there is no telling how far a count is, unless it is said.
-  if (!capabilities(rig.model.structure).has_motor) rig.controller.counts_per_revolution = 0.0;
+  if (!capabilities(rig.model.structure).has_motor)
+    rig.model.controller.timing.counts_per_revolution = 0.0;
   if (const auto controller = map.optional("controller"))
-    read_controller(*controller, vocabulary_of(rig.model.structure), rig.controller);
+    read_controller(*controller, vocabulary_of(rig.model.structure), rig.model.controller);
   map.finish();
   if (diagnostics.count() > before) return std::nullopt;
   if (const std::string reason = model_error(rig.model); !reason.empty()) {
@@ -406,7 +410,9 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
     out << YAML::EndMap;
   }
   out << YAML::Key << "controller" << YAML::Value << YAML::BeginMap;
-  visit_settings(rig.controller, [&](const Quantity& setting, double value) {
+  visit_settings(rig.model.controller, [&](const Quantity& setting, double value) {
+    // What few controllers have.
+    if (value == setting.default_value && (value == 0.0 || setting.symbol == "speed_limit")) return;
     out << YAML::Key << std::string(setting.symbol) << YAML::Value
         << with_unit(value, unit_on(vocabulary, setting.unit));
   });

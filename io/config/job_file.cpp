@@ -94,7 +94,6 @@ class JobReader {
       if (const auto effects = map.optional("effects")) read_effects(*effects, result_.rig.model);
       result_.job.axis = result_.rig.name;
       result_.job.model = result_.rig.model;
-      result_.job.controller = result_.rig.controller;
       result_.job.guessed = result_.rig.guessed;
       const auto recordings = map.required("recordings");
       const auto free = map.required("free");
@@ -229,6 +228,10 @@ class JobReader {
       any_fit = any_fit || recording.role == Role::fit;
       check_length(entry, recording);
     }
+    result_.rig.model.structure.closed_loop = result_.job.model.structure.closed_loop =
+        std::ranges::any_of(result_.job.recordings, [](const Recording& r) {
+          return r.command.meaning == Meaning::reference;
+        });
     for (const Recording& recording : result_.job.recordings)
       if (!names.insert(recording.name).second)
         node.error(fmt::format("two recordings are called '{}': give them different names",

@@ -71,6 +71,12 @@ Section series_keys() {
   return keys;
 }
 
+/// V
+constexpr double kLeastSupply = 1e-3, kMostSupply = 1e5;
+
+/// How the loop around a recorded reference is closed, in the order of its words.
+enum class Loop { computed, simulated };
+
 /// What the input does between its samples.
 Key input_hold_key() {
   return Key::optional("hold",
@@ -78,6 +84,18 @@ Key input_hold_key() {
                                {"linear", "goes straight to the second: as what is measured"}}},
                        DefaultText{"`zero_order`; of a drive_force `linear`"},
                        "what it does between two samples");
+}
+
+/// The position that a controller was asked for.
+Section reference_keys() {
+  Section keys = column_keys();
+  keys.push_back(input_hold_key());
+  keys.push_back(Key::optional(
+      "loop",
+      Choice{{{"computed", "the command is computed from it and the recorded position"},
+              {"simulated", "the controller is simulated with the axis"}}},
+      DefaultText{"`computed` for a velocity loop, else `simulated`"}, "how the loop is closed"));
+  return keys;
 }
 
 /// All signals, first those of a prismatic joint, under each name once.
@@ -102,20 +120,25 @@ std::string units_of_both(const SignalInfo& signal) {
 
 /// The input and all that can be measured.
 Section signal_keys() {
-  const Map column{column_keys(), 0, false, "column"};
   Section input = series_keys();
   input.push_back(Key::optional("sigma", NumberWithUnit{"V", 0.0},
-                                DefaultText{"of a force source estimated from the samples; 0 V of "
-                                            "other drives"},
+                                DefaultText{"estimated from the samples; 0 V for a velocity loop"},
                                 "standard deviation of the noise; 0 V: the axis received exactly "
                                 "these values"));
   input.push_back(input_hold_key());
+  input.push_back(Key::optional(
+      "supply",
+      AnyOf{
+          {NumberWithUnit{"V", kLeastSupply, kMostSupply}, Map{column_keys(), 0, false, "column"}}},
+      DefaultText{"the column is the command itself"},
+      "the column is a duty, such as 40 %, of this voltage: a number, or a column of its own"));
   Section keys{Key::optional("command", Map{std::move(input), 0, false, "input_column"},
                              DefaultText{"none if another input is given"},
                              "set-velocity voltage U, or the input of a force source, in V"),
-               Key::optional("position_reference", column, DefaultText{"not used with a command"},
-                             "in m or rad, in place of the command: the slave control unit of the "
-                             "axis file computes the command from it and the position")};
+               Key::optional("position_reference", Map{reference_keys(), 0, false, "reference"},
+                             DefaultText{"not used with a command"},
+                             "in m or rad, in place of the command, which the controller of the "
+                             "axis file makes of it")};
   for (const SignalInfo& signal : signals_of_both()) {
     Section measured = series_keys();
     measured.push_back(Key::optional(
@@ -186,8 +209,10 @@ class RecordingReader {
  private:
   void read_overrides(const ConfigNode& node, Recording& recording) {
     ConfigMap map(node);
+    Structure structure = rig_.model.structure;
+    structure.closed_loop = true;  // if the recording has a reference
     for (const auto& [key, value] : map.entries())
-      if (const QuantityEntry* entry = quantity_named(key, rig_.model.structure))
+      if (const QuantityEntry* entry = quantity_named(key, structure))
         if (const auto given = read_value(value, entry->quantity))
           recording.overrides.emplace_back(entry->index, *given);
     map.finish();
@@ -267,7 +292,9 @@ class RecordingReader {
     Values times = all;
     for (double& t : times) t -= begin;
     recording.times = std::move(times);
+    const Meaning meaning = recording.command.meaning;
     recording.command = schedule_from_samples(command_times, commands, recording.command.hold);
+    recording.command.meaning = meaning;
     if (recording.times.size() < kLeastSamples) {
       say_too_few(trim_node, *input, measured, recording.times.size());
       recording.times = {0.0, 1.0};
@@ -360,7 +387,7 @@ class RecordingReader {
     const auto command = signals.optional("command");
     const SignalInfo drive_force = info(Signal::drive_force, vocabulary());
     const auto force = force_source ? signals.optional(drive_force.name) : std::nullopt;
-    const auto reference = force_source ? std::nullopt : signals.optional("position_reference");
+    const auto reference = signals.optional("position_reference");
     if (command && force)
       force->error(fmt::format("give either the command or the {}, not both: each drives the axis",
                                words_on(vocabulary(), "drive force")));
@@ -368,12 +395,17 @@ class RecordingReader {
       reference->error("the recorded command drives the axis: remove position_reference");
     if (!command && !force && !reference)
       signals_node.error(
-          force_source ? fmt::format("the axis is driven by a command or a {}: name one of them",
-                                     drive_force.name)
-                       : "the axis is driven by the command: name its column, or that of the "
-                         "position_reference, from which the slave control unit computes it");
+          force_source
+              ? fmt::format("the axis is driven by a command or a {}: name one of them, or "
+                            "the position_reference that its controller follows",
+                            drive_force.name)
+              : "the axis is driven by the command: name its column, or that of the "
+                "position_reference that its controller follows");
+    if (force && reference)
+      reference->error(fmt::format("the recorded {} drives the axis: remove position_reference",
+                                   words_on(vocabulary(), "force")));
     if (command && force) return std::nullopt;
-    if (reference && !command) return read_reference(*reference, signals);
+    if (reference && !command) return read_reference(*reference, signals, recording);
     std::optional<Series> input;
     if (force) {
       recording.command.hold = Hold::linear;
@@ -393,16 +425,50 @@ class RecordingReader {
   std::optional<Series> read_noisy_input(const ConfigNode& node, std::string_view unit,
                                          Recording& recording) {
     ConfigMap map(node, measurement_keys("command"));
-    auto input = read_series(node, map, unit);
+    const auto supply_node = map.optional("supply");
+    std::optional<Schedule> supply;
+    if (supply_node) {
+      supply = read_supply(*supply_node);
+      if (unit != "V")
+        supply_node->error(
+            "a duty of a supply makes a voltage: the drive must be one that takes V");
+    }
+    auto input = read_series(node, map, supply_node ? "1" : unit);
+    if (supply_node && !supply) input.reset();
+    if (supply && input)
+      for (std::size_t i = 0; i < input->values.size(); ++i)
+        input->values[i] *= supply->value_at(input->times[i]);
     if (const auto sigma = map.optional("sigma")) {
       recording.command_sigma = sigma->as_number_with_unit({std::string(unit), 0.0}).value_or(0.0);
-    } else if (input && capabilities(rig_.model.structure).is_force_driven) {
+    } else if (input && capabilities(rig_.model.structure).is_direct()) {
       recording.command_sigma = noise_of_input(input->values);
       recording.command_noise = NoiseSource::differences;
     }
     map.read("hold", recording.command.hold);
     map.finish();
     return input;
+  }
+
+  /// The voltage of a supply over the time. Nothing, with diagnostics, where it is not known.
+  std::optional<Schedule> read_supply(const ConfigNode& node) const {
+    Schedule supply;
+    supply.hold = Hold::linear;
+    if (!node.is_map()) {
+      const auto volts = node.as_quantity("V", kLeastSupply, kMostSupply);
+      if (!volts) return std::nullopt;
+      supply.append(0.0, *volts);
+      return supply;
+    }
+    ConfigMap map(node, column_keys());
+    const auto volts = read_column(*data_, map, "V");
+    map.finish();
+    if (!volts || !times_ || !same_length(node, *volts, *times_)) return std::nullopt;
+    for (std::size_t i = 0; i < volts->size(); ++i)
+      if (!std::isnan((*volts)[i]) && !std::isnan((*times_)[i]))
+        supply.append((*times_)[i], (*volts)[i]);
+    if (!supply.times.empty()) return supply;
+    node.error("the supply has no values");
+    return std::nullopt;
   }
 
   /// A column and its times, without what is missing. Nothing, with diagnostics, where something is
@@ -443,31 +509,52 @@ class RecordingReader {
     return keys_below(keys_below(recording_keys(), "signals"), signal);
   }
 
-  /// The command that the axis file's slave control unit makes of a recorded position reference.
-  std::optional<Series> read_reference(const ConfigNode& node, ConfigMap& signals) const {
+  /// The reference for the controller of the axis file, or the command that this makes of it.
+  std::optional<Series> read_reference(const ConfigNode& node, ConfigMap& signals,
+                                       Recording& recording) const {
     const std::string_view unit = info(Signal::position, vocabulary()).unit;
-    const auto reference = read_column(*data_, node, unit);
+    ConfigMap map(node, measurement_keys("position_reference"));
+    const auto reference = read_column(*data_, map, unit);
+    std::optional<Loop> loop;
+    map.read("loop", loop);
+    Hold hold = Hold::zero_order;
+    map.read("hold", hold);
+    map.finish();
+    const bool is_direct = capabilities(rig_.model.structure).is_direct();
+    if (!reference || !times_ || !same_length(node, *reference, *times_)) return std::nullopt;
+    const auto missing = [](double x) { return std::isnan(x); };
+    if (std::ranges::any_of(*reference, missing) || std::ranges::any_of(*times_, missing)) {
+      node.error(
+          "the controller needs the reference at every sample, and some are missing: trim the "
+          "recording or fill the gaps");
+      return std::nullopt;
+    }
+    if (loop.value_or(is_direct ? Loop::simulated : Loop::computed) == Loop::simulated) {
+      recording.command.meaning = Meaning::reference;
+      recording.command.hold = hold;
+      return Series{*times_, *reference};
+    }
     const auto position_node = signals.optional("position");
     if (!position_node) {
       node.error(
-          "a position_reference also needs the encoder position, which the slave control unit "
-          "reads: name its column under position");
+          "to compute the command of a position_reference the controller reads the encoder: name "
+          "its column under position, or say 'loop: simulated'");
       return std::nullopt;
     }
-    ConfigMap map(*position_node, measurement_keys("position"));
-    const auto position = read_column(*data_, map, unit);
-    if (!reference || !position || !times_) return std::nullopt;
-    if (!same_length(node, *reference, *times_) || !same_length(*position_node, *position, *times_))
-      return std::nullopt;
-    const auto missing = [](double x) { return std::isnan(x); };
-    if (std::ranges::any_of(*reference, missing) || std::ranges::any_of(*position, missing) ||
-        std::ranges::any_of(*times_, missing)) {
-      node.error(
-          "the slave control unit needs the reference and the position at every sample, and some "
-          "are missing: trim the recording or fill the gaps");
+    ConfigMap position_map(*position_node, measurement_keys("position"));
+    const auto position = read_column(*data_, position_map, unit);
+    if (!position || !same_length(*position_node, *position, *times_)) return std::nullopt;
+    if (std::ranges::any_of(*position, missing)) {
+      position_node->error(
+          "the controller needs the position at every sample, and some are missing: trim the "
+          "recording or fill the gaps");
       return std::nullopt;
     }
-    return Series{*times_, command_from_reference(rig_.controller, *times_, *reference, *position)};
+    const Controller<double>& controller = rig_.model.controller;
+    const Schedule track{*times_, *reference, Hold::linear};
+    const auto at = [&](double t) { return track.value_at(times_->front() + t); };
+    return Series{*times_, command_from_reference(controller, *times_,
+                                                  track_points(controller.timing, at), *position)};
   }
 
   /// All signals but the input. Returns how many were named, rightly or wrongly.

@@ -47,6 +47,7 @@ std::string range_text(double lower, double upper) {
 std::string used_by_text(UsedBy used_by) {
   switch (used_by) {
     case UsedBy::every_axis:
+    case UsedBy::controller:
       return "";
     case UsedBy::velocity_loop:
       return "`velocity_loop`";

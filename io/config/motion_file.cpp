@@ -147,7 +147,7 @@ class MotionReader {
       if (!capabilities(rig_.model.structure).is_electric)
         type->error(
             "a move needs a set-velocity input, which the drive of this axis does not have");
-      else if (rig_.model.axis.T_d >= rig_.controller.period)
+      else if (rig_.model.axis.T_d >= rig_.model.controller.timing.period)
         type->error("a move needs a command delay T_d below the controller's period");
     } else {
       file.motion = recorded(file.recording);
@@ -157,7 +157,7 @@ class MotionReader {
   }
 
  private:
-  double limit() const { return rig_.controller.limit; }
+  double limit() const { return rig_.model.controller.gains.limit; }
 
   std::string_view unit() const {
     return unit_on(vocabulary_of(rig_.model.structure), kCommandUnit);
@@ -180,7 +180,7 @@ class MotionReader {
       const RecordingFile data(found);
       const auto times = read_times(data, *time), values = read_column(data, *command, unit());
       if (!times || !values) return motion;
-      const double limit = rig_.controller.limit;
+      const double limit = rig_.model.controller.gains.limit;
       const auto beyond =
           std::ranges::find_if(*values, [&](double v) { return std::abs(v) > limit; });
       const auto missing = [](double x) { return std::isnan(x); };
@@ -189,9 +189,10 @@ class MotionReader {
       else if (times->size() != values->size() || times->empty())
         command->error("the time and the command must have the same number of values");
       else if (beyond != values->end())
-        command->error(fmt::format(
-            "{}: a command of {:.12g} V exceeds the controller's limit of {:.12g} V",
-            data.where(static_cast<std::size_t>(beyond - values->begin())), *beyond, limit));
+        command->error(
+            fmt::format("{}: a command of {:.12g} {} exceeds the controller's limit of {:.12g} {}",
+                        data.where(static_cast<std::size_t>(beyond - values->begin())), *beyond,
+                        unit(), limit, unit()));
       else
         motion.schedule = schedule_from_samples(*times, *values);
     } catch (const RecordingError& error) {

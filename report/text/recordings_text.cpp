@@ -35,16 +35,22 @@ std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& c
     const RecordingCheck& check = checks[r];
     text += header_text(recording, check.sampling);
     const bool force = drives_by_force(recording, job.model);
+    const bool is_reference = recording.command.meaning == Meaning::reference;
     std::vector<std::vector<std::string>> rows{
         {"", "lowest", "highest", "unit", "sigma", "noise", "resolution", ""}};
     rows.push_back(
-        {force ? std::string(words_on(job.vocabulary(), "drive_force")) : "command",
+        {is_reference ? "position_reference"
+         : force      ? std::string(words_on(job.vocabulary(), "drive_force"))
+                      : "command",
          short_number(check.command.low), short_number(check.command.high),
-         std::string(unit_on(job.vocabulary(), force ? "N" : kCommandUnit)),
+         std::string(unit_on(job.vocabulary(), is_reference ? "m"
+                                               : force      ? "N"
+                                                            : kCommandUnit)),
          recording.command_sigma > 0.0 ? fmt::format("{:.2g}", recording.command_sigma) : "", "",
          "", fmt::format("{} switches", check.switches)});
     const double largest = std::max(std::abs(check.command.low), std::abs(check.command.high));
-    if (!force && largest >= job.controller.limit && check.at_maximum > 0.01)
+    if (!force && !is_reference && largest >= job.model.controller.gains.limit &&
+        check.at_maximum > 0.01)
       rows.back().back() = fmt::format("at limit {:.0f} %", 100.0 * check.at_maximum);
     for (std::size_t m = 0; m < check.measurements.size(); ++m) {
       const ValueCheck& values = check.measurements[m];

@@ -39,7 +39,7 @@ inline Recording recorded(const Model<double>& truth, const Motion& motion, doub
                           bool noisy = true) {
   Rig rig;
   rig.model = truth;
-  rig.controller.counts_per_revolution = 0.0;
+  rig.model.controller.timing.counts_per_revolution = 0.0;
   for (const Signal signal : signals) rig.noise[index_of(signal)] = usual_noise(signal);
   RecordingOptions options;
   options.duration = duration;

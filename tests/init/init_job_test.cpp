@@ -14,6 +14,8 @@
 #include <string>
 
 #include "fit/estimation/estimate.h"
+#include "init/starter_axis.h"
+#include "io/config/axis_file.h"
 #include "io/config/job_file.h"
 #include "tests/apps/files.h"
 #include "tests/apps/fit_job.h"
@@ -154,6 +156,29 @@ TEST_F(InitJobTest, AnglesMakeARevoluteJoint) {
   EXPECT_NEAR(found.at("B_a"), 0.2, 0.01);
   EXPECT_NEAR(found.at("coulomb_friction.T_c"), 0.25, 0.01);
   EXPECT_NEAR(found.at("constant_torque.T_0"), 0.15, 0.01);
+}
+
+// Each machine of the list is an axis file that is valid, and the job begins with it.
+TEST_F(InitJobTest, AMachineIsTakenByItsName) {
+  for (const MachineAxis& machine : machine_axes()) {
+    Diagnostics diagnostics;
+    const auto rig = read_axis(
+        *ConfigNode::parse(std::string(machine.text), "axis.yaml", diagnostics), diagnostics);
+    EXPECT_TRUE(rig && diagnostics.empty()) << machine.name;
+  }
+  folder_.write(
+      "a.csv",
+      renamed(driven(),
+              {{"t_s", 1.0}, {"iq [A]", 1.0}, {"pos [mm]", 1e3}, {"v_mps", 1.0}, {"a_mps2", 1.0}}));
+  const InitialJob made =
+      initial_job({folder_.path("a.csv")}, "linear-motor", folder_.path(), {}, {}, true);
+  for (const auto& [name, contents] : made.files) folder_.write(name, contents);
+  EXPECT_NE(folder_.read("axis.yaml").find("name: slide with a linear motor"), std::string::npos);
+  const JobFile file = read();
+  EXPECT_EQ(file.job.model.structure.drive, Drive::motor_current);
+  expect_the_driven_mass(fitted(file), 1.0);  // both have 60 N/A
+  EXPECT_THROW(initial_job({folder_.path("a.csv")}, "loom", folder_.path(), {}, {}, true),
+               std::runtime_error);
 }
 
 TEST_F(InitJobTest, ARowOfUnitsCountsAsTheNames) {

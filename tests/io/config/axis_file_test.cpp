@@ -106,9 +106,9 @@ void expect_same(const Rig& read, const Rig& written) {
   }
   EXPECT_EQ(read.noise, written.noise);
   std::vector<double> settings;
-  visit_settings(read.controller, [&](const Quantity&, double x) { settings.push_back(x); });
+  visit_settings(read.model.controller, [&](const Quantity&, double x) { settings.push_back(x); });
   std::size_t i = 0;
-  visit_settings(written.controller, [&](const Quantity& setting, double x) {
+  visit_settings(written.model.controller, [&](const Quantity& setting, double x) {
     EXPECT_EQ(settings[i++], x) << setting.symbol;
   });
 }
@@ -141,14 +141,14 @@ TEST_F(AxisFileTest, ReadsEveryPartInSiUnits) {
   EXPECT_DOUBLE_EQ(value_of(rig, "initial.y0"), 0.05);
   EXPECT_DOUBLE_EQ(value_of(rig, "velocity.gain"), 1.01);
   EXPECT_DOUBLE_EQ(rig.noise[index_of(Signal::velocity)], 0.002);
-  EXPECT_DOUBLE_EQ(rig.controller.period, 0.004);
+  EXPECT_DOUBLE_EQ(rig.model.controller.timing.period, 0.004);
   // What is not written keeps its standard value.
   EXPECT_EQ(value_of(rig, "F_s"), 0.0);
   EXPECT_EQ(value_of(rig, "w"), 0.002);
   EXPECT_EQ(value_of(rig, "T_d"), 0.0);
   EXPECT_EQ(value_of(rig, "velocity.bias"), 0.0);
   EXPECT_EQ(rig.noise[index_of(Signal::position)], 0.0);
-  EXPECT_EQ(rig.controller.limit, 10.0);
+  EXPECT_EQ(rig.model.controller.gains.limit, 10.0);
 }
 
 TEST_F(AxisFileTest, PartsThatAVariantLacksAreLeftOutOfItsEquations) {
@@ -174,7 +174,7 @@ Rig random_rig(std::mt19937_64& generator, const Structure& structure) {
   for (const QuantityEntry& entry : quantity_list(vocabulary_of(structure)))
     *member[entry.index] = random_value(generator, entry.quantity.lower, entry.quantity.upper);
   for (double& noise : rig.noise) noise = random_value(generator, 1e-9, 1e6);
-  visit_settings(rig.controller, [&](const Quantity& setting, double& value) {
+  visit_settings(rig.model.controller, [&](const Quantity& setting, double& value) {
     value = random_value(generator, setting.lower, setting.upper);
   });
   return rig;

@@ -385,11 +385,73 @@ TEST_F(JobFileTest, ADriveForceReplacesTheCommandOfAForceSource) {
             "job.yaml:7:20: give either the command or the drive force, not both: each drives the "
             "axis");
   EXPECT_EQ(errors_with("      command: {column: u, unit: V}\n", ""),
-            "job.yaml:6:7: the axis is driven by a command or a drive_force: name one of them");
+            "job.yaml:6:7: the axis is driven by a command or a drive_force: name one of them, "
+            "or the position_reference that its controller follows");
   EXPECT_EQ(errors(replaced(replaced(kJob, "mass.yaml", "driven.yaml"),
                             "      command: {column: u, unit: V}\n", "")),
             "job.yaml:6:7: the axis is driven by the command: name its column, or that of the "
-            "position_reference, from which the slave control unit computes it");
+            "position_reference that its controller follows");
+}
+
+// What the controller follows is simulated with it, or makes the command.
+TEST_F(JobFileTest, AReferenceIsFollowedByTheController) {
+  const char* const command = "command: {column: u, unit: V}";
+  const std::string followed =
+      replaced(kJob, command, "position_reference: {column: u, unit: mm, hold: linear}");
+  const Job job = read(followed).job;
+  EXPECT_TRUE(job.model.structure.closed_loop);
+  const Schedule& reference = job.recordings.front().command;
+  EXPECT_EQ(reference.meaning, Meaning::reference);
+  EXPECT_EQ(reference.hold, Hold::linear);
+  EXPECT_DOUBLE_EQ(reference.values.front(), 0.5e-3);
+  EXPECT_EQ(read(followed + "  controller.k_p: {}\n").job.free.back().initial, 6.0);
+  EXPECT_EQ(
+      errors(std::string(kJob) + "  controller.k_p: {}\n"),
+      "job.yaml:10:3: controller.k_p needs a recording with a position_reference whose loop is "
+      "simulated");
+  EXPECT_EQ(read(replaced(followed, "      velocity",
+                          "      position: {column: x, unit: m}\n"
+                          "      velocity"))
+                .job.recordings.front()
+                .command.meaning,
+            Meaning::reference);
+
+  const std::string computed = replaced(followed, "hold: linear", "loop: computed");
+  EXPECT_EQ(
+      errors(computed),
+      "job.yaml:6:27: to compute the command of a position_reference the controller reads the "
+      "encoder: name its column under position, or say 'loop: simulated'");
+  const Job open = read(replaced(computed, "      velocity",
+                                 "      position: {column: x, unit: m}\n"
+                                 "      velocity"))
+                       .job;
+  EXPECT_FALSE(open.model.structure.closed_loop);
+  EXPECT_EQ(open.recordings.front().command.meaning, Meaning::command);
+}
+
+// A PWM acts on its supply.
+TEST_F(JobFileTest, ADutyOfASupplyIsAVoltage) {
+  folder_.write("mass.yaml",
+                "drive: motor_voltage\ntransmission: rigid\n"
+                "parameters: {K_m: 1 N m/A, R: 2 ohm, r_g: 1 m, M: 4 kg, B_a: 8 N s/m}\n");
+  const auto values = [&](const char* supply) {
+    return read(replaced(kJob, "column: u, unit: V",
+                         std::string("column: u, unit: \"%\", supply: ") + supply))
+        .job.recordings.front()
+        .command.values;
+  };
+  EXPECT_DOUBLE_EQ(values("24 V").front(), 0.12);
+  EXPECT_DOUBLE_EQ(values("{column: x, unit: V}").front(), 0.005 * Data().x.front());
+  folder_.write("mass.yaml", kMass);
+  EXPECT_NE(read(replaced(kJob, "column: u, unit: V", "column: u, unit: \"%\", supply: 24 V"))
+                .job.recordings.front()
+                .command.values.size(),
+            0u);
+  folder_.write("mass.yaml",
+                replaced(replaced(kMass, "force_source", "motor_current"), "N/V", "N/A"));
+  EXPECT_EQ(
+      errors(replaced(kJob, "column: u, unit: V", "column: u, unit: \"%\", supply: 24 V")),
+      "job.yaml:6:47: a duty of a supply makes a voltage: the drive must be one that takes V");
 }
 
 TEST_F(JobFileTest, InitialStateFromData) {

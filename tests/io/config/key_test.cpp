@@ -217,7 +217,7 @@ TEST_F(KeyAgreement, JobFile) {
 
 TEST_F(KeyAgreement, MotionFile) {
   Rig rig;
-  rig.controller.limit = 5.0;
+  rig.model.controller.gains.limit = 5.0;
   const Reader read = [&](const std::string& path) { read_motion_file(path, rig); };
   folder_.write("data.csv", "data.csv\n1\n2\n");
   for (const std::string& type : std::get<Choice>(find_key(motion_keys(), "type").form).names()) {

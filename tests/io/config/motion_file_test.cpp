@@ -47,7 +47,8 @@ TEST_F(MotionFileTest, EveryShippedMotionReadsForTheXAxis) {
     MotionFile file;
     ASSERT_NO_THROW(file = read_motion_file(entry.path().string(), rig_));
     EXPECT_GE(file.duration, 1.0);
-    const Schedule schedule = schedule_of(file.motion, file.duration, rig_.controller.period);
+    const Schedule schedule =
+        schedule_of(file.motion, file.duration, rig_.model.controller.timing.period);
     EXPECT_EQ(schedule.times.empty(), std::holds_alternative<MoveMotion>(file.motion));
     ++count;
   }
@@ -127,7 +128,7 @@ TEST_F(MotionFileTest, VoltagesBeyondTheLimitAreRefused) {
             "motion.yaml:4:9: offset must lie between -7 V and 7 V, not 8 V");
   EXPECT_EQ(errors("type: prbs\namplitude: -12 V\nbit: 1 s\nduration: 1 s\n"),
             "motion.yaml:2:12: amplitude must lie between -10 V and 10 V, not -12 V");
-  rig_.controller.limit = 24.0;
+  rig_.model.controller.gains.limit = 24.0;
   EXPECT_EQ(errors("type: step\nlevel: 24 V\nduration: 1 s\n"), "");
 }
 
@@ -164,7 +165,7 @@ TEST_F(MotionFileTest, WritesWhatReadsBackTheSame) {
 }
 
 TEST_F(MotionFileTest, AMoveNeedsACommandThatActsWithinAPeriod) {
-  rig_.model.axis.T_d = rig_.controller.period;
+  rig_.model.axis.T_d = rig_.model.controller.timing.period;
   EXPECT_EQ(errors(kMove),
             "motion.yaml:1:7: a move needs a command delay T_d below the controller's period");
 }
