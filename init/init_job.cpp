@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <ranges>
 #include <set>
 
 #include "base/plain_text.h"
@@ -198,7 +197,7 @@ class Initialiser {
     if (axis_.empty()) start_axis();
     list_candidates();
     choose_free();
-    if (axis_.empty()) try_timing();
+    if (axis_.empty() || is_machine_) try_timing();
     collect_guesses();
     return {files(), std::move(guesses_)};
   }
@@ -207,10 +206,12 @@ class Initialiser {
   /// Its axis file, without the line for editors, which says where the schema is.
   void take_machine() {
     const auto machine = std::ranges::find(machine_axes(), axis_, &MachineAxis::name);
-    if (machine == machine_axes().end())
-      throw std::runtime_error(
-          fmt::format("there is no machine '{}': choose one of {}", sanitized(axis_),
-                      fmt::join(machine_axes() | std::views::transform(&MachineAxis::name), ", ")));
+    if (machine == machine_axes().end()) {
+      std::vector<std::string_view> names;
+      for (const MachineAxis& known : machine_axes()) names.push_back(known.name);
+      throw std::runtime_error(fmt::format("there is no machine '{}': choose one of {}",
+                                           sanitized(axis_), fmt::join(names, ", ")));
+    }
     std::string_view text = machine->text;
     if (text.starts_with("# yaml-language-server")) text.remove_prefix(text.find('\n') + 1);
     axis_text_ = text;
@@ -645,7 +646,7 @@ class Initialiser {
                                   unit_on(vocabulary(), "m")));
     if (!force_source() || std::ranges::any_of(sources_, drives_in_newtons)) return;
     add("K_f");
-    if (starter_) candidates_.back().reason_not_free = kOnlyRatios;
+    if (starter_ || is_machine_) candidates_.back().reason_not_free = kOnlyRatios;
   }
 
   /// A drive that holds its current for a sample is not what a straight line between samples says.

@@ -32,6 +32,8 @@ struct Vocabulary {
   Command command = Command::voltage;
 
   constexpr Vocabulary() = default;
+  // Implicit: a joint alone is that of a command in volts.
+  // NOLINTNEXTLINE(google-explicit-constructor)
   constexpr Vocabulary(Joint of_joint, Command of_command = Command::voltage)
       : joint(of_joint), command(of_command) {}
   bool operator==(const Vocabulary&) const = default;
