@@ -559,6 +559,8 @@ T reading(const Equations<T>& equations, Signal signal, const Mode& mode, const 
         return equations.motor_voltage(mode, y, input);
       case Signal::drive_force:
         return equations.drive_force(mode, y, input);
+      case Signal::load_position:
+        return y[0];
     }
     return T(0.0);
   };

@@ -69,6 +69,7 @@ bool has_signal(Signal signal, const Structure& structure) {
     case Signal::position:
     case Signal::velocity:
     case Signal::acceleration:
+    case Signal::load_position:
       return true;
     case Signal::tachometer:
     case Signal::preamplifier_voltage:

@@ -21,9 +21,10 @@ enum class Signal {
   preamplifier_voltage,
   motor_voltage,
   drive_force,
+  load_position,
 };
 
-inline constexpr std::size_t kSignals = 8;
+inline constexpr std::size_t kSignals = 9;
 
 struct SignalInfo {
   Signal signal;
@@ -41,6 +42,7 @@ inline constexpr std::array<SignalInfo, kSignals> kSignalTable{{
     {Signal::preamplifier_voltage, "V_c", "V", "preamplifier output after its limiter, (2)"},
     {Signal::motor_voltage, "V_m", "V", "motor voltage after its limiter, (3)"},
     {Signal::drive_force, "drive_force", "N", "motor torque as a force at the rack"},
+    {Signal::load_position, "load_position", "m", "y0, from a scale or second encoder on the arm"},
 }};
 
 constexpr std::size_t index_of(Signal signal) { return static_cast<std::size_t>(signal); }

@@ -185,7 +185,8 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
       std::ranges::any_of(list, [&](const Candidate& c) { return c.strengths[0] == added_mass; });
   for (const QuantityEntry& entry : quantity_list(vocabulary))
     if (const double declared = *members(model)[entry.index]; is_constant(job, entry, declared)) {
-      if (entry.index == mass && offers_mass) continue;  // they say the same
+      if (entry.index == mass && offers_mass) continue;            // they say the same
+      if (entry.quantity.used_by == UsedBy::controller) continue;  // computes with its settings
       Candidate candidate = single(entry.name, "axis file", entry);
       candidate.is_constant = true;
       candidate.neutral = {declared};

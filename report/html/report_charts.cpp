@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "fit/data/standstill.h"
 #include "fit/residuals/spectrum.h"
@@ -276,7 +277,33 @@ Html ReportCharts::traces(std::size_t recording) {
       residual("held-", fmt::format("Residual of the {}, tracking simulation", of),
                columns_.add(result.tracking->simulated[m], resolution(measurement)));
   }
-  return all;
+  return all + hysteresis(recording);
+}
+
+Html ReportCharts::hysteresis(std::size_t recording) {
+  const Recording& data = run_result_.job().recordings[recording];
+  const SimulatedRecording& simulation = run_result_.fit().recordings[recording].as_fitted();
+  std::optional<std::size_t> motor, load;
+  for (std::size_t m = 0; m < data.measurements.size(); ++m) {
+    if (data.measurements[m].signal == Signal::position) motor = m;
+    if (data.measurements[m].signal == Signal::load_position) load = m;
+  }
+  if (!motor || !load) return {};
+  const auto loop = [&](const char* label, const Values& of_motor, const Values& of_load) {
+    Values apart = of_load;
+    for (std::size_t i = 0; i < apart.size(); ++i) apart[i] -= of_motor[i];
+    return ChartSeries{label, label, columns_.add_coarse(thinned(of_motor)),
+                       columns_.add_coarse(thinned(apart)), LineStyle::dots};
+  };
+  const std::string unit(unit_on(run_result_.job().vocabulary(), "m"));
+  return add(
+      {.id = fmt::format("hysteresis-{}", recording + 1),
+       .title = fmt::format("Load against motor in {}", data.name),
+       .x = {"position of the motor", unit},
+       .y = {"load - motor", unit},
+       .series = {
+           loop("measured", data.measurements[*motor].values, data.measurements[*load].values),
+           loop("simulated", simulation.simulated[*motor], simulation.simulated[*load])}});
 }
 
 ChartSeries ReportCharts::mean_line(std::string label, std::string_view role, const Values& x,

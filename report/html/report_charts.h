@@ -18,7 +18,8 @@ class ReportCharts {
   /// The signal that the declared model explains least, as it was measured and as it is simulated,
   /// or, with a closed loop, what was left of it before and after.
   Html overview();
-  /// Every signal of a recording over time, measured and simulated, and the residual below it.
+  /// Every signal of a recording over time, measured and simulated, and the residual below it; and
+  /// the two ends of the transmission against each other.
   Html traces(std::size_t recording);
   /// The residual of one series over what it may depend on, its autocorrelation and its spectrum.
   Html views(const SeriesTest& test);
@@ -42,6 +43,9 @@ class ReportCharts {
   };
 
   Html add(Chart chart);
+  /// The load's position less the motor's over the latter: width and slope are those of the
+  /// transmission's gap and compliance. Empty where not both were recorded.
+  Html hysteresis(std::size_t recording);
   Chart over_time(std::size_t recording, std::string id, std::string title, ChartAxis y) const;
   /// The mean of y over ranges of x with equally many values.
   ChartSeries mean_line(std::string label, std::string_view role, const std::vector<double>& x,

@@ -340,7 +340,7 @@ TEST_F(AxisFileTest, EveryMistakeIsNamedWithItsPlace) {
            "25:3: unknown key 'y6'; did you mean 'y0'?"},  // no inductance, no current to start
           {"  velocity: {", "  speed: {",
            "27:3: unknown key 'speed'; known keys: position, velocity, acceleration, tachometer, "
-           "motor_current, V_c, V_m, drive_force"},
+           "motor_current, V_c, V_m, drive_force, load_position"},
           {"gain: 101 %", "scale: 101 %",
            "27:14: unknown key 'scale'; known keys: gain, bias, lag, delay, drift, noise"},
           {"  period: 4 ms", "  perod: 4 ms", "29:3: unknown key 'perod'; did you mean 'period'?"},

@@ -864,7 +864,7 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
             "recording the role validate"},
            {"      velocity: {column: v, unit: m/s, sigma: 1 mm/s}\n", "",
             "6:7: no measured signal: name at least one of position, velocity, acceleration, "
-            "tachometer, motor_current, V_c, V_m, drive_force"},
+            "tachometer, motor_current, V_c, V_m, drive_force, load_position"},
            // What is free.
            {"M: {}", "m: {}", "9:3: unknown quantity 'm'; did you mean 'M'?"},
            {"M: {}", "coulomb_friction: {}",

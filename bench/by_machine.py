@@ -1,0 +1,194 @@
+#!/usr/bin/python3
+"""by_machine.py [BUILD [SEEDS]]: from `fit-params --init --machine NAME` to the fit, without an edit, on
+recordings of six machines that are simulated here and not by the project: midpoint steps of 10 us, friction
+that sticks, controllers that sample every millisecond, encoders that round. The gains of the drives are
+those of the axis files, the masses and frictions are drawn. A case is right when every parameter is within
+four of its standard errors of the truth; it is open when the tool calls the fit unusable."""
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BUILD = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build" / "release").resolve()
+SEEDS = int(sys.argv[2]) if len(sys.argv) > 2 else 5
+SAMPLE, STEPS = 1e-3, 100
+SECONDS = 4.0
+
+
+def profile(rng, reach, rate):
+    """A smooth reference to and fro: three sines of drawn frequencies, which begins at rest."""
+    t = np.arange(int(SECONDS / SAMPLE)) * SAMPLE
+    waves = [(rng.uniform(0.3, 1.0) * reach / k, rate * k * rng.uniform(0.8, 1.2)) for k in (1, 2.3, 5.1)]
+    begin = 1.0 - np.exp(-((t / 0.3) ** 2))
+    return t, begin * sum(a * np.sin(2 * math.pi * f * t) for a, f in waves)
+
+
+def step(v, force, friction, mass, h):
+    """The velocity after h seconds and the way gone, under force(v) and dry friction."""
+    direction = math.copysign(1.0, v) if v else 0.0
+    if not v and abs(force(0.0)) > friction:
+        direction = math.copysign(1.0, force(0.0))
+    if not direction:
+        return 0.0, 0.0
+    middle = v + 0.5 * h * (force(v) - direction * friction) / mass
+    after = v + h * (force(middle) - direction * friction) / mass
+    if after * direction < 0.0:
+        after = 0.0
+    return after, 0.5 * h * (v + after)
+
+
+def run(truth, reference, control, drive, weight=lambda q: 0.0, mu=0.0):
+    """Position and command at every sample. `control` makes the command of reference, position and the two
+    before; `drive` a force of command and velocity; friction grows by `mu` times that."""
+    mass, viscous, coulomb = truth["mass"], truth["viscous"], truth["coulomb"]
+    q = v = before = 0.0
+    last = reference[0]
+    positions, commands = [], []
+    for r in reference:
+        u = control(r, last, q, before)
+        positions.append(q)
+        commands.append(u)
+        before, last = q, r
+        for _ in range(STEPS):
+            against = weight(q)
+            v, way = step(v, lambda w: drive(u, w) - against - viscous * w, coulomb + mu * abs(drive(u, v)), mass,
+                          SAMPLE / STEPS)
+            q += way
+    return np.array(positions), np.array(commands)
+
+
+def tracking(stiffness, damping, limit):
+    """A controller that follows the reference; its command is what is recorded."""
+    def control(r, last, q, before):
+        u = stiffness * (r - q) + damping * ((r - last) - (q - before)) / SAMPLE
+        return max(-limit, min(limit, u))
+    return control
+
+
+def rounded(values, step):
+    return step * np.floor(values / step)
+
+
+def moving(rng, lowest, highest, viscous, coulomb):
+    return {"mass": rng.uniform(lowest, highest), "viscous": rng.uniform(*viscous), "coulomb": rng.uniform(*coulomb)}
+
+
+def screw(rng):
+    truth = moving(rng, 40, 90, (150, 600), (15, 40))
+    t, r = profile(rng, 0.04, 1.0)
+    q, u = run(truth, r, tracking(900, 18, 20), lambda u, v: 113.0973 * u)
+    return truth, {"time_s": t, "motor_current_a": u, "position_mm": 1e3 * rounded(q, 1e-6)}
+
+
+def linear_motor(rng):
+    truth = moving(rng, 4, 15, (10, 40), (3, 12))
+    t, r = profile(rng, 0.05, 1.2)
+    q, u = run(truth, r, tracking(500, 10, 20), lambda u, v: 60.0 * u)
+    return truth, {"t [ms]": 1e3 * t, "iq [A]": u, "x [um]": 1e6 * rounded(q, 0.5e-6)}
+
+
+def belt(rng):
+    """Stiff enough for the sum of the masses to be what counts; the motor's is known."""
+    truth = moving(rng, 5, 12, (10, 40), (8, 20))
+    motor, stiffness, damping = 2e-4 / 0.02**2, 200e3, 100.0
+    t, r = profile(rng, 0.06, 1.0)
+    control = tracking(400, 12, 30)
+    h, q, w, x, v, before, last = SAMPLE / STEPS, 0.0, 0.0, 0.0, 0.0, 0.0, r[0]
+    positions, currents = [], []
+    for wanted in r:
+        u = control(wanted, last, q, before)
+        positions.append(q)
+        currents.append(u)
+        before, last = q, wanted
+        for _ in range(STEPS):  # motor and carriage about the same middle
+            middle_q, middle_x = q + 0.5 * h * w, x + 0.5 * h * v
+            pull = stiffness * (middle_q - middle_x) + damping * (w - v)
+            motor_after = w + h * (25.0 * u - pull) / motor
+            v, way = step(v, lambda s: pull - truth["viscous"] * s, truth["coulomb"], truth["mass"], h)
+            q += 0.5 * h * (w + motor_after)
+            w = motor_after
+            x += way
+    return truth, {"time_s": t, "current_A": np.array(currents), "position_mm": 1e3 * rounded(np.array(positions), 1e-6)}
+
+
+def turntable(rng):
+    truth = moving(rng, 1, 4, (0.5, 2), (2, 8))
+    t, r = profile(rng, 1.0, 0.7)
+    q, u = run(truth, r, tracking(60, 6, 30), lambda u, v: 8.0 * u)
+    return truth, {"time_s": t, "iq [A]": u, "angle [deg]": np.degrees(rounded(q, 2 * math.pi / 1e6))}
+
+
+def geared_joint(rng):
+    truth = moving(rng, 2, 5, (5, 20), (4, 12))
+    truth |= {"sine": rng.uniform(30, 70), "mu": rng.uniform(0.05, 0.15)}
+    t, r = profile(rng, 0.8, 0.7)
+    q, u = run(truth, r, tracking(12, 1, 3), lambda u, v: 127.0 * u, lambda q: truth["sine"] * math.sin(q), truth["mu"])
+    return truth, {"time [s]": t, "torque [%]": 100 * u, "angle [deg]": np.degrees(rounded(q, 2 * math.pi / 1e6))}
+
+
+def hobby_servo(rng):
+    """Goal and encoder alone."""
+    truth = moving(rng, 0.004, 0.009, (0.002, 0.02), (0.01, 0.05))
+    truth["sine"] = 0.4807
+    t, r = profile(rng, 0.7, 0.7)
+    control = lambda r, last, q, before: max(-7.3, min(7.3, 8.402 * (r - q)))
+    q, _ = run(truth, r, control, lambda u, v: 0.3 * (u - 0.3 * v) / 5.0, lambda q: 0.4807 * math.sin(q))
+    return truth, {"time [s]": t, "goal position [rad]": r, "position [rad]": rounded(q, 2 * math.pi / 4096)}
+
+
+MACHINES = {"screw": screw, "belt": belt, "linear-motor": linear_motor, "turntable": turntable,
+            "geared-joint": geared_joint, "hobby-servo": hobby_servo}
+NAMES = {"mass": ("M", "J"), "viscous": ("B_a",), "coulomb": ("coulomb_friction.F_c", "coulomb_friction.T_c"),
+         "sine": ("pendulum_gravity.G_s",), "mu": ("load_friction.mu",)}
+
+
+def fit(machine, columns, folder):
+    rows = [",".join(columns)] + [",".join(f"{x:.9g}" for x in row) for row in zip(*columns.values())]
+    (folder / "run.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    program = BUILD / "apps" / "fit-params"
+    for command in (["--init", "--machine", machine, "run.csv"], ["job.yaml", "--json"]):
+        done = subprocess.run([program, *command], cwd=folder, capture_output=True, text=True, check=False)
+        if done.returncode not in (0, 1, 3):
+            return None, done.stderr
+    return json.loads(done.stdout), ""
+
+
+def judge(truth, result):
+    worst = ("", 0.0)
+    for p in result["parameters"]:
+        key = next((k for k, names in NAMES.items() if p["name"] in names), None)
+        if key is None or key not in truth:
+            continue
+        if not p["standard_error"]:
+            return f"undetermined: {p['name']}"
+        away = abs(p["value"] - truth[key])
+        if away / p["standard_error"] > worst[1]:
+            worst = (p["name"], away / p["standard_error"])
+    if not result["usable"]:
+        return f"open: {result['grade']}"
+    return "right" if worst[1] <= 4.0 else f"wrong: {worst[0]} by {worst[1]:.1f} standard errors"
+
+
+def main():
+    right = total = 0
+    print("| machine | seed | result |\n|---|---|---|")
+    for name, simulate in MACHINES.items():
+        for seed in range(1, SEEDS + 1):
+            truth, columns = simulate(np.random.default_rng(seed))
+            with tempfile.TemporaryDirectory() as folder:
+                result, said = fit(name, columns, pathlib.Path(folder))
+            verdict = judge(truth, result) if result else "refused: " + (said.strip().splitlines() or ["?"])[-1]
+            right += verdict == "right"
+            total += 1
+            print(f"| {name} | {seed} | {verdict} |", flush=True)
+    print(f"\n{right} of {total} are right.")
+    return 0 if right == total else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
