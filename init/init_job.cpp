@@ -396,6 +396,7 @@ class Initialiser {
   std::string_view command_unit() const { return unit_on(vocabulary(), kCommandUnit); }
 
   bool force_source() const { return capabilities(structure_).is_force_driven; }
+  bool is_direct() const { return capabilities(structure_).is_direct(); }
 
   bool has_measured(const Source& source) const {
     return std::ranges::any_of(source.guess.columns, [&](const GuessedColumn& c) {
@@ -555,9 +556,9 @@ class Initialiser {
     return found ? std::optional(found->correlation) : std::nullopt;
   }
 
-  /// Of a force source, whose simulation follows the recording.
+  /// Of a direct drive, whose simulation follows the recording.
   void drop_idle_velocities() {
-    if (!force_source()) return;
+    if (!is_direct()) return;
     for (Source& source : sources_) {
       RecordingGuess& guess = source.guess;
       const GuessedColumn& input = input_of(source);
@@ -616,6 +617,8 @@ class Initialiser {
       const QuantityEntry& called = quantity(name);
       if (is_used(called, structure_)) candidates_.push_back({called.name, entry});
     };
+    if (capabilities(structure_).has_back_emf)
+      for (const char* of_motor : {"K_m", "R"}) add(of_motor);
     // Wherever the user's K_f takes them.
     const bool any_gain = starter_ && starter_->gain_guessed;
     const auto bounds = [](double lower, double upper, std::string_view unit) {
@@ -640,7 +643,7 @@ class Initialiser {
     // An encoder that rounds down reads half a step low.
     const RecordingGuess& first = sources_.front().guess;
     const GuessedColumn* position = first.find(Kind::position);
-    const bool offset = position && !force_source() && !is_rounded_away(*position, first);
+    const bool offset = position && !is_direct() && !is_rounded_away(*position, first);
     if (const double resolution = offset ? resolution_of(position->values) : 0.0; resolution > 0.0)
       add("position.bias", bounds(-round_to_digits(resolution, 2), round_to_digits(resolution, 2),
                                   unit_on(vocabulary(), "m")));
@@ -707,10 +710,10 @@ class Initialiser {
   }
 
   /// Whether the noise of a position is below the steps of its encoder, while a velocity tells of
-  /// the same motion. Steps are no noise: at rest they are an offset. A force source needs the
+  /// the same motion. Steps are no noise: at rest they are an offset. A direct drive needs the
   /// position all the same, for what the velocity says little of: slow friction.
   bool is_rounded_away(const GuessedColumn& position, const RecordingGuess& recording) const {
-    return !force_source() && recording.find(Kind::velocity) &&
+    return !is_direct() && recording.find(Kind::velocity) &&
            noise_from_differences(position.values) < resolution_of(position.values);
   }
 
@@ -880,8 +883,7 @@ class Initialiser {
     const GuessedColumn *position = guess.find(Kind::position),
                         *velocity = guess.find(Kind::velocity);
     if (position == nullptr && velocity == nullptr) return {};
-    if (capabilities(structure_).is_direct())
-      return "    initial_state: data   # from the first samples\n";
+    if (is_direct()) return "    initial_state: data   # from the first samples\n";
     constexpr std::size_t kFirst = 4;
     double speed = 0.0, noise = 0.0;
     if (velocity) {
@@ -922,8 +924,8 @@ class Initialiser {
     const RecordingGuess& first = sources_.front().guess;
     const GuessedColumn *position = first.find(Kind::position),
                         *velocity = first.find(Kind::velocity);
-    const bool is_open = capabilities(structure_).is_direct() &&
-                         sources_.front().input->key != std::string_view("position_reference");
+    const bool is_open =
+        is_direct() && sources_.front().input->key != std::string_view("position_reference");
     if (!is_open || position == nullptr) return {};
     const std::vector<double> none;
     const double rate = suggested_observer_gain(
