@@ -458,13 +458,11 @@ int main(int argc, char** argv) {
                    ->needs(init)
                    ->check(kNotEmpty)
                    ->type_name("AXIS.yaml");
-  std::vector<std::string> machines;
-  for (const MachineAxis& machine : machine_axes()) machines.emplace_back(machine.name);
   auto* machine = app.add_option("--machine", arguments.machine,
                                  "with --init: begin with the axis file of such a machine")
                       ->needs(init)
                       ->excludes(axis)
-                      ->check(CLI::IsMember(machines))
+                      ->check(CLI::IsMember(machine_names()))
                       ->type_name("NAME");
   const Quantity& gain = find_quantity("K_f", Joint::revolute)->quantity;
   app.add_option("--gain", arguments.gain,

@@ -42,11 +42,10 @@ def step(v, force, friction, mass, h):
     return after, 0.5 * h * (v + after)
 
 
-def run(truth, reference, control, drive, weight=lambda q: 0.0, mu=0.0):
+def run(reference, control, plant):
     """Position and command at every sample. `control` makes the command of reference, position and the two
-    before; `drive` a force of command and velocity; friction grows by `mu` times that."""
-    mass, viscous, coulomb = truth["mass"], truth["viscous"], truth["coulomb"]
-    q = v = before = 0.0
+    before; `plant` goes on for a sample under a command and returns the position."""
+    q = before = 0.0
     last = reference[0]
     positions, commands = [], []
     for r in reference:
@@ -54,12 +53,24 @@ def run(truth, reference, control, drive, weight=lambda q: 0.0, mu=0.0):
         positions.append(q)
         commands.append(u)
         before, last = q, r
+        q = plant(u)
+    return np.array(positions), np.array(commands)
+
+
+def one_mass(truth, drive, weight=lambda q: 0.0, mu=0.0):
+    """A plant of one mass. `drive` is a force of command and velocity; friction grows by `mu` times that."""
+    q = v = 0.0
+
+    def plant(u):
+        nonlocal q, v
         for _ in range(STEPS):
             against = weight(q)
-            v, way = step(v, lambda w: drive(u, w) - against - viscous * w, coulomb + mu * abs(drive(u, v)), mass,
-                          SAMPLE / STEPS)
+            v, way = step(v, lambda w: drive(u, w) - against - truth["viscous"] * w,
+                          truth["coulomb"] + mu * abs(drive(u, v)), truth["mass"], SAMPLE / STEPS)
             q += way
-    return np.array(positions), np.array(commands)
+        return q
+
+    return plant
 
 
 def tracking(stiffness, damping, limit):
@@ -81,14 +92,14 @@ def moving(rng, lowest, highest, viscous, coulomb):
 def screw(rng):
     truth = moving(rng, 40, 90, (150, 600), (15, 40))
     t, r = profile(rng, 0.04, 1.0)
-    q, u = run(truth, r, tracking(900, 18, 20), lambda u, v: 113.0973 * u)
+    q, u = run(r, tracking(900, 18, 20), one_mass(truth, lambda u, v: 113.0973 * u))
     return truth, {"time_s": t, "motor_current_a": u, "position_mm": 1e3 * rounded(q, 1e-6)}
 
 
 def linear_motor(rng):
     truth = moving(rng, 4, 15, (10, 40), (3, 12))
     t, r = profile(rng, 0.05, 1.2)
-    q, u = run(truth, r, tracking(500, 10, 20), lambda u, v: 60.0 * u)
+    q, u = run(r, tracking(500, 10, 20), one_mass(truth, lambda u, v: 60.0 * u))
     return truth, {"t [ms]": 1e3 * t, "iq [A]": u, "x [um]": 1e6 * rounded(q, 0.5e-6)}
 
 
@@ -97,14 +108,10 @@ def belt(rng):
     truth = moving(rng, 5, 12, (10, 40), (8, 20))
     motor, stiffness, damping = 2e-4 / 0.02**2, 200e3, 100.0
     t, r = profile(rng, 0.06, 1.0)
-    control = tracking(400, 12, 30)
-    h, q, w, x, v, before, last = SAMPLE / STEPS, 0.0, 0.0, 0.0, 0.0, 0.0, r[0]
-    positions, currents = [], []
-    for wanted in r:
-        u = control(wanted, last, q, before)
-        positions.append(q)
-        currents.append(u)
-        before, last = q, wanted
+    h, q, w, x, v = SAMPLE / STEPS, 0.0, 0.0, 0.0, 0.0
+
+    def plant(u):
+        nonlocal q, w, x, v
         for _ in range(STEPS):  # motor and carriage about the same middle
             middle_q, middle_x = q + 0.5 * h * w, x + 0.5 * h * v
             pull = stiffness * (middle_q - middle_x) + damping * (w - v)
@@ -113,13 +120,16 @@ def belt(rng):
             q += 0.5 * h * (w + motor_after)
             w = motor_after
             x += way
-    return truth, {"time_s": t, "current_A": np.array(currents), "position_mm": 1e3 * rounded(np.array(positions), 1e-6)}
+        return q
+
+    positions, currents = run(r, tracking(400, 12, 30), plant)
+    return truth, {"time_s": t, "current_A": currents, "position_mm": 1e3 * rounded(positions, 1e-6)}
 
 
 def turntable(rng):
     truth = moving(rng, 1, 4, (0.5, 2), (2, 8))
     t, r = profile(rng, 1.0, 0.7)
-    q, u = run(truth, r, tracking(60, 6, 30), lambda u, v: 8.0 * u)
+    q, u = run(r, tracking(60, 6, 30), one_mass(truth, lambda u, v: 8.0 * u))
     return truth, {"time_s": t, "iq [A]": u, "angle [deg]": np.degrees(rounded(q, 2 * math.pi / 1e6))}
 
 
@@ -127,7 +137,7 @@ def geared_joint(rng):
     truth = moving(rng, 2, 5, (5, 20), (4, 12))
     truth |= {"sine": rng.uniform(30, 70), "mu": rng.uniform(0.05, 0.15)}
     t, r = profile(rng, 0.8, 0.7)
-    q, u = run(truth, r, tracking(12, 1, 3), lambda u, v: 127.0 * u, lambda q: truth["sine"] * math.sin(q), truth["mu"])
+    q, u = run(r, tracking(12, 1, 3), one_mass(truth, lambda u, v: 127.0 * u, lambda q: truth["sine"] * math.sin(q), truth["mu"]))
     return truth, {"time [s]": t, "torque [%]": 100 * u, "angle [deg]": np.degrees(rounded(q, 2 * math.pi / 1e6))}
 
 
@@ -137,7 +147,7 @@ def hobby_servo(rng):
     truth["sine"] = 0.4807
     t, r = profile(rng, 0.7, 0.7)
     control = lambda r, last, q, before: max(-7.3, min(7.3, 8.402 * (r - q)))
-    q, _ = run(truth, r, control, lambda u, v: 0.3 * (u - 0.3 * v) / 5.0, lambda q: 0.4807 * math.sin(q))
+    q, _ = run(r, control, one_mass(truth, lambda u, v: 0.3 * (u - 0.3 * v) / 5.0, lambda q: 0.4807 * math.sin(q)))
     return truth, {"time [s]": t, "goal position [rad]": r, "position [rad]": rounded(q, 2 * math.pi / 4096)}
 
 

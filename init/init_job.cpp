@@ -206,12 +206,9 @@ class Initialiser {
   /// Its axis file, without the line for editors, which says where the schema is.
   void take_machine() {
     const auto machine = std::ranges::find(machine_axes(), axis_, &MachineAxis::name);
-    if (machine == machine_axes().end()) {
-      std::vector<std::string_view> names;
-      for (const MachineAxis& known : machine_axes()) names.push_back(known.name);
+    if (machine == machine_axes().end())
       throw std::runtime_error(fmt::format("there is no machine '{}': choose one of {}",
-                                           sanitized(axis_), fmt::join(names, ", ")));
-    }
+                                           sanitized(axis_), fmt::join(machine_names(), ", ")));
     std::string_view text = machine->text;
     if (text.starts_with("# yaml-language-server")) text.remove_prefix(text.find('\n') + 1);
     axis_text_ = text;

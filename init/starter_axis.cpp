@@ -58,6 +58,12 @@ std::string gain_comment(const DrivenMass& seen) {
 
 }  // namespace
 
+std::vector<std::string> machine_names() {
+  std::vector<std::string> names;
+  for (const MachineAxis& machine : machine_axes()) names.emplace_back(machine.name);
+  return names;
+}
+
 StarterAxis velocity_loop_starter(const std::string& recording) {
   StarterAxis starter;
   starter.structure = {Drive::velocity_loop, Transmission::backlash, {}, Joint::prismatic};

@@ -24,6 +24,7 @@ struct MachineAxis {
   std::string_view text;
 };
 const std::vector<MachineAxis>& machine_axes();
+std::vector<std::string> machine_names();
 
 /// One with a velocity loop: the paper's. `recording` is the file that it is for.
 StarterAxis velocity_loop_starter(const std::string& recording);

@@ -522,13 +522,18 @@ class RecordingReader {
     map.finish();
     const bool is_direct = capabilities(rig_.model.structure).is_direct();
     if (!reference || !times_ || !same_length(node, *reference, *times_)) return std::nullopt;
-    const auto missing = [](double x) { return std::isnan(x); };
-    if (std::ranges::any_of(*reference, missing) || std::ranges::any_of(*times_, missing)) {
-      node.error(
-          "the controller needs the reference at every sample, and some are missing: trim the "
-          "recording or fill the gaps");
-      return std::nullopt;
-    }
+    const auto is_complete = [&](const ConfigNode& of, const Values& values) {
+      const auto is_missing = [](double x) { return std::isnan(x); };
+      const bool complete =
+          std::ranges::none_of(values, is_missing) && std::ranges::none_of(*times_, is_missing);
+      if (!complete)
+        of.error(fmt::format(
+            "the controller needs the {} at every sample, and some are missing: trim the "
+            "recording or fill the gaps",
+            &of == &node ? "reference" : "position"));
+      return complete;
+    };
+    if (!is_complete(node, *reference)) return std::nullopt;
     if (loop.value_or(is_direct ? Loop::simulated : Loop::computed) == Loop::simulated) {
       recording.command.meaning = Meaning::reference;
       recording.command.hold = hold;
@@ -544,12 +549,7 @@ class RecordingReader {
     ConfigMap position_map(*position_node, measurement_keys("position"));
     const auto position = read_column(*data_, position_map, unit);
     if (!position || !same_length(*position_node, *position, *times_)) return std::nullopt;
-    if (std::ranges::any_of(*position, missing)) {
-      position_node->error(
-          "the controller needs the position at every sample, and some are missing: trim the "
-          "recording or fill the gaps");
-      return std::nullopt;
-    }
+    if (!is_complete(*position_node, *position)) return std::nullopt;
     const Controller<double>& controller = rig_.model.controller;
     const Schedule track{*times_, *reference, Hold::linear};
     const auto at = [&](double t) { return track.value_at(times_->front() + t); };

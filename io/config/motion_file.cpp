@@ -180,9 +180,8 @@ class MotionReader {
       const RecordingFile data(found);
       const auto times = read_times(data, *time), values = read_column(data, *command, unit());
       if (!times || !values) return motion;
-      const double limit = rig_.model.controller.gains.limit;
       const auto beyond =
-          std::ranges::find_if(*values, [&](double v) { return std::abs(v) > limit; });
+          std::ranges::find_if(*values, [&](double v) { return std::abs(v) > limit(); });
       const auto missing = [](double x) { return std::isnan(x); };
       if (std::ranges::any_of(*times, missing) || std::ranges::any_of(*values, missing))
         command->error("the time or the command has gaps: every row needs both");
@@ -192,7 +191,7 @@ class MotionReader {
         command->error(
             fmt::format("{}: a command of {:.12g} {} exceeds the controller's limit of {:.12g} {}",
                         data.where(static_cast<std::size_t>(beyond - values->begin())), *beyond,
-                        unit(), limit, unit()));
+                        unit(), limit(), unit()));
       else
         motion.schedule = schedule_from_samples(*times, *values);
     } catch (const RecordingError& error) {
