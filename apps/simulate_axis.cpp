@@ -1,4 +1,5 @@
 // simulate-axis AXIS.yaml MOTION.yaml: a recording as a rig would make it.
+// simulate-axis MACHINE.yaml --output FOLDER: one of each axis of a machine.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,6 +13,7 @@
 #include "apps/progress.h"
 #include "base/terminal.h"
 #include "io/config/axis_file.h"
+#include "io/config/machine_file.h"
 #include "io/config/motion_file.h"
 #include "io/recording/csv.h"
 #include "io/results/output_folder.h"
@@ -34,7 +36,7 @@ constexpr const char* kShortHelp = R"(Usage: simulate-axis [OPTIONS] AXIS.yaml M
 Examples:
   simulate-axis axis.yaml step.yaml > step.csv
   simulate-axis axis.yaml move.yaml --set "M=161 kg" --output move.csv
-  simulate-axis axis.yaml chirp.yaml --signals velocity motor_current
+  simulate-axis machine.yaml --output recordings
 
 All options: simulate-axis --help
 )";
@@ -45,6 +47,7 @@ constexpr const char* kExamples = R"(Examples:
       --set "M=161 kg" --output move.csv
   simulate-axis results/fitted.yaml configs/motions/chirp.yaml \
       --signals velocity motor_current
+  simulate-axis configs/machines/robot.yaml --output recordings
 
 Exit codes: 0 recorded, 2 bad input.)";
 
@@ -68,7 +71,83 @@ void change(const std::string& text, Model<double>& model) {
   diagnostics.throw_if_any();
 }
 
+/// The signals that were asked for and that the axis has, in this order.
+std::vector<Signal> signals_of(const Arguments& arguments, const Structure& structure) {
+  std::vector<Signal> signals;
+  const Vocabulary vocabulary = vocabulary_of(structure);
+  for (const std::string& name : arguments.signals) {
+    const auto signal = signal_by_name(name, vocabulary);
+    if (!signal)
+      throw std::runtime_error(fmt::format("--signals: on a {} joint there is no {}",
+                                           joint_name(vocabulary.joint), name));
+    if (std::ranges::find(signals, *signal) != signals.end())
+      throw std::runtime_error(fmt::format("--signals: {} is named twice", name));
+    if (has_signal(*signal, structure))
+      signals.push_back(*signal);
+    else if (arguments.signals_given)
+      throw std::runtime_error(fmt::format("--signals: the drive of this axis has no {}", name));
+  }
+  return signals;
+}
+
+/// The length of so many recordings, which must not be too long.
+void set_duration(double duration, double files, const std::string& path,
+                  RecordingOptions& options) {
+  constexpr double kMaxRows = 2e7;
+  if (duration * options.rate * files > kMaxRows)
+    throw std::runtime_error(
+        fmt::format("{}: {:g} s at {:g} samples per second give more than {:g} rows: choose a "
+                    "shorter duration or a lower --rate",
+                    path, duration, options.rate, kMaxRows));
+  options.duration = duration;
+}
+
+std::string csv_of(const std::vector<Column>& columns, bool exact) {
+  std::ostringstream text;
+  write_csv(text, columns, exact ? 0 : 9);
+  return text.str();
+}
+
+void run_machine(Arguments arguments) {
+  if (!arguments.motion.empty() || !arguments.changes.empty())
+    throw std::runtime_error(
+        fmt::format("{} is a machine: it names the motions and effects of its axes itself; leave "
+                    "out MOTION.yaml and --set",
+                    arguments.axis));
+  if (arguments.output.empty())
+    throw std::runtime_error("name a folder for the recordings of the axes: --output FOLDER");
+  const MachineFile machine = read_machine_file(arguments.axis);
+  RecordingOptions& options = arguments.recording;
+  set_duration(machine.duration, static_cast<double>(machine.axes.size()), arguments.axis, options);
+  std::vector<ResultName> names;
+  std::vector<std::vector<Signal>> signals;
+  for (const CoupledAxis& axis : machine.axes) {
+    names.push_back({axis.name + ".csv", "time_s,"});
+    signals.push_back(signals_of(arguments, axis.rig.model.structure));
+  }
+  OutputFolder folder(arguments.output, names, machine.files);
+  MachineRecording recording;
+  {
+    ProgressLine line(is_terminal(STDERR_FILENO));
+    line.update({"simulating"});
+    recording = record_machine(machine.axes, signals, options);
+  }
+  Files files;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a)
+    files.emplace_back(names[a].name, csv_of(recording.axes[a], arguments.exact));
+  folder.write(files, true);
+  print(
+      fmt::format("{} axes, each simulated {} times; in the end no motion changed by more than "
+                  "{:.1g} of its range.\n",
+                  machine.axes.size(), recording.sweeps, recording.change));
+}
+
 void run_command(Arguments arguments) {
+  arguments.recording.noise = !arguments.exact;
+  if (is_machine_file(arguments.axis)) return run_machine(std::move(arguments));
+  if (arguments.motion.empty())
+    throw std::runtime_error(fmt::format(
+        "name the motion of {}, too: simulate-axis AXIS.yaml MOTION.yaml", arguments.axis));
   Diagnostics diagnostics;
   auto rig = read_axis_file(arguments.axis, diagnostics);
   diagnostics.throw_if_any();
@@ -79,38 +158,18 @@ void run_command(Arguments arguments) {
   if (!arguments.output.empty())
     refuse_to_overwrite(arguments.output, {arguments.axis, arguments.motion, motion.recording});
   RecordingOptions& options = arguments.recording;
-  constexpr double kMaxRows = 2e7;
-  if (motion.duration * options.rate > kMaxRows)
-    throw std::runtime_error(
-        fmt::format("{}: {:g} s at {:g} samples per second give more than {:g} rows: choose a "
-                    "shorter duration or a lower --rate",
-                    arguments.motion, motion.duration, options.rate, kMaxRows));
-  options.duration = motion.duration;
-  options.noise = !arguments.exact;
-  for (const std::string& name : arguments.signals) {
-    const Vocabulary vocabulary = vocabulary_of(rig->model.structure);
-    const auto found = signal_by_name(name, vocabulary);
-    if (!found)
-      throw std::runtime_error(fmt::format("--signals: on a {} joint there is no {}",
-                                           joint_name(vocabulary.joint), name));
-    const Signal signal = *found;
-    if (std::ranges::find(options.signals, signal) != options.signals.end())
-      throw std::runtime_error(fmt::format("--signals: {} is named twice", name));
-    if (has_signal(signal, rig->model.structure))
-      options.signals.push_back(signal);
-    else if (arguments.signals_given)
-      throw std::runtime_error(fmt::format("--signals: the drive of this axis has no {}", name));
-  }
-  std::ostringstream text;
+  set_duration(motion.duration, 1.0, arguments.motion, options);
+  options.signals = signals_of(arguments, rig->model.structure);
+  std::string text;
   {
     ProgressLine line(is_terminal(STDERR_FILENO));
     line.update({"simulating"});
-    write_csv(text, record(*rig, motion.motion, options), arguments.exact ? 0 : 9);
+    text = csv_of(record(*rig, motion.motion, options), arguments.exact);
   }
   if (arguments.output.empty())
-    print(text.str());
+    print(text);
   else
-    write_file(arguments.output, text.str());
+    write_file(arguments.output, text);
 }
 
 }  // namespace
@@ -125,13 +184,17 @@ int main(int argc, char** argv) {
         signals.push_back(name);
   arguments.signals = {"position", "velocity", "acceleration", "tachometer", "motor_current"};
   CLI::App app{
-      "Simulates a motion of an axis and records it as a test rig would: sampled, with noise, "
-      "encoder quantisation, and sensor bias and gain.",
+      "Simulates a motion of an axis, or of all axes of a machine, and records it as a test rig "
+      "would: sampled, with noise, encoder quantisation, and sensor bias and gain.",
       "simulate-axis"};
   app.footer(kExamples);
-  app.add_option("AXIS.yaml", arguments.axis, "axis file (docs/axis-file.md)")->required();
-  app.add_option("MOTION.yaml", arguments.motion, "motion file (docs/motion-file.md)")->required();
-  app.add_option("-o,--output", arguments.output, "CSV file; default: standard output")
+  app.add_option("AXIS.yaml", arguments.axis,
+                 "axis file (docs/axis-file.md), or a machine file (docs/machine-file.md)")
+      ->required();
+  app.add_option("MOTION.yaml", arguments.motion,
+                 "motion file (docs/motion-file.md); none with a machine file");
+  app.add_option("-o,--output", arguments.output,
+                 "CSV file, standard output by default; of a machine a folder")
       ->check(kNotEmpty)
       ->type_name("FILE");
   app.add_option("--set", arguments.changes, "change a quantity; give the value with its unit")

@@ -29,6 +29,7 @@ struct Input {
   T time{0.0};  ///< s, of the recording
   RestMemory<T> memory;
   Disturbance<T> disturbance = {};
+  ChannelCourse channels = {};
 };
 
 /// Which terms of the right-hand side to include.
@@ -65,9 +66,7 @@ class Equations {
   const Model<T>& model() const { return m_; }
   const Observer& observer() const { return observer_; }
   const ActiveTerms& parts() const { return is_; }
-  bool has_smooth_forces() const {
-    return is_.needs.arm_force || is_.needs.friction_curve || is_.needs.motor_torque;
-  }
+  bool has_smooth_forces() const { return is_.needs.is_smooth(); }
   /// Whether the signs of contact, motion and load change more than constants.
   bool signs_matter() const { return is_.asymmetric || is_.slope || is_.load; }
   /// What a drive lag of zero adds to the dead time of a command that drives the motor itself:
@@ -180,7 +179,7 @@ class Equations {
     return force;
   }
 
-  /// The mass that applied_force moves, kg.
+  /// The mass that applied_force moves, kg, without what changes.
   T moving_mass() const {
     T mass = m_.axis.M + slots_.added_mass;
     if (is_.elastic) mass -= slots_.elastic_mass;
@@ -191,16 +190,19 @@ class Equations {
   T acceleration(const Mode& mode, const State<T>& y, const Input<T>& input,
                  Terms terms = Terms::all) const {
     if (mode.sliding == 0) return T(0.0);
-    T force = applied_force(mode, y, input, terms);
-    if (is_.directions)
-      force -=
-          double(mode.sliding) * dry_friction(mode.doublet, mode.sliding, mode, y, input, terms);
-    return force / moving_mass() + input.disturbance.arm;
+    return undisturbed_acceleration(mode, y, input, terms) + input.disturbance.arm;
   }
 
-  /// Force that the observer adds to the arm, N: what the model lacks, or noise.
-  T observer_force(const State<T>& y, const TargetOf<T>& target) const {
-    return moving_mass() * observer_acceleration(y, target);
+  /// Force that the observer adds to the arm, N: what the model lacks, or noise. For the target of
+  /// the input, or another one.
+  T observer_force(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    return observer_force(mode, y, input, input.target);
+  }
+  T observer_force(const Mode& mode, const State<T>& y, const Input<T>& input,
+                   const TargetOf<T>& target) const {
+    T mass = moving_mass();
+    if (is_.needs.mass) mass += changing_mass(mode, y, input).first;
+    return mass * observer_acceleration(y, target);
   }
 
   /// The right-hand side of (1), with observer.
@@ -263,7 +265,13 @@ class Equations {
         arm -=
             double(mode.sliding) * slots::friction_curve(m_.effects, is_.effects, at, input.memory);
       if (!is_.has.has_backlash) arm += motor;
-      d[1] = arm / moving_mass();
+      T mass = moving_mass();
+      if (is_.needs.mass) {  // the affine part moves with the mass that stays
+        const auto [more, rate] = changing_mass(mode, y, input);
+        mass += more;
+        arm -= rate * y[1] + more * undisturbed_acceleration(mode, y, input, Terms::affine);
+      }
+      d[1] = arm / mass;
       if (is_.elastic) d[9] = -d[1];
     }
     d[3] = is_.has.has_backlash ? p.r_g * motor / p.J_m : d[1] / p.r_g;
@@ -449,6 +457,26 @@ class Equations {
            (p.T_p * p.T_r);
   }
 
+  /// Mass that effects add as the axis moves, kg, and its rate, kg/s.
+  std::pair<T, T> changing_mass(const Mode& mode, const State<T>& y, const Input<T>& input) const {
+    return slots::mass(m_.effects, is_.effects, instant(mode, y, input), input.memory);
+  }
+
+  /// y1' of an arm that slides, without disturbance, m/s^2.
+  T undisturbed_acceleration(const Mode& mode, const State<T>& y, const Input<T>& input,
+                             Terms terms) const {
+    T force = applied_force(mode, y, input, terms), mass = moving_mass();
+    if (is_.directions)
+      force -=
+          double(mode.sliding) * dry_friction(mode.doublet, mode.sliding, mode, y, input, terms);
+    if (is_.needs.mass && terms == Terms::all) {
+      const auto [more, rate] = changing_mass(mode, y, input);
+      mass += more;
+      force -= rate * y[1];
+    }
+    return force / mass;
+  }
+
   /// w^2 q + 2 zeta w q' of the elastic mode, m/s^2.
   T elastic_rate(const State<T>& y) const {
     const T& w = slots_.elastic_frequency;
@@ -465,7 +493,9 @@ class Equations {
             current(mode, y, input),
             force,
             m_.axis.r_g * force,
-            load(mode, y, force)};
+            load(mode, y, force),
+            {},
+            &input.channels};
   }
 
   T motor_torque(const Mode& mode, const State<T>& y, const Input<T>& input) const {
@@ -510,7 +540,7 @@ class Equations {
 
   T stick_force(const Mode& mode, const State<T>& y, const Input<T>& input) const {
     T force = applied_force(mode, y, input);
-    if (observer_.active()) force += observer_force(y, input.target);
+    if (observer_.active()) force += observer_force(mode, y, input);
     return force;
   }
 

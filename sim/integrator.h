@@ -83,7 +83,7 @@ class Integrator {
   /// Begins at `time` with the model's initial state and the given command (V).
   void start(double time, const T& command, const Target& target) {
     y_ = initial_state(model_);
-    input_ = {command, {T(target.velocity), T(target.position)}, T(time), {}};
+    input_ = {command, {T(target.velocity), T(target.position)}, T(time), {}, {}, input_.channels};
     slope_ = {};
     command_slope_ = 0.0;
     equations_.begin(y_, input_);
@@ -109,6 +109,13 @@ class Integrator {
 
   /// From now on this disturbs the axis. Needs IntegratorOptions::has_disturbance.
   void set_disturbance(const Disturbance<T>& disturbance) { input_.disturbance = disturbance; }
+
+  /// From now on the channels run like this. To be called before start(), too, where there are any.
+  void set_channels(const ChannelCourse& channels) {
+    input_.channels = channels;
+    copy_plain_input();
+    here_.reset();
+  }
 
   /// From now on the observer's target is `target` and moves with the rate `slope` per second.
   void set_target(const Target& target, const Target& slope) {
@@ -200,7 +207,9 @@ class Integrator {
     plain_input_ = {value_of(input_.command),
                     {value_of(input_.target.velocity), value_of(input_.target.position)},
                     value_of(input_.time),
-                    value_of(input_.memory)};
+                    value_of(input_.memory),
+                    {},
+                    input_.channels};
   }
   /// Level of the longest step that is at most 1 / ratio of level 0.
   static int level_of(double ratio, int most = 60) {
@@ -254,7 +263,7 @@ class Integrator {
     if constexpr (std::is_same_v<S, double>) {
       return view.equations.rate(mode_, y, view.input);
     } else {
-      const auto& [command, target, time, memory, disturbance] = view.input;
+      const auto& [command, target, time, memory, disturbance, channels] = view.input;
       State<S> f = view.propagator.a_times(y);
       flow_->driven.add_product({S(1.0), command, target.velocity, target.position}, f);
       if (options_.has_disturbance) {

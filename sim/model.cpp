@@ -23,7 +23,9 @@ std::vector<QuantityEntry> make_list(Vocabulary vocabulary) {
 
 const std::vector<QuantityEntry>& quantity_list(Vocabulary vocabulary) {
   static const auto lists = for_all_vocabularies(make_list);
-  return lists[index_of(vocabulary)];
+  if (vocabulary.channels == nullptr) return lists[index_of(vocabulary)];
+  static PerVocabulary<std::vector<QuantityEntry>> with_channels;
+  return with_channels.of(vocabulary, make_list);
 }
 
 const QuantityEntry* find_quantity(std::string_view name, Vocabulary vocabulary) {
@@ -61,6 +63,9 @@ bool is_used(UsedBy used_by, const Structure& structure) {
 
 bool is_used(const QuantityEntry& entry, const Structure& structure) {
   if (entry.effect && !structure.effects[*entry.effect]) return false;
+  if (const auto channel = entry.quantity.channel;
+      channel && (structure.channels == nullptr || *channel >= structure.channels->size()))
+    return false;
   return is_used(entry.quantity.used_by, structure);
 }
 

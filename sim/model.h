@@ -23,6 +23,7 @@ struct Structure {
   EffectSet effects{};
   Joint joint = Joint::prismatic;
   bool closed_loop = false;  ///< the controller is part of what is simulated
+  Channels channels = nullptr;
 };
 
 /// What an axis has by its drive and its transmission.
@@ -70,7 +71,7 @@ constexpr const Capabilities& capabilities(const Structure& structure) {
 
 /// How its quantities are called.
 constexpr Vocabulary vocabulary_of(const Structure& structure) {
-  return {structure.joint, capabilities(structure).command};
+  return {structure.joint, capabilities(structure).command, structure.channels};
 }
 
 template <class T>

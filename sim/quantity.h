@@ -2,7 +2,9 @@
 // Reading, bounds, tables, CSV headers and JSON use it.
 #pragma once
 
+#include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -41,10 +43,18 @@ struct Quantity {
   bool shape = false;
   /// Of an effect: a value that an ordinary motion shows, in `unit`; for tests and benchmarks.
   double typical = std::numeric_limits<double>::quiet_NaN();
+  /// The channel of the axis, by its place, to which it is related: `unit` is then per unit of
+  /// that, and the axis has the quantity if it has the channel.
+  std::optional<std::size_t> channel = std::nullopt;
 
   constexpr Quantity typically(double value) const {
     Quantity copy = *this;
     copy.typical = value;
+    return copy;
+  }
+  constexpr Quantity of_channel(std::size_t place) const {
+    Quantity copy = *this;
+    copy.channel = place;
     return copy;
   }
 };

@@ -1,5 +1,6 @@
 #include "sim/rig.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <stdexcept>
@@ -7,7 +8,7 @@
 #include "base/random.h"
 #include "sim/controller.h"
 #include "sim/recorder.h"
-#include "sim/simulate.h"
+#include "sim/rig_run.h"
 
 namespace axisfit {
 namespace {
@@ -29,6 +30,8 @@ class NormalStream {
   std::mt19937_64 generator_;
 };
 
+}  // namespace
+
 std::vector<double> sampling_times(const RecordingOptions& options) {
   const auto last = static_cast<std::size_t>(std::llround(options.duration * options.rate));
   std::vector<double> times;
@@ -36,7 +39,32 @@ std::vector<double> sampling_times(const RecordingOptions& options) {
   return times;
 }
 
-}  // namespace
+Schedule run_rig(const Rig& rig, const Motion& motion, const RecordingOptions& options,
+                 std::span<const double> instants, std::span<const ChannelSeries> channels,
+                 const std::function<void(std::size_t, const Integrator<double>&)>& read) {
+  std::size_t reached = 0;
+  const auto note = [&](std::size_t i, const Integrator<double>& axis) {
+    read(i, axis);
+    reached = i;
+  };
+  IntegratorOptions integrator;
+  integrator.step = options.step;
+  Schedule command;
+  if (const auto* move = std::get_if<MoveMotion>(&motion)) {
+    Model<double> model = rig.model;
+    if (!options.noise) model.controller.timing.counts_per_revolution = 0.0;
+    command = simulate_move(model, reference_of(*move), instants, note, integrator, channels);
+  } else {
+    command = schedule_of(motion, options.duration, rig.model.controller.timing.period);
+    simulate<double>(rig.model, command, instants, note, {}, {{}, {}, channels}, integrator);
+  }
+  if (reached + 1 != instants.size())
+    throw std::runtime_error("the motion cannot be simulated beyond " +
+                             std::to_string(instants[reached]) +
+                             " s: the state is not finite, oscillates too fast to be resolved, or "
+                             "events accumulate without end");
+  return command;
+}
 
 std::string column_name(std::string_view name, std::string_view unit) {
   std::string text(name);
@@ -54,30 +82,19 @@ std::string column_name(Signal signal, Vocabulary vocabulary) {
   return column_name(on.name, on.unit);
 }
 
-std::vector<Column> record(const Rig& rig, const Motion& motion, const RecordingOptions& options) {
+std::vector<Column> record(const Rig& rig, const Motion& motion, const RecordingOptions& options,
+                           const ChannelsOverTime& channels) {
   const std::vector<double> times = sampling_times(options);
   Recorder<double> recorder(rig.model.instruments, options.signals, times);
-  std::size_t reached = 0;
-  const auto read = [&](std::size_t i, const Integrator<double>& axis) {
-    recorder.read(axis);
-    reached = i;
-  };
-  IntegratorOptions integrator;
-  integrator.step = options.step;
-  Schedule command;
-  if (const auto* move = std::get_if<MoveMotion>(&motion)) {
-    Model<double> model = rig.model;
-    if (!options.noise) model.controller.timing.counts_per_revolution = 0.0;
-    command = simulate_move(model, reference_of(*move), recorder.instants(), read, integrator);
-  } else {
-    command = schedule_of(motion, options.duration, rig.model.controller.timing.period);
-    simulate<double>(rig.model, command, recorder.instants(), read, {}, {}, integrator);
-  }
-  if (reached + 1 != recorder.instants().size())
-    throw std::runtime_error("the motion cannot be simulated beyond " +
-                             std::to_string(recorder.instants()[reached]) +
-                             " s: the state is not finite, oscillates too fast to be resolved, or "
-                             "events accumulate without end");
+  const std::vector<double>& read_at = recorder.instants();
+  const std::span<const double> instants =
+      channels.instants.empty() ? std::span(read_at) : channels.instants;
+  const std::size_t stride = std::max<std::size_t>(
+      1, (instants.size() - 1) / std::max<std::size_t>(1, read_at.size() - 1));
+  const Schedule command = run_rig(rig, motion, options, instants, channels.series,
+                                   [&](std::size_t i, const Integrator<double>& axis) {
+                                     if (i % stride == 0) recorder.read(axis);
+                                   });
 
   std::vector<Column> columns;
   columns.push_back({"time_s", times});

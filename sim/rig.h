@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,11 +31,20 @@ struct RecordingOptions {
   std::vector<Signal> signals;  ///< which to record, in this order
 };
 
+/// Channels of an axis while it moves.
+struct ChannelsOverTime {
+  /// s: the samples of the recording, each interval between them divided into the same number of
+  /// parts, a multiple of four. None: the channels are at their zero.
+  std::span<const double> instants = {};
+  std::span<const ChannelSeries> series = {};
+};
+
 /// Runs a rig through a motion and records it: columns time_s, command_v (or _a), then one per
 /// signal, named by column_name(). The model's instruments give gain and bias, the rig noise, and
 /// the controller's encoder the position's resolution. Throws std::runtime_error when the motion
 /// cannot be simulated to its end.
-std::vector<Column> record(const Rig& rig, const Motion& motion, const RecordingOptions& options);
+std::vector<Column> record(const Rig& rig, const Motion& motion, const RecordingOptions& options,
+                           const ChannelsOverTime& channels = {});
 
 /// A name and a unit in plain letters: "velocity_mps".
 std::string column_name(std::string_view name, std::string_view unit);

@@ -15,14 +15,26 @@
 
 namespace axisfit {
 
-/// The target of a tracking simulation: measured values at the instants of the simulation, those of
-/// a smooth curve from target_corners(). A series that the observer does not use may be empty.
-struct TargetSeries {
-  std::span<const double> velocity;  ///< m/s
-  std::span<const double> position;  ///< m
+/// Measured values at the instants of a simulation. Of its observer's target those of a smooth
+/// curve from target_corners(); a series that the observer does not use may be empty.
+struct MeasuredSeries {
+  std::span<const double> velocity;              ///< m/s
+  std::span<const double> position;              ///< m
+  std::span<const ChannelSeries> channels = {};  ///< of the model; none: they are at their zero
 
   Target at(std::size_t i) const {
     return {velocity.empty() ? 0.0 : velocity[i], position.empty() ? 0.0 : position[i]};
+  }
+  /// From instants i to i + 1, at these times (s).
+  ChannelCourse course(std::size_t i, std::span<const double> times) const {
+    ChannelCourse course{times[i], {}, {}};
+    for (std::size_t j = 0; j < channels.size(); ++j) {
+      const auto& [values, hold] = channels[j];
+      course.value[j] = values[i];
+      if (hold == Hold::linear && i + 1 < times.size())
+        course.slope[j] = (values[i + 1] - values[i]) / (times[i + 1] - times[i]);
+    }
+    return course;
   }
 };
 
@@ -152,15 +164,15 @@ class ControlledCommands {
 /// increasing).
 ///
 /// A reading precedes a command that switches at the same instant. With an observer, the target
-/// runs linearly between the measured values. A dead time below zero, of a log that is late, is
-/// allowed where the command is all known.
+/// runs linearly between the measured values; so do the channels. A dead time below zero, of a log
+/// that is late, is allowed where the command is all known.
 ///
 /// Disturbances, where there are any, are those at the instants. Between two of them their mean
 /// acts.
 template <class T, class Commands, class Read>
 SimulationResult simulate_commands(const Model<T>& model, Commands&& commands,
                                    std::span<const double> times, Read&& read,
-                                   const Observer& observer, const TargetSeries& measured,
+                                   const Observer& observer, const MeasuredSeries& measured,
                                    const IntegratorOptions& options,
                                    std::span<const Disturbance<T>> disturbances = {}) {
   SimulationResult simulation_result;
@@ -168,6 +180,7 @@ SimulationResult simulate_commands(const Model<T>& model, Commands&& commands,
   even.has_disturbance = !disturbances.empty();
   if (times.size() > 1) even.interval = mean_interval(times);
   Integrator<T> axis(model, observer, even);
+  if (!measured.channels.empty()) axis.set_channels(measured.course(0, times));
   commands.start(axis, times.front(), measured.at(0));
   const auto reaches = [&](const T& instant) {
     const bool reached = axis.advance_to(instant);
@@ -182,6 +195,7 @@ SimulationResult simulate_commands(const Model<T>& model, Commands&& commands,
       axis.set_target(from, {(to.velocity - from.velocity) / duration,
                              (to.position - from.position) / duration});
     }
+    if (i > 1 && !measured.channels.empty()) axis.set_channels(measured.course(i - 1, times));
     if (i > 0 && even.has_disturbance) {
       const Disturbance<T>&from = disturbances[i - 1], &to = disturbances[i];
       axis.set_disturbance({0.5 * (from.arm + to.arm), 0.5 * (from.motor + to.motor)});
@@ -205,7 +219,8 @@ SimulationResult simulate_commands(const Model<T>& model, Commands&& commands,
 template <class T, class Read>
 SimulationResult simulate(const Model<T>& model, const Schedule& schedule,
                           std::span<const double> times, Read&& read, const Observer& observer = {},
-                          const TargetSeries& measured = {}, const IntegratorOptions& options = {},
+                          const MeasuredSeries& measured = {},
+                          const IntegratorOptions& options = {},
                           std::span<const Disturbance<T>> disturbances = {}) {
   IntegratorOptions with_hold = options;
   if (schedule.meaning == Meaning::command) {
@@ -230,7 +245,8 @@ SimulationResult simulate(const Model<T>& model, const Schedule& schedule,
 template <class Read>
 Schedule simulate_move(const Model<double>& model, Reference reference,
                        std::span<const double> times, Read&& read,
-                       const IntegratorOptions& options = {}) {
+                       const IntegratorOptions& options = {},
+                       std::span<const ChannelSeries> channels = {}) {
   Schedule written;
   const ControllerTiming& timing = model.controller.timing;
   const auto encoder = [&](const Integrator<double>& axis) {
@@ -241,7 +257,7 @@ Schedule simulate_move(const Model<double>& model, Reference reference,
                     ControlledCommands<double>(
                         model.controller, track_points(timing, std::move(reference)), encoder,
                         [&](double time, double command) { written.append(time, command); }),
-                    times, read, {}, {}, options);
+                    times, read, {}, {{}, {}, channels}, options);
   return written;
 }
 

@@ -100,15 +100,44 @@ const UnitPair* find_unit(std::string_view unit) {
   return found == kUnits.end() ? nullptr : found;
 }
 
-/// The same text for the life of the program.
-std::string_view kept(std::string text) {
+/// What was put in here first, for the life of the program.
+template <class Value>
+const Value& kept_for_good(Value value) {
   static std::mutex mutex;
-  static std::set<std::string, std::less<>> texts;
+  static std::set<Value> values;
   const std::lock_guard lock(mutex);
-  return *texts.insert(std::move(text)).first;
+  return *values.insert(std::move(value)).first;
 }
 
+/// The same text for the life of the program.
+std::string_view kept(std::string text) { return kept_for_good(std::move(text)); }
+
+/// "N s/m" per "degC" is "N s/m/K": of a difference of temperatures the zero does not count.
+std::string unit_per(std::string_view unit, std::string_view channel) {
+  if (channel == "1") return std::string(unit);
+  if (channel == "degC") channel = "K";
+  const bool is_plain = channel.find_first_of(" /*.^") == std::string_view::npos;
+  return std::string(unit) +
+         (is_plain ? "/" + std::string(channel) : "/(" + std::string(channel) + ")");
+}
+
+/// A quantity that is related to a channel, in its words: "mass per channel" is "mass per unit of
+/// neighbour".
+Quantity of_channel(Quantity quantity, const Channel& channel) {
+  quantity.symbol = channel.name;
+  quantity.unit = kept(unit_per(quantity.unit, channel.unit));
+  const std::string_view what = quantity.meaning.substr(0, quantity.meaning.rfind("channel"));
+  quantity.meaning = kept(std::string(what) + "unit of " + channel.name);
+  return quantity;
+}
+
+Quantity on_joint(Vocabulary vocabulary, const Quantity& quantity);
+
 }  // namespace
+
+Channels kept(const ChannelList& channels) {
+  return channels.empty() ? nullptr : &kept_for_good(channels);
+}
 
 std::string_view unit_on(Vocabulary vocabulary, std::string_view unit) {
   if (const auto* by_command = std::ranges::find(kOfCommand, unit, &UnitOfCommand::written);
@@ -134,6 +163,16 @@ std::string_view words_on(Vocabulary vocabulary, std::string_view text) {
 }
 
 Quantity quantity_on(Vocabulary vocabulary, const Quantity& quantity) {
+  Quantity called = on_joint(vocabulary, quantity);
+  const auto place = quantity.channel;
+  return place && vocabulary.channels != nullptr && *place < vocabulary.channels->size()
+             ? of_channel(std::move(called), (*vocabulary.channels)[*place])
+             : called;
+}
+
+namespace {
+
+Quantity on_joint(Vocabulary vocabulary, const Quantity& quantity) {
   Quantity called = quantity;
   called.unit = unit_on({Joint::prismatic, vocabulary.command}, quantity.unit);
   if (quantity.symbol == "K_f" && vocabulary.command == Command::current)
@@ -156,5 +195,7 @@ Quantity quantity_on(Vocabulary vocabulary, const Quantity& quantity) {
   }
   return called;
 }
+
+}  // namespace
 
 }  // namespace axisfit

@@ -7,8 +7,12 @@
 #include <array>
 #include <cstddef>
 #include <iterator>
+#include <map>
+#include <mutex>
 #include <string_view>
+#include <utility>
 
+#include "sim/channel.h"
 #include "sim/quantity.h"
 
 namespace axisfit {
@@ -27,21 +31,27 @@ enum class Command {
 };
 inline constexpr Command kCommands[]{Command::voltage, Command::current, Command::share_of_rated};
 
+/// A list of channels that stays: the same one for the same channels; null for none.
+using Channels = const ChannelList*;
+Channels kept(const ChannelList& channels);
+
 struct Vocabulary {
   Joint joint = Joint::prismatic;
   Command command = Command::voltage;
+  Channels channels = nullptr;  ///< by which the quantities that are related to them are called
 
   constexpr Vocabulary() = default;
   // Implicit: a joint alone is that of a command in volts.
   // NOLINTNEXTLINE(google-explicit-constructor)
-  constexpr Vocabulary(Joint of_joint, Command of_command = Command::voltage)
-      : joint(of_joint), command(of_command) {}
+  constexpr Vocabulary(Joint of_joint, Command of_command = Command::voltage,
+                       Channels of_channels = nullptr)
+      : joint(of_joint), command(of_command), channels(of_channels) {}
   bool operator==(const Vocabulary&) const = default;
 };
 
 inline constexpr std::size_t kVocabularies = std::size(kJoints) * std::size(kCommands);
 
-/// All of them, that of the sources first.
+/// All without channels, that of the sources first.
 constexpr std::array<Vocabulary, kVocabularies> all_vocabularies() {
   std::array<Vocabulary, kVocabularies> all;
   auto next = all.begin();
@@ -50,11 +60,30 @@ constexpr std::array<Vocabulary, kVocabularies> all_vocabularies() {
   return all;
 }
 
-/// Its place among them.
+/// Its place among them, whatever its channels.
 constexpr std::size_t index_of(Vocabulary vocabulary) {
   return static_cast<std::size_t>(vocabulary.joint) * std::size(kCommands) +
          static_cast<std::size_t>(vocabulary.command);
 }
+
+/// Something that is made of a vocabulary when it is first asked for, and stays. Safe to use by
+/// several threads.
+template <class Made>
+class PerVocabulary {
+ public:
+  template <class Make>
+  const Made& of(Vocabulary vocabulary, Make&& make) {
+    const std::lock_guard lock(mutex_);
+    const std::pair key(index_of(vocabulary), vocabulary.channels);
+    auto known = made_.find(key);
+    if (known == made_.end()) known = made_.emplace(key, make(vocabulary)).first;
+    return known->second;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::pair<std::size_t, Channels>, Made> made_;
+};
 
 /// make(vocabulary) of each, in their order.
 template <class Make>
@@ -73,7 +102,8 @@ std::string_view unit_on(Vocabulary vocabulary, std::string_view unit);
 /// "constant_torque", "arm mass" is "joint inertia". Whole words alone are exchanged.
 std::string_view words_on(Vocabulary vocabulary, std::string_view text);
 
-/// A quantity with its symbol ("F_c": "T_c"), unit, meaning and range on the machine.
+/// A quantity with its symbol ("F_c": "T_c"), unit, meaning and range on the machine. One that is
+/// related to a channel has the channel's name for a symbol: "channel_force.temperature", in N/K.
 Quantity quantity_on(Vocabulary vocabulary, const Quantity& quantity);
 
 }  // namespace axisfit

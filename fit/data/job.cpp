@@ -22,6 +22,19 @@ double noise_correlation_time(const Measurement& measurement) {
                   autocorrelation_time(measurement.filter) / static_cast<double>(measurement.hold));
 }
 
+ChannelCourse Recording::course_at(double time) const {
+  ChannelCourse course{time, {}, {}};
+  const auto after = std::ranges::upper_bound(times, time);
+  const auto end = static_cast<std::size_t>(
+      std::clamp<std::ptrdiff_t>(after - times.begin(), 1, std::ssize(times) - 1));
+  const double since = times[end - 1], length = times[end] - since;
+  for (std::size_t j = 0; j < channels.size(); ++j) {
+    course.slope[j] = (channels[j][end] - channels[j][end - 1]) / length;
+    course.value[j] = channels[j][end - 1] + course.slope[j] * (time - since);
+  }
+  return course;
+}
+
 bool share_samples(const Recording& a, const Recording& b) {
   constexpr std::size_t kFewest = 9;
   std::size_t shared = 0;

@@ -78,6 +78,9 @@ struct Recording {
   double command_sigma = 0.0;
   NoiseSource command_noise = NoiseSource::given;  ///< or differences
   std::vector<Measurement> measurements;
+  /// Of the model's channels, beyond their zero, one value per sample; none: they are at their
+  /// zero.
+  std::vector<Samples> channels{};
   InitialState initial_state = InitialState::given;
   /// Samples at the start from which an initial state is taken.
   std::size_t initial_samples = 20;
@@ -93,6 +96,9 @@ struct Recording {
     return role == Role::fit && measurement.fitted && measurement.counts(sample) &&
            (held_out.empty() || !held_out[sample]);
   }
+
+  /// How the channels run from this instant (s) on, until the next sample.
+  ChannelCourse course_at(double time) const;
 
   const Measurement* find(Signal signal) const {
     for (const Measurement& m : measurements)

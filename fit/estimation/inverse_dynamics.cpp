@@ -260,7 +260,9 @@ class BalanceCost : public ceres::CostFunction {
       if (!path_.current.empty()) y[6] = T(path_.current[i]);
       y[7] = commands[i];
       input.command = commands[i];
-      input.time = T(recording.times.front() + static_cast<double>(i) * path_.interval);
+      const double time = recording.times.front() + static_cast<double>(i) * path_.interval;
+      input.time = T(time);
+      input.channels = recording.course_at(time);
       if (!before) input.memory = {y[0], {}};
       const Mode mode = equations.mode_at(y, input);
       if (before && mode.sliding != before->sliding && before->sliding != 0) {

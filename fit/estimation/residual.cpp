@@ -45,8 +45,11 @@ SimulationResult run(const Job& job, const Recording& recording, const Model<T>&
   };
   const std::vector<double> velocity = series(Signal::velocity),
                             position = series(Signal::position);
+  std::vector<ChannelSeries> channels;
+  for (const Samples& values : recording.channels)
+    channels.push_back({recorder.refined(std::vector<double>(values))});
   return simulate<T>(model, recording.command, recorder.instants(), read, observer,
-                     {velocity, position}, options, disturbances);
+                     {velocity, position, channels}, options, disturbances);
 }
 
 /// Calls visit(x) for the states in use, and for what is remembered where that counts.
@@ -118,7 +121,7 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
                             position = target_values(recording, Signal::position);
   // The force is the sample's: that of the target is periodic between samples, and not zero at
   // them.
-  const TargetSeries measured{velocity, position};
+  const MeasuredSeries measured{velocity, position};
   const SimulationResult simulation_result = run(
       job, recording, model, observer, recorder,
       [&](std::size_t i, const Integrator<double>& axis) {
@@ -132,7 +135,8 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
              equations.current(axis.mode(), y, axis.input()), drive,
              capabilities(model.structure).has_backlash ? equations.gear_force(axis.mode(), y)
                                                         : drive,
-             observer.active() ? equations.observer_force(y, measured.at(simulation.samples.size()))
+             observer.active() ? equations.observer_force(axis.mode(), y, axis.input(),
+                                                          measured.at(simulation.samples.size()))
                                : 0.0});
       },
       &simulation.modes);

@@ -6,6 +6,8 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <string>
 
 #include "base/distributions.h"
 #include "base/parallel.h"
@@ -51,11 +53,44 @@ std::vector<std::size_t> quantile_ranges(const std::vector<double>& x, std::size
   return range;
 }
 
+constexpr std::size_t kRanges = 12;
+constexpr double kSignificant = 1e-3;
+
+/// That of a series on a variable; none where there is none beyond chance.
+std::optional<Dependence> dependence_on(const std::string& name, const std::vector<double>& x,
+                                        const std::vector<double>& values) {
+  struct Range {
+    double count = 0.0, mean = 0.0;
+  };
+  std::map<std::size_t, Range> ranges;
+  const auto range = quantile_ranges(x, kRanges);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    Range& r = ranges[range[i]];
+    r.count += 1.0;
+    r.mean += (values[i] - r.mean) / r.count;
+  }
+  if (ranges.size() < 2) return std::nullopt;  // it does not vary
+  const double n = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double between = 0.0;
+  for (const auto& [_, r] : ranges) between += r.count * (r.mean - mean) * (r.mean - mean);
+  // Noise is what is left: what depends on x would look like slow noise.
+  std::vector<double> residual = values;
+  for (std::size_t i = 0; i < x.size(); ++i) residual[i] -= ranges[range[i]].mean;
+  const double time = autocorrelation_time(residual);
+  const double degrees_of_freedom = n / time - static_cast<double>(ranges.size());
+  if (!(degrees_of_freedom > 3.0 && mean_square(residual) > 0.0)) return std::nullopt;
+  const double residual_variance = mean_square(residual) * n / degrees_of_freedom;
+  const double groups = static_cast<double>(ranges.size() - 1);
+  const double p =
+      fisher_upper_tail(between / groups / residual_variance, groups, degrees_of_freedom);
+  if (!(p < kSignificant)) return std::nullopt;
+  return Dependence{name, between / (n * mean_square(values)), p};
+}
+
 }  // namespace
 
 std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) {
-  constexpr std::size_t kRanges = 12;
-  constexpr double kSignificant = 1e-3;
   std::vector<ResidualSeries> list = residual_series(job, result);
   if (result.usable) allow_for_parameters(job, result, list);
   std::vector<SeriesTest> tests(list.size());
@@ -63,7 +98,6 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
   parallel_for(list.size(), [&](std::size_t s) {
     ResidualSeries& series = list[s];
     SeriesTest& test = tests[s];
-    const double n = static_cast<double>(series.values.size());
     test.reduced_chi_square = mean_square(series.values);
     test.autocorrelation_time = autocorrelation_time(series.values);
     test.explained = is_explained(series);
@@ -89,37 +123,18 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
                   [&](std::size_t i) { return std::abs(series.values[i]) < kNoise; });
     test.drift = drift(instants, series.values);
     test.resolution = resolution_of(recording.measurements[series.measurement].values);
-    for (const Regressor& regressor : regressors()) {
+    const auto look_at = [&](const std::string& name, auto&& value) {
       std::vector<double> x;
-      for (const std::size_t i : series.samples)
-        x.push_back(regressor.value(samples[i], times[i] - times.front()));
-      struct Range {
-        double count = 0.0, mean = 0.0;
-      };
-      std::map<std::size_t, Range> ranges;
-      const auto range = quantile_ranges(x, kRanges);
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        Range& r = ranges[range[i]];
-        r.count += 1.0;
-        r.mean += (series.values[i] - r.mean) / r.count;
-      }
-      if (ranges.size() < 2) continue;  // it does not vary
-      const double mean = std::accumulate(series.values.begin(), series.values.end(), 0.0) / n;
-      double between = 0.0;
-      for (const auto& [_, r] : ranges) between += r.count * (r.mean - mean) * (r.mean - mean);
-      // Noise is what is left: what depends on x would look like slow noise.
-      std::vector<double> residual = series.values;
-      for (std::size_t i = 0; i < x.size(); ++i) residual[i] -= ranges[range[i]].mean;
-      const double time = autocorrelation_time(residual);
-      const double degrees_of_freedom = n / time - static_cast<double>(ranges.size());
-      if (!(degrees_of_freedom > 3.0 && mean_square(residual) > 0.0)) continue;
-      const double residual_variance = mean_square(residual) * n / degrees_of_freedom;
-      const double groups = static_cast<double>(ranges.size() - 1);
-      const double p =
-          fisher_upper_tail(between / groups / residual_variance, groups, degrees_of_freedom);
-      if (p < kSignificant)
-        test.dependences.push_back({regressor.name, between / (n * test.reduced_chi_square), p});
-    }
+      for (const std::size_t k : series.samples) x.push_back(value(k));
+      if (auto found = dependence_on(name, x, series.values))
+        test.dependences.push_back(std::move(*found));
+    };
+    for (const Regressor& regressor : regressors())
+      look_at(regressor.name,
+              [&](std::size_t k) { return regressor.value(samples[k], times[k] - times.front()); });
+    for (std::size_t c = 0; c < recording.channels.size(); ++c)
+      look_at((*job.model.structure.channels)[c].name,
+              [&](std::size_t k) { return recording.channels[c][k]; });
     std::ranges::stable_sort(test.dependences, std::greater{}, &Dependence::fraction);
     test.series = std::move(series);
   });

@@ -15,7 +15,7 @@
 namespace axisfit {
 
 struct Dependence {
-  std::string on;         ///< "command", "velocity", "direction", "position", "motor angle" ...
+  std::string on;         ///< "command", "velocity", "direction", "position" ... or a channel
   double fraction = 0.0;  ///< of the residual's mean square, explained by its mean over each of 12
                           ///< equally frequented ranges of the variable
   double p_value = 1.0;   ///< of that share or more, were there no dependence

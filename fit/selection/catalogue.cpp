@@ -75,6 +75,9 @@ Candidate candidate_of(const EffectInfo& effect, SearchEntry entry, Vocabulary v
   candidate.extends = words_on(vocabulary, entry.extends);
   candidate.is_curve = entry.is_curve;
   candidate.has_phase = entry.has_phase;
+  if (const QuantityEntry& first = quantity_list(vocabulary)[candidate.strengths.front()];
+      first.quantity.channel)
+    candidate.name = first.name;  // of one effect there is one for each channel
   return candidate;
 }
 

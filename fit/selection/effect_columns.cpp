@@ -26,9 +26,7 @@ bool is_affine(std::size_t quantity) {
   Model<double> with{};
   const Slots<double> without = slots::affine(with.effects, alone);
   *members(with)[quantity] = 1.0;
-  const slots::Needs needs = slots::needs(alone);
-  const bool is_smooth = needs.arm_force || needs.friction_curve || needs.motor_torque;
-  return !is_smooth || !(slots::affine(with.effects, alone) == without);
+  return !slots::needs(alone).is_smooth() || !(slots::affine(with.effects, alone) == without);
 }
 
 /// Whether a candidate's forces can be read off a trajectory without it.
@@ -107,6 +105,7 @@ class SmoothForce {
     input.command = T(at.input.command);
     input.time = T(at.input.time);
     input.memory = memory;
+    input.channels = at.input.channels;
     return input;
   }
   bool needs_memory() const { return equations_.parts().needs.hysteresis; }

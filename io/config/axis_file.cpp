@@ -10,6 +10,7 @@
 
 #include "base/suggest.h"
 #include "base/units.h"
+#include "io/config/channels.h"
 
 namespace axisfit {
 namespace {
@@ -20,23 +21,34 @@ Key key_of(Vocabulary vocabulary, const Quantity& quantity, std::string name) {
   key.used_by = words_on(vocabulary, key.used_by);
   return key;
 }
+/// Whether it has a name: one that is related to a channel, if there is the channel.
+bool is_named(Vocabulary vocabulary, const Quantity& quantity) {
+  return !quantity.channel ||
+         (vocabulary.channels != nullptr && *quantity.channel < vocabulary.channels->size());
+}
+
 Section quantity_keys(Vocabulary vocabulary, std::string_view group) {
   Section keys;
   for (const QuantityEntry& entry : quantity_list(vocabulary))
-    if (entry.group == group)
+    if (entry.group == group && is_named(vocabulary, entry.quantity))
       keys.push_back(key_of(vocabulary, entry.quantity, std::string(entry.quantity.symbol)));
   return keys;
 }
+
+/// Whether its quantities are related to channels.
+bool acts_by_channels(const EffectInfo& effect) { return effect.name.starts_with("channel_"); }
 
 Section effect_keys(Vocabulary vocabulary) {
   Section keys;
   for (const EffectInfo& effect : kEffectTable) {
     const std::string name(words_on(vocabulary, effect.name));
-    Section parameters = quantity_keys(vocabulary, name);
+    Map parameters{quantity_keys(vocabulary, name)};
     // An effect that is not used is refused as a whole.
-    const std::string used = parameters.front().used_by;
-    for (Key& parameter : parameters) parameter.used_by.clear();
-    keys.push_back(Key::optional(name, Map{std::move(parameters)}, DefaultText{"effect absent"},
+    std::string used;
+    for (Key& parameter : parameters.keys) used = std::exchange(parameter.used_by, {});
+    if (acts_by_channels(effect) && vocabulary.channels == nullptr)
+      parameters.named = {{std::string(kChannelName), amount_per_channel()}};
+    keys.push_back(Key::optional(name, std::move(parameters), DefaultText{"effect absent"},
                                  std::string(words_on(vocabulary, effect.meaning))));
     keys.back().used_by = used;
   }
@@ -166,6 +178,7 @@ Section make_axis_keys(Vocabulary vocabulary) {
           Choice{{{"backlash", say("rack and pinion with backlash, stiffness and damping")},
                   {"rigid", say("motor and arm move as one mass")}}},
           say("what transmits the force to the arm")),
+      axis_channels_key(),
       Key::optional("guessed", List{{Text{}}}, DefaultText{"none"},
                     "quantities whose values here are guesses, such as `[K_f]`; the report names "
                     "the estimates that rest on them"),
@@ -192,12 +205,8 @@ std::vector<std::string> choices_of(Vocabulary vocabulary, std::string_view key)
 
 const Section& axis_keys(Vocabulary vocabulary) {
   // They are many: only those that are asked for.
-  static std::mutex mutex;
-  static std::array<Section, kVocabularies> made;
-  const std::lock_guard lock(mutex);
-  Section& keys = made[index_of(vocabulary)];
-  if (keys.empty()) keys = make_axis_keys(vocabulary);
-  return keys;
+  static PerVocabulary<Section> made;
+  return made.of(vocabulary, make_axis_keys);
 }
 
 const std::string& joint_name(Joint joint) {
@@ -220,6 +229,7 @@ Section quantity_keys() {
   Section keys;
   for (const Vocabulary vocabulary : all_vocabularies())
     for (const QuantityEntry& entry : quantity_list(vocabulary)) {
+      if (!is_named(vocabulary, entry.quantity)) continue;
       Key key = key_of(vocabulary, entry.quantity, entry.name);
       const auto known = std::ranges::find(keys, entry.name, &Key::name);
       if (known == keys.end()) {
@@ -292,7 +302,15 @@ void read_effects(const ConfigNode& node, Model<double>& model) {
     model.structure.effects.set(index);
     ConfigMap parameters(*given, keys_below(keys, name));
     bool used = false;
+    if (acts_by_channels(kEffectTable[index]) && vocabulary.channels == nullptr) {
+      given->error(
+          fmt::format("{} needs a channel: declare it, as in 'channels: {{temperature: "
+                      "{{unit: degC}}}}', or name its column in every recording of the job",
+                      name));
+      return;
+    }
     effect.visit(effect, [&](const Quantity& quantity, double& value) {
+      if (!is_named(vocabulary, quantity)) return;
       used = used || is_used(*find_quantity(full_name(effect.name, quantity)), model.structure);
       value = std::isnan(quantity.default_value) ? 0.0 : quantity.default_value;
       parameters.read(quantity_on(vocabulary, quantity).symbol, value);
@@ -319,6 +337,7 @@ std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
   map.read("joint", rig.model.structure.joint);
   map.describe(axis_keys(rig.model.structure.joint));
   map.read("name", rig.name);
+  if (const auto channels = map.optional("channels")) read_channels(*channels, rig.model.structure);
   std::optional<Drive> drive;
   std::optional<Transmission> transmission;
   map.read("drive", drive);
@@ -361,6 +380,14 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
     out << YAML::Key << "joint" << YAML::Value << joint_name(structure.joint);
   out << YAML::Key << "drive" << YAML::Value << drive_name(structure.drive, structure.joint);
   out << YAML::Key << "transmission" << YAML::Value << transmission_name(structure.transmission);
+  if (structure.channels != nullptr) {
+    out << YAML::Key << "channels" << YAML::Value << YAML::BeginMap;
+    for (const Channel& channel : *structure.channels)
+      out << YAML::Key << channel.name << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key
+          << "unit" << YAML::Value << channel.unit << YAML::Key << "zero" << YAML::Value
+          << with_unit(channel.zero, channel.unit) << YAML::EndMap;
+    out << YAML::EndMap;
+  }
   if (!rig.guessed.empty()) {
     out << YAML::Key << "guessed" << YAML::Value << YAML::Flow << YAML::BeginSeq;
     for (const std::size_t g : rig.guessed) out << quantity_list(vocabulary)[g].name;

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "io/config/axis_file.h"
+#include "io/config/channels.h"
 #include "io/config/job_parameters.h"
 #include "io/config/job_recording.h"
 
@@ -91,16 +92,23 @@ class JobReader {
       const auto axis = map.required("axis");
       bool model = false;
       if (axis) model = read_axis_of(*axis);
-      if (const auto effects = map.optional("effects")) read_effects(*effects, result_.rig.model);
+      const auto effects = map.optional("effects");
+      const auto recordings = map.required("recordings");
+      Structure& structure = result_.rig.model.structure;
+      const std::size_t declared = structure.channels == nullptr ? 0 : structure.channels->size();
+      if (recordings && recordings->is_sequence())
+        add_channels_of(*recordings->as_sequence(), structure);
+      if (effects) read_effects(*effects, result_.rig.model);
       result_.job.axis = result_.rig.name;
       result_.job.model = result_.rig.model;
       result_.job.guessed = result_.rig.guessed;
-      const auto recordings = map.required("recordings");
       const auto free = map.required("free");
       if (const auto fit = map.optional("fit")) read_options(*fit);
       if (const auto limits = map.optional("limits")) read_limits(*limits);
       // What refers to the axis can only be checked with one.
       if (model && recordings) read_recordings(*recordings);
+      set_channel_zeros(declared, result_.job);
+      structure.channels = result_.job.model.structure.channels;
       if (model && free) read_free(*free, result_.job);
       if (free && diagnostics_.empty()) check_degrees_of_freedom(*free);
       map.finish();
@@ -307,7 +315,7 @@ const Section& job_keys() {
           "effects that are added to those of the axis file or replace them; same syntax"),
       Key::required("recordings", List{{Map{recording_keys()}}},
                     "the recordings; at least one must have the role `fit`"),
-      Key::required("free", Map{free_quantities(), 1}, "the quantities to fit; at least one"),
+      Key::required("free", free_quantities(), "the quantities to fit; at least one"),
       Key::optional("fit", Map{fit_keys()}, DefaultText{"those of its keys"}, "options of the fit"),
       Key::optional("limits", Map{limit_keys(Joint::prismatic)}, DefaultText{"those of its keys"},
                     "limits of the machine for the next experiment")};

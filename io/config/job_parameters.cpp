@@ -6,6 +6,7 @@
 
 #include "base/units.h"
 #include "io/config/axis_file.h"
+#include "io/config/channels.h"
 #include "io/config/job_recording.h"
 
 namespace axisfit {
@@ -129,7 +130,7 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
 
 }  // namespace
 
-Section free_quantities() {
+Map free_quantities() {
   // Those for a quantity are the same but for its unit and range, which its description tells.
   const Map amount{free_keys({"m", -kUnlimited, kUnlimited, "a value of the quantity"}), 0, true,
                    "free_quantity"};
@@ -143,7 +144,8 @@ Section free_quantities() {
     key.used_by = quantity.used_by;
     keys.push_back(std::move(key));
   }
-  return keys;
+  return {
+      std::move(keys), 1, false, {}, {{std::string(kChannelQuantity), AnyOf{{amount, number}}}}};
 }
 
 void read_free(const ConfigNode& node, Job& job) {

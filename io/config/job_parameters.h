@@ -7,7 +7,7 @@
 namespace axisfit {
 
 /// All quantities, each with the keys for a free one.
-Section free_quantities();
+Map free_quantities();
 
 /// Adds to the job, whose model and recordings are read already. With diagnostics where anything is
 /// wrong.

@@ -15,6 +15,7 @@
 #include "fit/estimation/continuation.h"
 #include "fit/estimation/initial_state.h"
 #include "io/config/axis_file.h"
+#include "io/config/channels.h"
 #include "io/recording/csv.h"
 #include "io/recording/recording_file.h"
 #include "sim/controller.h"
@@ -171,6 +172,13 @@ Section signal_keys() {
   return keys;
 }
 
+/// Columns by the names of channels.
+const Map& keys_of_channels() {
+  static const Map keys{
+      {}, 0, false, {}, {{std::string(kChannelName), Map{series_keys(), 0, false, "series"}}}};
+  return keys;
+}
+
 class RecordingReader {
  public:
   RecordingReader(const Rig& rig, ObserverMode observer, const std::string& data_directory)
@@ -194,9 +202,15 @@ class RecordingReader {
     if (const auto set = map.optional("set")) read_overrides(*set, recording);
     const auto time = map.required("time");
     const auto signals = map.required("signals");
+    const auto channels = map.optional("channels");
     const auto trim = map.optional("trim");
     const RecordingFile* const data = path ? open(*file, *path) : nullptr;
-    if (data && time && signals) read_samples(*data, *time, *signals, trim, recording);
+    if (data && time && signals) read_samples(*data, *time, *signals, channels, trim, recording);
+    if (rig_.model.structure.channels != nullptr && !channels)
+      node.error(
+          fmt::format("'{}' lacks the channels of the axis, or of the other recordings: name "
+                      "their columns under 'channels'",
+                      recording.name));
     if (!recording.score_initial_samples && recording.times.size() >= kLeastSamples &&
         recording.initial_samples >= recording.times.size())
       initial_samples.value_or(node).error(fmt::format(
@@ -266,8 +280,8 @@ class RecordingReader {
   }
 
   void read_samples(const RecordingFile& data, const ConfigNode& time_node,
-                    const ConfigNode& signals_node, const std::optional<ConfigNode>& trim_node,
-                    Recording& recording) {
+                    const ConfigNode& signals_node, const std::optional<ConfigNode>& channels_node,
+                    const std::optional<ConfigNode>& trim_node, Recording& recording) {
     data_ = &data;
     time_node_ = time_node;
     times_ = read_times(data, time_node);
@@ -277,6 +291,8 @@ class RecordingReader {
     std::vector<Measured> measured;
     const std::size_t named = read_measurements(signals, trim, measured);
     const bool all_known = signals.finish();
+    std::vector<Schedule> channels;
+    if (channels_node) channels = read_channels(*channels_node);
     if (!times_ || !input || times_->empty()) return;
     // Effects of the time mean that of the recording, and at 1.7e9 s a double is too coarse to
     // step on.
@@ -299,6 +315,12 @@ class RecordingReader {
       say_too_few(trim_node, *input, measured, recording.times.size());
       recording.times = {0.0, 1.0};
       return;
+    }
+    for (std::size_t j = 0; j < channels.size(); ++j) {
+      Values values;
+      for (const double t : all)
+        values.push_back(channels[j].value_at(t) - (*rig_.model.structure.channels)[j].zero);
+      recording.channels.emplace_back(std::move(values));
     }
     for (Measured& m : measured) recording.measurements.push_back(on_times(std::move(m), all));
     if (all_known) check_samples(signals_node, named, recording);
@@ -469,6 +491,29 @@ class RecordingReader {
     if (!supply.times.empty()) return supply;
     node.error("the supply has no values");
     return std::nullopt;
+  }
+
+  /// All channels of the axis over the recorded time, straight between their values. Nothing, with
+  /// diagnostics, where one is wrong or missing.
+  std::vector<Schedule> read_channels(const ConfigNode& node) {
+    std::vector<Schedule> channels;
+    ConfigMap map(node);
+    if (!node.is_map() || rig_.model.structure.channels == nullptr) {
+      map.finish();
+      return channels;
+    }
+    const Section& keys = std::get<Map>(keys_of_channels().named.front().form).keys;
+    for (const Channel& channel : *rig_.model.structure.channels) {
+      const auto given = map.required(channel.name);
+      if (!given) continue;
+      ConfigMap column(*given, keys);
+      if (auto series = read_series(*given, column, channel.unit))
+        channels.push_back({std::move(series->times), std::move(series->values), Hold::linear});
+      column.finish();
+    }
+    map.finish();
+    if (channels.size() < rig_.model.structure.channels->size()) channels.clear();
+    return channels;
   }
 
   /// A column and its times, without what is missing. Nothing, with diagnostics, where something is
@@ -797,6 +842,9 @@ const Section& recording_keys() {
       Key::required("time", Map{column_keys(), 0, false, "column"},
                     "column of the sample times, which must increase"),
       Key::required("signals", Map{signal_keys()}, "columns of the input and the measured signals"),
+      Key::optional("channels", keys_of_channels(), DefaultText{"none"},
+                    "columns of what else was recorded and may act on the axis, such as "
+                    "`{temperature: {column: T_motor, unit: degC}}`"),
       Key::optional("trim",
                     Map{{Key::optional("from", NumberWithUnit{"s"}, DefaultText{"the first sample"},
                                        "start of the part to keep, inclusive"),
@@ -813,7 +861,13 @@ const Section& recording_keys() {
       Key::optional("acceleration_at_standstill",
                     Choice{{{"exclude", "not used"}, {"keep", "used"}}},
                     defaults.acceleration_at_standstill, "recorded acceleration at standstill"),
-      Key::optional("set", Map{override_keys()}, DefaultText{"none"},
+      Key::optional("set",
+                    Map{override_keys(),
+                        0,
+                        false,
+                        {},
+                        {{std::string(kChannelQuantity), amount_per_channel()}}},
+                    DefaultText{"none"},
                     "quantities that differ in this recording, such as "
                     "`{M: 161 kg, initial.y0: 20 mm}`")};
   return keys;

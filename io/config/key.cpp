@@ -101,6 +101,8 @@ struct ValueText {
     std::vector<std::string> entries;
     for (const Key& key : map.keys)
       entries.push_back(fmt::format("{}: {}", key.name, value_text(key.form)));
+    for (const NamedEntry& entry : map.named)
+      entries.push_back(fmt::format("NAME: {}", value_text(entry.form)));
     return fmt::format("{{{}}}", fmt::join(entries, ", "));
   }
   std::string operator()(const List& list) const {

@@ -69,12 +69,16 @@ struct Choice {
   std::vector<std::string> names() const;
 };
 
+struct NamedEntry;
+
 /// A map with keys of its own.
 struct Map {
   Section keys;
   std::size_t min_entries = 0;  ///< how many of them there must be
   bool nullable = false;        ///< nothing after the colon is as good as {}
   std::string schema_name{};    ///< name for schemas, where the same map occurs under many keys
+  /// What stands under names that the user gives, besides the keys.
+  std::vector<NamedEntry> named{};
 };
 
 /// A list of at least one value of the same form.
@@ -90,6 +94,12 @@ struct AnyOf {
 struct Form
     : std::variant<Text, Boolean, Integer, NumberWithUnit, Bounds, Choice, Map, List, AnyOf> {
   using variant::variant;
+};
+
+/// An entry under a name that the user gives.
+struct NamedEntry {
+  std::string pattern;  ///< of such names, a regular expression
+  Form form;
 };
 
 /// In words, what holds when a key is missing and no single value stands for that.

@@ -49,8 +49,10 @@ std::string next_job_text(const JobFile& declared, const Job& reached, const std
   job.remove("effects");
   for (YAML::Node recording : job["recordings"]) {
     recording["file"] = moved(recording["file"].Scalar(), data, folder);
-    for (auto signal : recording["signals"])
-      if (YAML::Node file = signal.second["file"]) file = moved(file.Scalar(), data, folder);
+    for (const char* columns : {"signals", "channels"})
+      if (recording[columns])
+        for (auto column : recording[columns])
+          if (YAML::Node file = column.second["file"]) file = moved(file.Scalar(), data, folder);
   }
   for (auto entry : job["free"])
     if (entry.second.IsMap()) entry.second.remove("initial");

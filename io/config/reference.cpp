@@ -13,6 +13,7 @@
 
 #include "io/config/axis_file.h"
 #include "io/config/job_file.h"
+#include "io/config/machine_file.h"
 #include "io/config/motion_file.h"
 #include "io/config/schema.h"
 
@@ -75,12 +76,16 @@ Section of_the_signal(Section keys) {
 /// The parameters of all effects, under their full names.
 Section effect_parameters() {
   Section all;
-  for (const Key& effect : keys_below(axis_keys(), "effects"))
+  for (const Key& effect : keys_below(axis_keys(), "effects")) {
+    for (const NamedEntry& entry : std::get<Map>(effect.form).named)
+      all.push_back(
+          Key::optional(effect.name + ".CHANNEL", entry.form, DefaultText{"0"}, effect.meaning));
     for (Key parameter : std::get<Map>(effect.form).keys) {
       parameter.name = effect.name + "." + parameter.name;
       parameter.used_by = effect.used_by;
       all.push_back(std::move(parameter));
     }
+  }
   return all;
 }
 
@@ -91,7 +96,7 @@ Section on_a_revolute_joint() {
     const QuantityEntry& turning = quantity_list(Joint::revolute)[sliding.index];
     const bool is_same =
         turning.name == sliding.name && turning.quantity.unit == sliding.quantity.unit;
-    if (is_same || sliding.signal) continue;
+    if (is_same || sliding.signal || sliding.quantity.channel) continue;
     Key key = Key::of(turning.quantity, turning.name);
     key.used_by.clear();
     // Curves have many that are one line.
@@ -131,6 +136,8 @@ std::map<std::string, Section> tables() {
        of_the_signal(keys_below(keys_below(axis, "instruments"), "position"))},
       {"axis.controller", keys_below(axis, "controller")},
       {"axis.revolute", on_a_revolute_joint()},
+      {"machine", machine_keys()},
+      {"machine.axes.NAME", machine_axis_keys()},
       {"motion", motion_keys()}};
   for (const std::string& type : std::get<Choice>(find_key(motion_keys(), "type").form).names())
     tables["motion." + type] = motion_keys(type);
@@ -168,10 +175,12 @@ std::map<std::string, std::string> reference_files(const std::string& project) {
   add_schema("job", job_schema());
   add_schema("axis", axis_schema());
   add_schema("motion", motion_schema());
+  add_schema("machine", machine_schema());
 
   const std::map<std::string, Section> all = tables();
   std::set<std::string> shown;
-  for (const char* page : {"docs/job-file.md", "docs/axis-file.md", "docs/motion-file.md"}) {
+  for (const char* page :
+       {"docs/job-file.md", "docs/axis-file.md", "docs/motion-file.md", "docs/machine-file.md"}) {
     const std::string old = contents_of(std::filesystem::path(project) / page);
     std::string made;
     std::size_t at = 0;

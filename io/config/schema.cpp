@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "io/config/axis_file.h"
 #include "io/config/job_file.h"
+#include "io/config/machine_file.h"
 #include "io/config/motion_file.h"
 
 namespace axisfit {
@@ -97,6 +98,8 @@ class SchemaMaker {
     if (!of.schema_name.empty() && definitions_.contains(of.schema_name))
       return reference(of.schema_name);
     Json made = map(of.keys);
+    for (const NamedEntry& entry : of.named)
+      made["patternProperties"][entry.pattern] = form(entry.form);
     if (of.min_entries > 0) made["minProperties"] = of.min_entries;
     if (of.nullable) made["type"] = Json::array({"object", "null"});
     if (of.schema_name.empty()) return made;
@@ -189,6 +192,7 @@ Vocabulary defining(const QuantityEntry& entry, Vocabulary vocabulary) {
 /// Which keys they have, and must have, in an axis of this structure.
 Json parts_of(Structure structure) {
   structure.effects.set();
+  structure.channels = kept({{"NAME", "1", 0.0}});
   Json parts = Json::object();
   for (const char* part : kPartsOfStructure)
     parts[part] = {{"properties", Json::object()}, {"additionalProperties", false}};
@@ -256,6 +260,11 @@ nlohmann::ordered_json axis_schema() {
                                     without_joint));
   }
   return maker.with_definitions(std::move(top));
+}
+
+nlohmann::ordered_json machine_schema() {
+  SchemaMaker maker;
+  return maker.with_definitions(maker.schema("axisfit machine file", machine_keys()));
 }
 
 nlohmann::ordered_json motion_schema() {

@@ -15,4 +15,6 @@ nlohmann::ordered_json axis_schema();
 /// With the keys of each type of motion.
 nlohmann::ordered_json motion_schema();
 
+nlohmann::ordered_json machine_schema();
+
 }  // namespace axisfit

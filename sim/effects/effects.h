@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "sim/effects/added_mass.h"
+#include "sim/effects/channel_effect.h"
 #include "sim/effects/cogging_torque.h"
 #include "sim/effects/command_offset.h"
 #include "sim/effects/constant_force.h"
@@ -57,8 +58,9 @@ using Effects =
                StrokeSpring<T>, PendulumGravity<T>, PeriodicForce<T>, AddedMass<T>, ElasticMode<T>,
                SoftTransmission<T>, CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>,
                ForceDroop<T>, TorqueFade<T>, DriveLag<T>, CommandOffset<T>, SupplyResistance<T>,
-               ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>, ForceOverTime<T>,
-               FrictionOverVelocity<T>, FrictionOverPosition<T>>;
+               ChannelForce<T>, ChannelFriction<T>, ChannelDamping<T>, ChannelGain<T>,
+               ChannelMass<T>, ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>,
+               ForceOverTime<T>, FrictionOverVelocity<T>, FrictionOverPosition<T>>;
 
 inline constexpr std::size_t kEffects = std::tuple_size_v<Effects<double>>;
 
@@ -215,6 +217,21 @@ T motor_torque(const Effects<T>& effects, const EffectSet& active, const Instant
   return total;
 }
 
+/// Mass of the arm that changes, kg, and its rate, kg/s.
+template <class T>
+std::pair<T, T> mass(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at,
+                     const RestMemory<T>& memory) {
+  std::pair<T, T> total{T(0.0), T(0.0)};
+  visit_active(effects, active, at, memory,
+               [&](std::size_t, const auto& effect, const Instant<T>& own) {
+                 if constexpr (requires { effect.mass(own); }) {
+                   total.first += effect.mass(own);
+                   total.second += effect.mass_rate(own);
+                 }
+               });
+  return total;
+}
+
 /// What is to be remembered of an arm that comes to rest.
 template <class T>
 RestMemory<T> memory_of(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at,
@@ -230,7 +247,11 @@ RestMemory<T> memory_of(const Effects<T>& effects, const EffectSet& active, cons
 
 /// What the effects of a set need beyond numbers.
 struct Needs {
-  bool arm_force = false, friction_curve = false, motor_torque = false, hysteresis = false;
+  bool arm_force = false, friction_curve = false, motor_torque = false, mass = false,
+       hysteresis = false;
+
+  /// Whether any of it goes through the Runge-Kutta part of the integrator.
+  bool is_smooth() const { return arm_force || friction_curve || motor_torque || mass; }
 };
 
 inline Needs needs(const EffectSet& active) {
@@ -242,6 +263,7 @@ inline Needs needs(const EffectSet& active) {
     found.arm_force |= requires { effect.arm_force(at); };
     found.friction_curve |= requires { effect.friction_curve(at); };
     found.motor_torque |= requires { effect.motor_torque(at); };
+    found.mass |= requires { effect.mass(at); };
     found.hysteresis |= kHysteresesBefore[index] < kHysteresesBefore[index + 1];
   });
   return found;

@@ -10,7 +10,12 @@
 //   T friction_curve(const Instant<T>&) const;  N against the arm's motion, with sticking
 //   T motor_torque(const Instant<T>&) const;    N m on the motor
 //
-// and goes through the Runge-Kutta part of the integrator. Such a force may depend on a hysteresis,
+// and goes through the Runge-Kutta part of the integrator, as does a mass that changes,
+//
+//   T mass(const Instant<T>&) const;            kg, added to the arm
+//   T mass_rate(const Instant<T>&) const;       kg/s
+//
+// Such a force may depend on a hysteresis,
 // the state of which is known in closed form since the arm last came to rest,
 //
 //   T hysteresis(const Instant<T>&) const;      and at.memory holds what it was there
@@ -18,6 +23,7 @@
 // A force that jumps needs a guard (equations.h), as dry friction has.
 #pragma once
 
+#include "sim/channel.h"
 #include "sim/effects/search.h"
 #include "sim/quantity.h"
 
@@ -67,6 +73,7 @@ struct Instant {
   T drive_torque;  ///< N m, the same at the motor
   T load;          ///< N, that the transmission carries; >= 0 where its sign has a guard
   Memory<T> memory = {};
+  const ChannelCourse* channels = nullptr;  ///< null: all zero
 };
 
 }  // namespace axisfit

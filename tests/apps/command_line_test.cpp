@@ -954,6 +954,23 @@ TEST_F(CommandLineTest, SetChangesQuantities) {
   }
 }
 
+TEST_F(CommandLineTest, AMachineIsRecordedAxisByAxis) {
+  const std::string robot = AXISFIT_CONFIGS "/machines/robot.yaml", results = folder_.path("robot");
+  const Outcome outcome = simulate({robot, "--output", results, "--rate", "100"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("3 axes, each simulated"), std::string::npos);
+  const Table x = recorded(folder_.read("robot/x.csv"));
+  EXPECT_EQ(x.columns.back().name, "y_acceleration_mps2");
+  EXPECT_EQ(x.columns.back().values.size(), 401u);
+  EXPECT_EQ(folder_.read("robot/z.csv").find("time_s,command_v"), 0u);
+
+  EXPECT_EQ(simulate({robot}).exit_code, 2);
+  EXPECT_NE(simulate({robot}).err.find("name a folder"), std::string::npos);
+  EXPECT_NE(simulate({robot, motion(), "--output", results}).err.find("is a machine"),
+            std::string::npos);
+  EXPECT_NE(simulate({kXAxis}).err.find("name the motion of"), std::string::npos);
+}
+
 TEST_F(CommandLineTest, SignalsAreRecordedInTheOrderGiven) {
   const Outcome outcome =
       simulate({kXAxis, motion(), "--signals", "V_c", "position", "--rate", "50"});

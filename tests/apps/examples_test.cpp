@@ -76,6 +76,21 @@ TEST(ExamplesTest, BentScrewIsGivenAForceOncePerTurn) {
   expect_truth(run_result, truth);
 }
 
+// By a simulation of bench/channels.py: three of four channels do nothing.
+TEST(ExamplesTest, ARecordedTemperatureIsNamed) {
+  const RunResult result = run_result_of("channels.yaml", {.select_effects = true});
+  EXPECT_GT(result.first.reduced_chi_square, 5.0);
+  ASSERT_TRUE(result.selection);
+  EXPECT_EQ(result.selection->models.size(), 2u);
+  EXPECT_TRUE(result.diagnosis->explained);
+  std::map<std::string, double> found;
+  for (const ParameterResult& p : result.fit().parameters) found[p.name] = p.value;
+  ASSERT_TRUE(found.contains("channel_friction.temperature"));
+  // The law is an exponential, and there is a little drag besides: its tangent, within model error.
+  EXPECT_NEAR(found["channel_friction.temperature"], -0.0793, 0.003);
+  EXPECT_NEAR(found["M"], 15.544, 0.06);
+}
+
 TEST(ExamplesTest, TwoPayloads) {
   const RunResult run_result = run_result_of("payload.yaml");
   expect_truth(run_result, {{"M@empty", 146.0},

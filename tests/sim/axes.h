@@ -122,7 +122,7 @@ struct Run {
 template <class T>
 Run<T> run(const Model<T>& model, const Schedule& command, std::span<const double> times,
            const IntegratorOptions& options = {}, const Observer& observer = {},
-           const TargetSeries& measured = {}) {
+           const MeasuredSeries& measured = {}) {
   Run<T> result;
   const SimulationResult simulation_result = simulate(
       model, command, times,

@@ -38,6 +38,24 @@ void add_typical(Model<double>& model, std::size_t effect, double strength = 1.0
           entry.quantity.shape ? entry.quantity.typical : strength * entry.quantity.typical;
 }
 
+/// Two channels, and how they run.
+Channels channels() { return kept({{"temperature", "K", 0.0}, {"neighbour", "m", 0.0}}); }
+
+std::vector<ChannelSeries> channel_values(const std::vector<double>& times) {
+  std::vector<ChannelSeries> values(2);
+  for (const double t : times) {
+    values[0].values.push_back(0.3 + 0.5 * std::sin(7.0 * t));
+    values[1].values.push_back(0.4 * std::cos(5.0 * t));
+  }
+  return values;
+}
+
+Run<double> run_of(const Experiment& experiment, const Model<double>& model,
+                   const IntegratorOptions& options = {}) {
+  return run(model, experiment.command, experiment.times, options, {},
+             {{}, {}, experiment.channels});
+}
+
 /// There, back and to rest, with some dry friction: an arm that slides both ways and sticks.
 Experiment to_and_fro(const Variant& variant, bool with_friction) {
   Experiment experiment;
@@ -45,6 +63,7 @@ Experiment to_and_fro(const Variant& variant, bool with_friction) {
   m = paper_axis();
   m.structure.drive = variant.drive;
   m.structure.transmission = variant.transmission;
+  m.structure.channels = channels();
   if (variant.drive == Drive::force_source) {
     m.axis.K_f = 40.0;
     normalize(m);
@@ -56,6 +75,7 @@ Experiment to_and_fro(const Variant& variant, bool with_friction) {
   }
   if (with_friction) add_effect<CoulombFriction>(m).F_c = 15.0;
   experiment.times = instants(500, 2e-3);
+  experiment.channels = channel_values(experiment.times);
   return experiment;
 }
 
@@ -67,7 +87,8 @@ class EveryEffect : public testing::TestWithParam<std::size_t> {
 
   /// The effect's quantities that an axis of this variant uses.
   std::vector<QuantityEntry> quantities(const Variant& variant) const {
-    const Structure structure{variant.drive, variant.transmission, EffectSet().set(effect())};
+    Structure structure{variant.drive, variant.transmission, EffectSet().set(effect())};
+    structure.channels = channels();
     std::vector<QuantityEntry> entries;
     for (const QuantityEntry& entry : quantity_list())
       if (entry.group == name_of(effect()) && is_used(entry, structure)) entries.push_back(entry);
@@ -106,10 +127,10 @@ TEST_P(EveryEffect, OfStrengthZeroIsNoneBitForBit) {
     for (const bool with_friction : {false, true}) {
       if (with_friction && is_friction()) continue;
       const Experiment experiment = to_and_fro(variant, with_friction);
-      const auto without = run(experiment.model, experiment.command, experiment.times);
+      const auto without = run_of(experiment, experiment.model);
       Model<double> model = experiment.model;
       add_to(model, 0.0);
-      const auto with = run(model, experiment.command, experiment.times);
+      const auto with = run_of(experiment, model);
       ASSERT_TRUE(with.finished);
       EXPECT_EQ(with.states, without.states);
       EXPECT_EQ(with.events, without.events);
@@ -117,7 +138,7 @@ TEST_P(EveryEffect, OfStrengthZeroIsNoneBitForBit) {
       EXPECT_EQ(with.encoder, without.encoder);
       // And it is none only then.
       add_to(model, 1.0);
-      EXPECT_NE(run(model, experiment.command, experiment.times).encoder, without.encoder);
+      EXPECT_NE(run_of(experiment, model).encoder, without.encoder);
     }
   }
 }
@@ -179,8 +200,8 @@ TEST_P(EveryEffect, DoesNotDependOnTheStep) {
     if (quantities(variant).empty()) continue;
     Experiment experiment = to_and_fro(variant, true);
     add_to(experiment.model, 1.0);
-    const auto at_default_step = run(experiment.model, experiment.command, experiment.times);
-    const auto small = run(experiment.model, experiment.command, experiment.times, {.step = 1e-4});
+    const auto at_default_step = run_of(experiment, experiment.model);
+    const auto small = run_of(experiment, experiment.model, {.step = 1e-4});
     ASSERT_TRUE(at_default_step.finished && small.finished);
     EXPECT_EQ(at_default_step.events.back(), small.events.back());
     // What is affine is exact. Else the current, which follows the preamplifier in microseconds,
@@ -221,7 +242,8 @@ TEST(EffectsInPairs, HaveASmoothPartThatIsAllThatIsNotAffine) {
             Mode mode;
             mode.sliding = static_cast<std::int8_t>(sliding);
             mode.contact = equations.parts().has.has_backlash ? 1 : 0;
-            const Input<double> input{3.0, {}, 0.4, {0.01, {{2.0}}}};
+            const Input<double> input{
+                3.0, {}, 0.4, {0.01, {{2.0}}}, {}, {0.3, {0.2, -0.3}, {1.5, 2.0}}};
             const State<double> all = equations.rate(mode, y, input);
             const State<double> affine = equations.rate(mode, y, input, Terms::affine);
             const State<double> smooth = equations.smooth_rate(mode, y, input);

@@ -36,19 +36,22 @@ struct Experiment {
   std::vector<double> times;
   Observer observer;
   std::vector<double> velocity, position;  // what a tracking run is held to
+  std::vector<ChannelSeries> channels = {};
 
   template <class T>
   Traces<T> traces(const Model<T>& at, const IntegratorOptions& options = {}) const {
     Traces<T> result;
     Recorder<T> recorder(at.instruments, kRecorded, times);
     const std::vector<double> v = recorder.refined(velocity), p = recorder.refined(position);
+    std::vector<ChannelSeries> c;
+    for (const auto& channel : channels) c.push_back({recorder.refined(channel.values)});
     const auto simulation_result = simulate(
         at, command, recorder.instants(),
         [&](std::size_t i, const Integrator<T>& axis) {
           recorder.read(axis);
           if (recorder.is_sample(i)) result.events.push_back(axis.events());
         },
-        observer, TargetSeries{v, p}, options);
+        observer, MeasuredSeries{v, p, c}, options);
     EXPECT_TRUE(simulation_result.finished);
     for (std::size_t s = 0; s < kRecorded.size(); ++s) result.signals[s] = recorder.readings(s);
     return result;

@@ -178,11 +178,16 @@ TEST(IsUsed, FollowsTheStructure) {
   for (const auto& [drive, transmission, of_axis, of_effects] : variants) {
     SCOPED_TRACE(testing::Message() << "drive " << static_cast<int>(drive) << ", transmission "
                                     << static_cast<int>(transmission));
-    EXPECT_EQ(unused_of({drive, transmission, none}), of_axis + names_of_effects());
-    EXPECT_EQ(unused_of({drive, transmission, all}), of_axis + of_effects);
+    const auto unused_with = [&](const EffectSet& effects) {
+      Structure structure{drive, transmission, effects};
+      structure.channels = kept(ChannelList{{"a", "1"}, {"b", "1"}, {"c", "1"}, {"d", "1"}});
+      return unused_of(structure);
+    };
+    EXPECT_EQ(unused_with(none), of_axis + names_of_effects());
+    EXPECT_EQ(unused_with(all), of_axis + of_effects);
     for (std::size_t e = 0; e < kEffects; ++e) {
       const EffectSet one = EffectSet().set(e);
-      EXPECT_EQ(unused_of({drive, transmission, one}),
+      EXPECT_EQ(unused_with(one),
                 of_axis + of_effects + (names_of_effects() - names_of_effects(one)));
     }
   }

@@ -37,9 +37,9 @@ std::vector<double> observer_forces(const Model<double>& model, const Schedule& 
   const auto simulation_result = simulate(
       model, command, times,
       [&](std::size_t, const Integrator<double>& axis) {
-        forces.push_back(axis.equations().observer_force(axis.state(), axis.input().target));
+        forces.push_back(axis.equations().observer_force(axis.mode(), axis.state(), axis.input()));
       },
-      observer, TargetSeries{data.velocity, data.position});
+      observer, MeasuredSeries{data.velocity, data.position});
   EXPECT_TRUE(simulation_result.finished);
   return forces;
 }
@@ -154,7 +154,7 @@ TEST(Observer, ToPositionIsCriticallyDamped) {
   constexpr double w = 40.0, away = 0.01;
   const auto times = instants(400, 1e-3);
   const std::vector<double> position(times.size(), away);
-  const auto r = run(mass, {}, times, {}, Observer::of_position(w), TargetSeries{{}, position});
+  const auto r = run(mass, {}, times, {}, Observer::of_position(w), MeasuredSeries{{}, position});
   ASSERT_TRUE(r.finished);
   for (std::size_t k = 0; k < times.size(); ++k) {
     // e' = -v - 2 w e, v' = w^2 e from e = away, v = 0.
@@ -186,7 +186,7 @@ TEST(Observer, LeavesTheGearForceAlone) {
   std::vector<double> position;
   for (const State<double>& y : free.states) position.push_back(y[2] * model.axis.r_g + 0.02);
   const auto tracking =
-      run(model, step_command(), times, {}, Observer{0.0, 50.0, 0.0}, TargetSeries{{}, position});
+      run(model, step_command(), times, {}, Observer{0.0, 50.0, 0.0}, MeasuredSeries{{}, position});
   for (std::size_t k = 0; k < times.size(); ++k) {
     const auto gear = [&](const State<double>& y) { return model.axis.r_g * y[2] - y[0]; };
     ASSERT_NEAR(gear(tracking.states[k]), gear(free.states[k]), 1e-12);

@@ -314,6 +314,16 @@ TEST_F(DependenceTest, OnTheTimeIsFound) {
   EXPECT_EQ(test.dependences[0].on, "time");
 }
 
+TEST_F(DependenceTest, OnAChannelIsFound) {
+  job_.model.structure.channels = kept({{"oil", "degC", 20.0}});
+  std::vector<double> oil;
+  for (std::size_t i = 0; i < size(); ++i) oil.push_back(std::cos(0.031 * double(i)));
+  job_.recordings[0].channels = {Samples(oil)};
+  const SeriesTest test = test_with([&](std::size_t i) { return 1.5 * oil[i]; });
+  ASSERT_FALSE(test.dependences.empty());
+  EXPECT_EQ(test.dependences[0].on, "oil");
+}
+
 TEST_F(DependenceTest, OnTheMotorAngleIsFound) {
   const SeriesTest test =
       test_with([&](std::size_t i) { return 1.5 * std::sin(sample(i).motor_angle); });

@@ -59,17 +59,41 @@ bool offers_constant(const std::vector<Candidate>& list, const char* quantity) {
 
 TEST(Catalogue, HasEveryEffectOfTheList) {
   Job job = job_with({Signal::velocity});
+  const Channels channels = kept({{"oil", "degC", 20.0}});
+  job.model.structure.channels = channels;
   const auto list = catalogue(job, scales());
   job.model = slide();
+  job.model.structure.channels = channels;
   const auto of_slide = catalogue(job, scales());
   const Effects<double> effects{};
   visit_effects(effects, [&](std::size_t, const auto& effect) {
     const bool extends = std::ranges::all_of(effect.search(scales()), [](const SearchEntry& entry) {
       return !entry.extends.empty() || entry.changes_dry_friction;
     });
-    const bool offered = find(list, effect.name) || find(of_slide, effect.name);
+    const std::string of_channel = std::string(effect.name) + ".oil";
+    const bool offered = find(list, effect.name) || find(of_slide, effect.name) ||
+                         find(list, of_channel) || find(of_slide, of_channel);
     EXPECT_NE(offered, extends) << effect.name << " offers nothing, or what it should not";
   });
+}
+
+TEST(Catalogue, HasOneEffectForEachChannel) {
+  Job job = job_with({Signal::velocity});
+  job.model.structure.channels = kept({{"oil", "degC", 20.0}, {"y", "m", 0.0}});
+  const auto list = catalogue(job, scales());
+  for (const char* name : {"channel_force.oil", "channel_force.y", "channel_mass.y"}) {
+    const Candidate* found = find(list, name);
+    ASSERT_NE(found, nullptr) << name;
+    EXPECT_EQ(found->strengths.size(), 1u);
+  }
+  EXPECT_EQ(find(list, "channel_force"), nullptr);
+  // One that is there already is a constant that may be wrong.
+  add_effect<ChannelForce>(job.model).k[0] = 2.0;
+  const auto rest = catalogue(job, scales());
+  EXPECT_TRUE(offers_constant(rest, "channel_force.oil"));
+  EXPECT_NE(find(rest, "channel_force.y"), nullptr);
+  job.model.structure.channels = nullptr;
+  for (const Candidate& c : catalogue(job, scales())) EXPECT_FALSE(c.name.starts_with("channel_"));
 }
 
 TEST(Catalogue, HasChangesOfDryFrictionWhereThereIsSome) {

@@ -393,8 +393,7 @@ TEST_F(AxisFileTest, EveryMistakeIsNamedWithItsPlace) {
 }
 
 TEST_F(AxisFileTest, AllMistakesAreNamedAtOnce) {
-  EXPECT_EQ(
-      errors(R"(drive: force_source
+  EXPECT_EQ(errors(R"(drive: force_source
 transmission: rigid
 colour: red
 parameters:
@@ -407,15 +406,16 @@ instruments:
   position: {noise: 1 s}
 controller: {limit: 0 V}
 )"),
-      "axis.yaml:3:1: unknown key 'colour'; known keys: joint, name, drive, transmission, effects, "
-      "parameters, initial, guessed, instruments, controller\naxis.yaml:5:3: key 'B_a' is "
-      "missing in "
-      "parameters\naxis.yaml:5:8: K_f: 'N' cannot be converted to 'N/V'; use for example "
-      "'N/V'\naxis.yaml:6:6: M needs a unit, for example '95 kg'\naxis.yaml:7:8: r_g is not "
-      "used by an axis with drive force_source and transmission rigid: remove "
-      "it\naxis.yaml:9:25: F_0 must be a number with a unit, for example '1 N', not "
-      "'up'\naxis.yaml:11:21: noise: 's' cannot be converted to 'm'; use for example "
-      "'m'\naxis.yaml:12:21: limit must lie between 0.001 V and 10000 V, not 0 V\n");
+            "axis.yaml:3:1: unknown key 'colour'; known keys: joint, name, channels, drive, "
+            "transmission, effects, "
+            "parameters, initial, guessed, instruments, controller\naxis.yaml:5:3: key 'B_a' is "
+            "missing in "
+            "parameters\naxis.yaml:5:8: K_f: 'N' cannot be converted to 'N/V'; use for example "
+            "'N/V'\naxis.yaml:6:6: M needs a unit, for example '95 kg'\naxis.yaml:7:8: r_g is not "
+            "used by an axis with drive force_source and transmission rigid: remove "
+            "it\naxis.yaml:9:25: F_0 must be a number with a unit, for example '1 N', not "
+            "'up'\naxis.yaml:11:21: noise: 's' cannot be converted to 'm'; use for example "
+            "'m'\naxis.yaml:12:21: limit must lie between 0.001 V and 10000 V, not 0 V\n");
 }
 
 TEST_F(AxisFileTest, FilesThatAreNoAxisAreRefused) {

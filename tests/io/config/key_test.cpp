@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "io/config/axis_file.h"
+#include "io/config/channels.h"
 #include "io/config/config.h"
 #include "io/config/job_file.h"
 #include "io/config/motion_file.h"
@@ -80,6 +81,11 @@ Json example(const Section& keys) {
   return map;
 }
 
+// A name that an entry may have.
+std::string name_of(const NamedEntry& entry) {
+  return entry.pattern == kChannelQuantity ? "channel_force.oil" : "oil";
+}
+
 struct Example {
   Json operator()(const Text&) const { return "data.csv"; }
   Json operator()(const Boolean&) const { return true; }
@@ -92,7 +98,11 @@ struct Example {
     return Json::array({"0 " + bounds.of.unit, "1 " + bounds.of.unit});
   }
   Json operator()(const Choice& choice) const { return choice.options.front().name; }
-  Json operator()(const Map& map) const { return example(map.keys); }
+  Json operator()(const Map& map) const {
+    Json made = example(map.keys);
+    for (const NamedEntry& entry : map.named) made[name_of(entry)] = example(entry.form);
+    return made;
+  }
   Json operator()(const List& list) const { return Json::array({example(list.of.front())}); }
   Json operator()(const AnyOf& either) const { return example(either.forms.back()); }
 };
@@ -105,8 +115,10 @@ Json example(const Form& form) {
 using FormVisitor = std::function<void(const Json::json_pointer&, const Form&)>;
 void walk(const Json::json_pointer& at, const Form& form, const FormVisitor& visit) {
   visit(at, form);
-  if (const auto* map = std::get_if<Map>(&form))
+  if (const auto* map = std::get_if<Map>(&form)) {
     for (const Key& key : map->keys) walk(at / key.name, key.form, visit);
+    for (const NamedEntry& entry : map->named) walk(at / name_of(entry), entry.form, visit);
+  }
   if (const auto* list = std::get_if<List>(&form)) walk(at / 0, list->of.front(), visit);
   if (const auto* either = std::get_if<AnyOf>(&form)) walk(at, either->forms.back(), visit);
 }
@@ -144,9 +156,12 @@ class KeyAgreement : public ::testing::Test {
       SCOPED_TRACE(at.to_string());
       Json wrong = file;
       const auto refused = [&] { return messages(wrong, read) != all; };
-      if (std::holds_alternative<Map>(form)) {
-        wrong[at / "no_such_key"] = 1;
-        EXPECT_NE(messages(wrong, read).find("'no_such_key'"), std::string::npos);
+      if (const auto* map = std::get_if<Map>(&form)) {
+        // Where users give names, it is none of these.
+        const char* name = map->named.empty() ? "no_such_key" : "no such key";
+        wrong[at / name] = map->named.empty() ? Json(1) : file[at / name_of(map->named.front())];
+        EXPECT_NE(messages(wrong, read).find(fmt::format("'{}'", name)), std::string::npos)
+            << messages(wrong, read);
         ++maps;
       } else if (const auto* amount = std::get_if<NumberWithUnit>(&form)) {
         for (const double limit : {amount->lower, amount->upper}) {
@@ -181,6 +196,7 @@ TEST_F(KeyAgreement, AxisFile) {
   for (const Joint joint : kJoints) {
     Json axis = example(axis_keys(joint));
     axis["joint"] = joint_name(joint);
+    axis["channels"]["oil"]["unit"] = "V";
     expect_agreement(axis, axis_keys(joint), read, [](const std::string& at) {
       return at != "/parameters/K_f";  // has no part in a velocity loop, whatever its value
     });
@@ -192,12 +208,18 @@ TEST_F(KeyAgreement, JobFile) {
   Json axis = example(axis_keys());
   axis["parameters"].erase("K_f");
   axis.erase("guessed");  // names quantities
+  axis["channels"]["oil"] = {{"unit", "V"}, {"zero", "1 V"}};
+  for (const auto& [effect, unit] :
+       {std::pair("force", "N"), std::pair("friction", "N"), std::pair("damping", "N s/m"),
+        std::pair("gain", "1"), std::pair("mass", "kg")})
+    axis["effects"][std::string("channel_") + effect]["oil"] = fmt::format("1 {}/V", unit);
   // Of axes without backlash.
   for (const char* effect : {"soft_transmission", "force_droop"}) axis["effects"].erase(effect);
   folder_.write("axis.yaml", axis.dump(1));
   folder_.write("data.csv", "data.csv\n1\n2\n");
   Json file = example(job_keys());
   file["axis"] = "axis.yaml";
+  file["recordings"][0]["channels"]["oil"]["unit"] = "V";
   // Of axes that turn.
   const Json effects = file["effects"];
   for (const auto& [name, effect] : effects.items())
@@ -208,9 +230,11 @@ TEST_F(KeyAgreement, JobFile) {
   // All free quantities have the same keys, in lengths or in numbers; and a few to set are enough.
   const Json free = file["free"];
   file["free"] = {{"H", free["H"]}, {"K_v", free["K_v"]}};
+  file["free"]["channel_force.oil"] = free["channel_force.oil"];
   const Json set = file["recordings"][0]["set"];
   file["recordings"][0]["set"].clear();
-  for (const char* name : {"M", "K_v", "drive_lag.T_l", "V_c.bias", "initial.y1"})
+  for (const char* name :
+       {"M", "K_v", "drive_lag.T_l", "V_c.bias", "initial.y1", "channel_force.oil"})
     file["recordings"][0]["set"][name] = set[name];
   expect_agreement(file, job_keys(), read);
 }

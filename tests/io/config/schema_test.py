@@ -46,7 +46,7 @@ def validator(schema_file):
 
 VALIDATORS = {
     kind: validator(CONFIGS / "schema" / f"{kind}.schema.json")
-    for kind in ("job", "axis", "motion")
+    for kind in ("job", "axis", "motion", "machine")
 }
 
 
@@ -70,6 +70,7 @@ def refusal(kind, text):
             "job": ["fit-params", file, "--check", "--quiet"],
             "axis": ["simulate-axis", file, step],
             "motion": ["simulate-axis", x_axis, file],
+            "machine": ["simulate-axis", file, "--output", pathlib.Path(folder) / "out", "--rate", "100"],
         }[kind]
         run = subprocess.run([BIN / command[0], *command[1:]], capture_output=True, text=True)
         assert run.returncode in (0, 2), run
@@ -77,7 +78,7 @@ def refusal(kind, text):
 
 
 def example(kind, name):
-    return (CONFIGS / {"job": "jobs", "axis": "axes", "motion": "motions"}[kind] / name).read_text()
+    return (CONFIGS / {"job": "jobs", "axis": "axes", "motion": "motions", "machine": "machines"}[kind] / name).read_text()
 
 
 # kind, example, what to replace in it, and by what
@@ -91,6 +92,10 @@ RIGHT = [
     ("axis", "x.yaml", "K_v: 1000 ", "K_v: 100000 % "),
     ("axis", "x.yaml", "H: 0.01 mm", "H: 10 µm"),
     ("motion", "prbs.yaml", "seed: 1", "offset: -1 V"),
+    ("machine", "robot.yaml", "{y_acceleration: -2.2 N/(m/s^2)}", "{y_acceleration: -2.2 kg}"),
+    ("axis", "x.yaml", "parameters:", "channels: {oil: {unit: degC, zero: 20 degC}}\n"
+     "effects: {channel_friction: {oil: -1 N/K}, channel_gain: {oil: 0.01 1/K}}\nparameters:"),
+    ("job", "channels.yaml", "free:", "effects: {channel_force: {supply: 1 N/V}}\nfree:\n  channel_force.supply: {}"),
     ("axis", "pendulum.yaml", "J: 24 g m^2", "J: 0.024 kg m^2"),
 ]
 
@@ -128,6 +133,9 @@ WRONG = [
     ("job", "paper.yaml", "free:", "fit: {observer: loose}\nfree:"),
     ("axis", "x.yaml", "drive: velocity_loop", "drive: velocty_loop"),
     ("motion", "step.yaml", "type: step", "type: stop"),
+    ("machine", "robot.yaml", "    motion: ../motions/move.yaml\n", ""),
+    ("machine", "robot.yaml", "    channels: {y_position: y.position}", "    channel: {y_position: y.position}"),
+    ("job", "channels.yaml", "temperature: {column: temperature_degc, unit: degC}", "temperature: {column: temperature_degc}"),
     # a value of the wrong kind, or beyond the range of a number
     ("job", "paper.yaml", "axis: ../axes/x.yaml", "axis: [../axes/x.yaml]"),
     ("job", "paper.yaml", "  - name: step", "  - score_initial_samples: no"),

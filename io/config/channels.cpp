@@ -1,0 +1,134 @@
+#include "io/config/channels.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <regex>
+#include <string>
+
+#include "base/units.h"
+
+namespace axisfit {
+namespace {
+
+ChannelList list_of(const Structure& structure) {
+  return structure.channels == nullptr ? ChannelList() : *structure.channels;
+}
+
+const Section& channel_keys() {
+  static const Section keys{
+      Key::required("unit", Text{}, "unit of its values, such as degC or V"),
+      Key::optional("zero", AnyOf{{NumberWithUnit{"m"}, NumberWithUnit{"1"}}}, DefaultText{"0"},
+                    "value at which it does nothing: all other parameters are those there")};
+  return keys;
+}
+
+/// "1" of whatever has no dimension; nothing, with a diagnostic, where it is no unit.
+std::optional<std::string> unit_of(const ConfigNode& node) {
+  const auto text = node.as_string();
+  if (!text) return std::nullopt;
+  const auto factor = unit_factor(*text, "1");
+  const auto* problem = std::get_if<UnitError>(&factor);
+  if (problem == nullptr) return "1";
+  if (problem->problem != UnitProblem::unknown) return text;
+  node.error(fmt::format("unknown unit '{}'; use for example 'degC', 'V' or 'm/s^2'", *text));
+  return std::nullopt;
+}
+
+}  // namespace
+
+Form amount_per_channel() {
+  const char* text = "its unit per unit of the channel";
+  return AnyOf{{NumberWithUnit{"N", -kUnlimited, kUnlimited, text},
+                NumberWithUnit{"1", -kUnlimited, kUnlimited, "a number"}}};
+}
+
+Key axis_channels_key() {
+  return Key::optional("channels",
+                       Map{{}, 0, false, {}, {{std::string(kChannelName), Map{channel_keys()}}}},
+                       DefaultText{"none"},
+                       "what is recorded beside the axis and acts on it, by name, such as "
+                       "`{temperature: {unit: degC, zero: 25 degC}}`");
+}
+
+bool add_channel(const ConfigNode& key, std::string unit, ChannelList& channels) {
+  const std::string name = key.text();
+  static const std::regex is_name{std::string(kChannelName)};
+  if (!std::regex_match(name, is_name)) {
+    key.error(
+        fmt::format("'{}' cannot be the name of a channel: use letters, digits and _, and "
+                    "begin with a letter",
+                    name));
+    return false;
+  }
+  if (channels.size() == kChannels) {
+    key.error(fmt::format("an axis has at most {} channels: leave out those that cannot act on it",
+                          kChannels));
+    return false;
+  }
+  channels.push_back({name, std::move(unit), 0.0});
+  return true;
+}
+
+void read_channels(const ConfigNode& node, Structure& structure) {
+  ChannelList channels = list_of(structure);
+  ConfigMap map(node);
+  for (const auto& [key, value] : map.entries()) {
+    ConfigMap of_channel(value, channel_keys());
+    const auto unit_node = of_channel.required("unit");
+    const auto unit = unit_node ? unit_of(*unit_node) : std::nullopt;
+    double zero = 0.0;
+    if (const auto given = of_channel.optional("zero"); given && unit)
+      zero = given->as_quantity(*unit, -kUnlimited, kUnlimited).value_or(0.0);
+    of_channel.finish();
+    if (unit && add_channel(key, *unit, channels)) channels.back().zero = zero;
+  }
+  map.finish();
+  structure.channels = kept(channels);
+}
+
+void add_channels_of(const std::vector<ConfigNode>& recordings, Structure& structure) {
+  ChannelList channels = list_of(structure);
+  for (const ConfigNode& recording : recordings) {
+    // What is no map is told where the recording is read.
+    if (!recording.is_map()) continue;
+    const auto given = ConfigMap(recording).optional("channels");
+    if (!given || !given->is_map()) continue;
+    ConfigMap map(*given);
+    for (const auto& [key, value] : map.entries()) {
+      if (std::ranges::count(channels, key.text(), &Channel::name) > 0 || !value.is_map()) continue;
+      const auto unit_node = ConfigMap(value).optional("unit");
+      if (const auto unit = unit_node ? unit_of(*unit_node) : std::nullopt)
+        add_channel(key, *unit, channels);
+    }
+  }
+  structure.channels = kept(channels);
+}
+
+void set_channel_zeros(std::size_t declared, Job& job) {
+  ChannelList channels = list_of(job.model.structure);
+  for (std::size_t j = declared; j < channels.size(); ++j) {
+    double sum = 0.0, count = 0.0, least = INFINITY, most = -INFINITY;
+    for (const Recording& r : job.recordings) {
+      if (r.role != Role::fit || r.channels.size() <= j) continue;
+      for (const double x : r.channels[j]) {
+        sum += x;
+        count += 1.0;
+        least = std::min(least, x);
+        most = std::max(most, x);
+      }
+    }
+    if (!(least > 0.0 || most < 0.0) || count == 0.0) continue;
+    const double zero = std::strtod(fmt::format("{:.3g}", sum / count).c_str(), nullptr);
+    channels[j].zero = zero;
+    for (Recording& r : job.recordings)
+      if (r.channels.size() > j)
+        for (double& x : r.channels[j].edit()) x -= zero;
+  }
+  job.model.structure.channels = kept(channels);
+}
+
+}  // namespace axisfit
