@@ -363,6 +363,28 @@ std::optional<ColumnGuess> guess_column(const std::string& name) {
   return best;
 }
 
+std::optional<ChannelGuess> guess_channel(const std::string& name) {
+  static constexpr std::string_view kTemperatures[]{"temp", "temperature", "temperatur"};
+  static constexpr std::string_view kSupplies[]{
+      "supply", "bus", "vbus", "ubus", "vdc", "udc", "dclink", "battery", "akku", "zwischenkreis"};
+  const std::vector<std::string> words = words_of(name);
+  const auto is_among = [&](std::span<const std::string_view> list) {
+    return std::ranges::any_of(words, [&](const std::string& word) {
+      return std::ranges::find(list, word) != list.end();
+    });
+  };
+  const auto ends_with_unit = [&](const std::string& unit) {
+    const std::string text = plain(name);
+    return text.ends_with("[" + unit + "]") || text.ends_with("(" + unit + ")") ||
+           text.ends_with("_" + unit);
+  };
+  if (is_among(kTemperatures) || ends_with_unit("degc"))
+    return ChannelGuess{"temperature", ends_with_unit("k") ? "K" : "degC"};
+  if (!is_among(kSupplies)) return std::nullopt;
+  const std::string unit = split(name, motor_voltage).unit;
+  return ChannelGuess{"supply", unit.empty() ? "V" : unit};
+}
+
 std::string_view si_unit(Kind kind) {
   switch (kind) {
     case time:

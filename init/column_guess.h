@@ -38,6 +38,16 @@ struct ColumnGuess {
 /// "Istposition", "iq", "set_velocity_v", "a (m/s^2)".
 std::optional<ColumnGuess> guess_column(const std::string& name);
 
+/// A column beside an axis that may act on it.
+struct ChannelGuess {
+  std::string name;  ///< "temperature" or "supply"
+  std::string unit;  ///< as a job writes it
+};
+
+/// Whether a name is that of a temperature or of the voltage of a supply: "motor temperature",
+/// "T2 [degC]", "bus voltage [V]".
+std::optional<ChannelGuess> guess_channel(const std::string& name);
+
 /// The SI unit in which a job for a prismatic joint takes the kind; "V" for a command.
 std::string_view si_unit(Kind kind);
 

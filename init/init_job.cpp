@@ -831,7 +831,38 @@ class Initialiser {
           fmt::format("      {}: {}\n", name_of(c.kind),
                       compared ? column_map(c, c.unit, {"fit", "false"}) : column_map(c, c.unit));
     }
+    text += channels_text(guess.channels, unused);
     if (!unused.empty()) text += comment(fmt::format("Not used: {}", fmt::join(unused, ", ")), 4);
+    return text;
+  }
+
+  /// Whether all recordings have channels of the same names: a job needs them in each.
+  bool have_same_channels() const {
+    const auto names = [](const Source& source) {
+      std::vector<std::string> list;
+      for (const GuessedChannel& c : source.guess.channels) list.push_back(c.guess.name);
+      std::ranges::sort(list);
+      return list;
+    };
+    return std::ranges::all_of(
+        sources_, [&](const Source& s) { return names(s) == names(sources_.front()); });
+  }
+
+  /// What may act on the axis, for --close-loop to try; else it is not used.
+  std::string channels_text(const std::vector<GuessedChannel>& channels,
+                            std::vector<std::string>& unused) const {
+    if (channels.empty()) return {};
+    if (!have_same_channels()) {
+      for (const GuessedChannel& c : channels) unused.push_back(c.column);
+      return {};
+    }
+    std::string text = comment("These may act on the axis: --close-loop tries them as causes.", 4) +
+                       "    channels:\n";
+    for (const GuessedChannel& c : channels) {
+      GuessedColumn column;
+      column.column = c.column;
+      text += fmt::format("      {}: {}\n", c.guess.name, column_map(column, c.guess.unit));
+    }
     return text;
   }
 

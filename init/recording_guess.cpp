@@ -146,7 +146,9 @@ class Guesser {
     for (auto& [key, column] : columns_)
       if (column.size == 0.0) size_other(column);
     explain(time_);
-    RecordingGuess result{path_, finished(time_), {}, std::move(unused_), std::move(constant_)};
+    std::vector<GuessedChannel> channels = find_channels();
+    RecordingGuess result{
+        path_, finished(time_), {}, std::move(unused_), std::move(constant_), std::move(channels)};
     for (auto& [key, column] : columns_) {
       explain(column);
       result.columns.push_back(finished(column));
@@ -176,6 +178,11 @@ class Guesser {
     return there >= kMinSamples;
   }
 
+  /// The name of a column, with its unit as if the name held it.
+  static std::string heading_text(const Column& column) {
+    return column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit);
+  }
+
   /// What the header says of a column, with its unit as if the name held it; what the user says
   /// comes before.
   void read_headings(const std::vector<ColumnAnswer>& answers) {
@@ -183,8 +190,7 @@ class Guesser {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       const Column& column = columns[c];
       Heading heading{file_.reference(c), {}, nullptr, usable(column)};
-      heading.guess = guess_column(
-          column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit));
+      heading.guess = guess_column(heading_text(column));
       for (const ColumnAnswer& answer : answers) {
         if (answer.column != heading.reference && answer.column != std::to_string(c + 1)) continue;
         heading.answer = &answer;
@@ -326,7 +332,12 @@ class Guesser {
         constant_.push_back(shown(c));
         continue;
       }
-      const int rank = heading.guess->rank - (is_supply(key.first, values) ? kSupply : 0);
+      const bool supplies = is_supply(key.first, values);
+      if (supplies && heading.answer == nullptr && channel_in(c)) {
+        unused_.push_back(shown(c));
+        continue;
+      }
+      const int rank = heading.guess->rank - (supplies ? kSupply : 0);
       if (there != columns_.end() && there->second.rank >= rank &&
           !never_changes(there->second.raw)) {
         unused_.push_back(shown(c));
@@ -337,6 +348,30 @@ class Guesser {
       apply_heading(c, column);
       column.rank = rank;
     }
+  }
+
+  std::optional<ChannelGuess> channel_in(std::size_t c) const {
+    return guess_channel(heading_text(file_.columns()[c]));
+  }
+
+  /// Of what is unused and changes. It is used then.
+  std::vector<GuessedChannel> find_channels() {
+    std::vector<GuessedChannel> channels;
+    for (std::size_t c = 0; c < headings_.size() && channels.size() < kChannels; ++c) {
+      const Column& column = file_.columns()[c];
+      const auto unused = std::ranges::find(unused_, shown(c));
+      if (unused == unused_.end() || !headings_[c].usable) continue;
+      if (column.clock && *column.clock != time_column_) continue;
+      auto guess = channel_in(c);
+      if (!guess || never_changes(without_gaps(column.values))) continue;
+      const auto same = std::ranges::count_if(channels, [&](const GuessedChannel& other) {
+        return other.guess.name.starts_with(guess->name);
+      });
+      if (same > 0) guess->name += fmt::format("_{}", same + 1);
+      channels.push_back({headings_[c].reference, std::move(*guess)});
+      unused_.erase(unused);
+    }
+    return channels;
   }
 
   bool is_clock(std::size_t c) const {

@@ -53,12 +53,19 @@ struct ColumnAnswer {
 /// factor or divisor. Throws std::runtime_error, which says what is wrong.
 ColumnAnswer read_answer(const std::string& text);
 
+/// A column beside the axis that may act on it.
+struct GuessedChannel {
+  std::string column;  ///< its name, or its number
+  ChannelGuess guess;  ///< of several of one name each has a number
+};
+
 struct RecordingGuess {
   std::string path;
   GuessedColumn time;
   std::vector<GuessedColumn> columns;  ///< one at most of each kind, measured and wanted
   std::vector<std::string> unused;     ///< names of all others
   std::vector<std::string> constant;   ///< of these, names of what would be signals if they changed
+  std::vector<GuessedChannel> channels{};
 
   const GuessedColumn* find(Kind kind, bool is_setpoint = false) const;
   GuessedColumn* find(Kind kind, bool is_setpoint = false);

@@ -107,6 +107,22 @@ TEST(ColumnGuessTest, SaysNothingOfOtherNames) {
     EXPECT_FALSE(guess_column(name)) << name;
 }
 
+TEST(ColumnGuessTest, KnowsWhatMayActOnAnAxisBesideIt) {
+  const auto guessed = [](const char* name) {
+    const auto guess = guess_channel(name);
+    return guess ? guess->name + " in " + guess->unit : "";
+  };
+  EXPECT_EQ(guessed("motor temperature"), "temperature in degC");
+  EXPECT_EQ(guessed("temp_K"), "temperature in K");
+  EXPECT_EQ(guessed("Temperatur (K)"), "temperature in K");
+  EXPECT_EQ(guessed("T2 [\u00B0C]"), "temperature in degC");
+  EXPECT_EQ(guessed("temperature_degc"), "temperature in degC");
+  EXPECT_EQ(guessed("BusVoltage [mV]"), "supply in mV");
+  EXPECT_EQ(guessed("supply_v"), "supply in V");
+  for (const char* other : {"position", "attempt", "tempo", "T_motor", "busy", "velocity [m/s]"})
+    EXPECT_EQ(guessed(other), "") << other;
+}
+
 TEST(ColumnGuessTest, MeasuredComesBeforeUnsaid) {
   EXPECT_GT(guess_column("actual position [mm]")->rank, guess_column("position [mm]")->rank);
   EXPECT_GT(guess_column("position [mm]")->rank, guess_column("position")->rank);

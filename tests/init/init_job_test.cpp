@@ -99,6 +99,32 @@ TEST_F(InitJobTest, ThePapersAxisIsRecognised) {
   EXPECT_NEAR(found.at("B_a"), 200.0, 1.0);
 }
 
+TEST_F(InitJobTest, ATemperatureAndASupplyBecomeChannels) {
+  for (const char* name : {"a.csv", "b.csv"}) {
+    Table table = driven(name[0]);
+    const std::size_t rows = table.columns[0].values.size();
+    Column warm{"T_oil [degC]", {}}, bus{"bus voltage [V]", {}}, fixed{"temperature", {}},
+        other{"humidity", {}};
+    for (std::size_t i = 0; i < rows; ++i) {
+      warm.values.push_back(20.0 + 0.01 * double(i));
+      bus.values.push_back(48.0 - 0.1 * double(i % 7));
+      fixed.values.push_back(25.0);
+      other.values.push_back(double(i % 3));
+    }
+    for (const Column& column : {warm, bus, fixed, other}) table.columns.push_back(column);
+    folder_.write(name, table);
+  }
+  make({"a.csv", "b.csv"}, {}, 60.0);
+  const JobFile file = read();
+  ASSERT_NE(file.job.model.structure.channels, nullptr);
+  EXPECT_EQ(file.job.model.structure.channels->at(0).name, "temperature");
+  EXPECT_EQ(file.job.model.structure.channels->at(1).name, "supply");
+  EXPECT_EQ(file.job.recordings[1].channels.size(), 2u);
+  const std::string text = folder_.read("job.yaml");
+  EXPECT_NE(text.find("Not used: temperature, humidity"), std::string::npos) << text;
+  expect_the_driven_mass(fitted(file), 1.0);
+}
+
 TEST_F(InitJobTest, WhatTheRecordingsLeaveOpenIsNotFree) {
   make({AXISFIT_TESTDATA "/clean-slow.csv"}, AXISFIT_CONFIGS "/axes/x.yaml");
   EXPECT_EQ(folder_.names(), (std::set<std::string>{"job.yaml"}));
