@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """by_machine.py [BUILD [SEEDS]]: from `fit-params --init --machine NAME` to the fit, without an edit, on
-recordings of six machines that are simulated here and not by the project: midpoint steps of 10 us, friction
+recordings of eight machines that are simulated here and not by the project: midpoint steps of 10 us, friction
 that sticks, controllers that sample every millisecond, encoders that round. The gains of the drives are
 those of the axis files, the masses and frictions are drawn. A case is right when every parameter is within
 four of its standard errors of the truth; it is open when the tool calls the fit unusable."""
@@ -151,10 +151,75 @@ def hobby_servo(rng):
     return truth, {"time [s]": t, "goal position [rad]": r, "position [rad]": rounded(q, 2 * math.pi / 4096)}
 
 
-MACHINES = {"screw": screw, "belt": belt, "linear-motor": linear_motor, "turntable": turntable,
+def rack(rng):
+    """A gap of known size between motor and carriage."""
+    truth = moving(rng, 25, 60, (60, 200), (15, 50))
+    motor, stiffness, damping, gap = 0.5e-4 / 0.005**2, 2e6, 500.0, 0.05e-3
+    t, r = profile(rng, 0.08, 1.0)
+    h, q, w, x, v = SAMPLE / STEPS, 0.0, 0.0, 0.0, 0.0
+
+    def plant(u):
+        nonlocal q, w, x, v
+        for _ in range(STEPS):
+            apart = q - x + 0.5 * h * (w - v)
+            beyond = apart - max(-gap, min(gap, apart))
+            pull = stiffness * beyond + damping * (w - v) if beyond else 0.0
+            motor_after = w + h * (60.0 * u - pull) / motor
+            v, way = step(v, lambda s: pull - truth["viscous"] * s, truth["coulomb"], truth["mass"], h)
+            q += 0.5 * h * (w + motor_after)
+            w = motor_after
+            x += way
+        return q
+
+    positions, currents = run(r, tracking(1500, 40, 30), plant)
+    return truth, {"time_s": t, "current_A": currents, "position_mm": 1e3 * rounded(positions, 1e-6)}
+
+
+def velocity_loop(rng):
+    """The loop of the paper under levels of the set velocity: preamplifier, current loop, gear, arm."""
+    truth = {"limit": rng.uniform(2.2, 3.2), "viscous": rng.uniform(120, 300), "gear": rng.uniform(3e6, 8e6),
+             "damping": rng.uniform(1000, 2500), "pole": rng.uniform(0.03, 0.08)}
+    R, L, K, J, B, K_t, r_g, H, M = 0.56, 2.35e-3, 0.289, 8.47e-4, 7.33e-4, 0.0668, 5.73e-3, 1e-5, 146.0
+    T_z, T_r, K_1, K_2, K_i, V_s, K_v = 7.05e-3, 1.59e-4, 1014.2, 870.0, 3.0, 95.0, 1000.0
+    V_L, T_p = truth["limit"], truth["pole"]
+    t = np.arange(int(2.4 / SAMPLE)) * SAMPLE
+    u = np.repeat(rng.uniform(0.4, 1.0, 6) * np.array([9, -7, 4, -9, 6, -3]), len(t) // 6)
+    h, y, v, q, w, p, dp, i = 1e-6, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    columns = np.zeros((4, len(t)))
+    decay = math.exp(-h * (K_v / K_i + R) / L)
+    for k, level in enumerate(u):
+        for part in range(round(SAMPLE / h)):  # the loop is stiff
+            apart = r_g * q - y
+            beyond = apart - max(-H, min(H, apart))
+            pull = truth["gear"] * beyond + truth["damping"] * (r_g * w - v) if beyond else 0.0
+            acceleration = (pull - truth["viscous"] * v) / M
+            if part == 0:
+                columns[:, k] = rounded(r_g * q, 9e-6), v, acceleration, i
+            ddp = (K_1 * level - K_2 * K_t * w - p - (T_p + T_r) * dp) / (T_p * T_r)
+            dp += h * ddp
+            p += h * dp
+            v_c = max(-V_L, min(V_L, p + T_z * dp))
+            if abs(K_v * (v_c - i / K_i)) < V_s:  # the current settles at once
+                steady = (K_v * v_c - K * w) / (K_v / K_i + R)
+                i = steady + (i - steady) * decay
+            else:
+                i += h * (math.copysign(V_s, v_c - i / K_i) - R * i - K * w) / L
+            w += h * (K * i - B * w - r_g * pull) / J
+            v += h * acceleration
+            q += h * w
+            y += h * v
+    noise = rng.standard_normal((3, len(t)))
+    return truth, {"time_s": t, "set_velocity_v": u, "position_m": columns[0],
+                   "velocity_mps": columns[1] + 2e-3 * noise[0],
+                   "acceleration_mps2": columns[2] + 0.05 * noise[1],
+                   "motor_current_a": columns[3] + 0.02 * noise[2]}
+
+
+MACHINES = {"velocity-loop": velocity_loop, "rack": rack, "screw": screw, "belt": belt, "linear-motor": linear_motor, "turntable": turntable,
             "geared-joint": geared_joint, "hobby-servo": hobby_servo}
 NAMES = {"mass": ("M", "J"), "viscous": ("B_a",), "coulomb": ("coulomb_friction.F_c", "coulomb_friction.T_c"),
-         "sine": ("pendulum_gravity.G_s",), "mu": ("load_friction.mu",)}
+         "sine": ("pendulum_gravity.G_s",), "mu": ("load_friction.mu",), "limit": ("V_L",), "gear": ("k_g",),
+         "damping": ("b_g",), "pole": ("T_p",)}
 
 
 def fit(machine, columns, folder):

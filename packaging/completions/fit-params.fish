@@ -11,7 +11,7 @@ complete -c fit-params -l suggest-experiment -d 'say which motion to record next
 complete -c fit-params -l check -d 'say what the recordings show and can tell, do not fit'
 complete -c fit-params -l init -d 'write a job for recordings'
 complete -c fit-params -l axis -x -a $yaml -d 'with --init, the axis file'
-complete -c fit-params -l machine -x -a 'velocity-loop screw belt linear-motor turntable geared-joint hobby-servo' -d 'with --init, the kind of machine'
+complete -c fit-params -l machine -x -a 'velocity-loop rack screw belt linear-motor turntable geared-joint hobby-servo' -d 'with --init, the kind of machine'
 complete -c fit-params -l gain -x -d 'with --init, force in N per unit of the current or command'
 complete -c fit-params -l column -x -d 'with --init, what a column is: SIGNAL=COLUMN:UNIT'
 complete -c fit-params -l data -x -a $folders -d 'folder of the recordings'
