@@ -954,6 +954,14 @@ class Initialiser {
                         *velocity = first.find(Kind::velocity);
     const bool is_open =
         is_direct() && sources_.front().input->key != std::string_view("position_reference");
+    if (!is_direct() && capabilities(structure_).has_backlash)
+      return "fit:\n" +
+             comment(
+                 "The ringing of the gear and the limits of the drive make wrong minima: of "
+                 "several "
+                 "starts the best counts.",
+                 2) +
+             "  starts: 8\n";
     if (!is_open || position == nullptr) return {};
     const std::vector<double> none;
     const double rate = suggested_observer_gain(

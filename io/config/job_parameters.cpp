@@ -144,7 +144,7 @@ Map free_quantities() {
     key.used_by = quantity.used_by;
     keys.push_back(std::move(key));
   }
-  return {
+  return Map{
       std::move(keys), 1, false, {}, {{std::string(kChannelQuantity), AnyOf{{amount, number}}}}};
 }
 

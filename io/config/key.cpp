@@ -118,6 +118,17 @@ struct ValueText {
 
 }  // namespace
 
+Map::Map(Section of_keys, std::size_t at_least, bool may_be_null, std::string name)
+    : Map(std::move(of_keys), at_least, may_be_null, std::move(name), {}) {}
+
+Map::Map(Section of_keys, std::size_t at_least, bool may_be_null, std::string name,
+         std::vector<NamedEntry> named_entries)
+    : keys(std::move(of_keys)),
+      min_entries(at_least),
+      nullable(may_be_null),
+      schema_name(std::move(name)),
+      named(std::move(named_entries)) {}
+
 std::vector<std::string> Choice::names() const {
   std::vector<std::string> names;
   for (const Option& option : options) names.push_back(option.name);

@@ -74,11 +74,17 @@ struct NamedEntry;
 /// A map with keys of its own.
 struct Map {
   Section keys;
-  std::size_t min_entries = 0;  ///< how many of them there must be
-  bool nullable = false;        ///< nothing after the colon is as good as {}
-  std::string schema_name{};    ///< name for schemas, where the same map occurs under many keys
+  std::size_t min_entries;  ///< how many of them there must be
+  bool nullable;            ///< nothing after the colon is as good as {}
+  std::string schema_name;  ///< name for schemas, where the same map occurs under many keys
   /// What stands under names that the user gives, besides the keys.
-  std::vector<NamedEntry> named{};
+  std::vector<NamedEntry> named;
+
+  // No aggregate: entries are complete further down only.
+  explicit Map(Section of_keys, std::size_t at_least = 0, bool may_be_null = false,
+               std::string name = {});
+  Map(Section of_keys, std::size_t at_least, bool may_be_null, std::string name,
+      std::vector<NamedEntry> named_entries);
 };
 
 /// A list of at least one value of the same form.
