@@ -166,7 +166,7 @@ Quantity quantity_on(Vocabulary vocabulary, const Quantity& quantity) {
   Quantity called = on_joint(vocabulary, quantity);
   const auto place = quantity.channel;
   return place && vocabulary.channels != nullptr && *place < vocabulary.channels->size()
-             ? of_channel(std::move(called), (*vocabulary.channels)[*place])
+             ? of_channel(called, (*vocabulary.channels)[*place])
              : called;
 }
 

@@ -141,7 +141,7 @@ TEST(Machine, WithoutCouplingsIsItsAxes) {
 
 TEST(Machine, SaysWhereCouplingsAreTooStrong) {
   std::vector<CoupledAxis> axes = machine();
-  for (std::size_t a : {0, 1})
+  for (const std::size_t a : {0u, 1u})
     std::get<ChannelForce<double>>(axes[a].rig.model.effects).k[0] = -15.0;  // above sqrt(12 * 8)
   try {
     recorded(axes, exactly(0.5, 500.0));

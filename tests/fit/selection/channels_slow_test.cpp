@@ -205,8 +205,8 @@ TEST(Channels, ASupplyThatSagsIsNamed) {
 
 // That friction creeps is no channel's doing, whatever else it is taken for.
 TEST(Channels, NoneIsNamedWhereNoneActs) {
-  for (const std::uint64_t seed : {11, 12, 13, 14})
-    for (const std::size_t axis : {0, 1, 2})
+  for (const std::uint64_t seed : {11u, 12u, 13u, 14u})
+    for (const std::size_t axis : {0u, 1u, 2u})
       for (const std::string& name : accepted(close(job_of(Machine(), axis, seed))))
         EXPECT_FALSE(name.starts_with("channel_")) << name << ", " << axis << ", " << seed;
 }
