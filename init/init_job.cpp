@@ -957,11 +957,10 @@ class Initialiser {
     if (!is_direct() && capabilities(structure_).has_backlash)
       return "fit:\n" +
              comment(
-                 "The ringing of the gear and the limits of the drive make wrong minima: of "
-                 "several "
-                 "starts the best counts.",
+                 "The ringing of the gear and the limits of the drive make wrong minima and narrow "
+                 "valleys: of several starts the best counts.",
                  2) +
-             "  starts: 8\n";
+             "  starts: 8\n  max_iterations: 150\n";
     if (!is_open || position == nullptr) return {};
     const std::vector<double> none;
     const double rate = suggested_observer_gain(

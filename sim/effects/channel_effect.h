@@ -10,6 +10,27 @@ namespace axisfit {
 /// What a channel changes.
 enum class Influence { force, dry_friction, viscous_friction, gain, mass };
 
+/// What an effect of channels is called, and what its strengths are.
+struct InfluenceInfo {
+  std::string_view name, meaning;
+  ActsOn acts_on;
+  std::string_view unit;         ///< of a strength, times that of its channel
+  std::string_view per_channel;  ///< a strength, in words; ends with "channel"
+  double typical;
+};
+inline constexpr InfluenceInfo kInfluences[]{
+    {"channel_force", "force in proportion to a recorded channel", ActsOn::arm_force, "N",
+     "force per channel", 20.0},
+    {"channel_friction", "dry friction that changes with a recorded channel", ActsOn::friction, "N",
+     "dry friction per channel", 8.0},
+    {"channel_damping", "viscous friction that changes with a recorded channel", ActsOn::friction,
+     "N s/m", "viscous friction per channel", 60.0},
+    {"channel_gain", "drive force per signal that changes with a recorded channel",
+     ActsOn::motor_torque, "1", "relative change of the drive force per channel", 0.1},
+    {"channel_mass", "mass that changes with a recorded channel", ActsOn::inertia, "kg",
+     "mass per channel", 8.0},
+};
+
 /// Something of the axis that changes in proportion to the recorded channels. With c the values of
 /// the channels beyond their zero and s the sum of k_j c_j, it is
 ///
@@ -23,56 +44,21 @@ enum class Influence { force, dry_friction, viscous_friction, gain, mass };
 /// axis; e.g. M. W. Spong, S. Hutchinson and M. Vidyasagar, Robot Modeling and Control, ch. 7.
 template <class T, Influence kInfluence>
 struct ChannelEffect {
-  static constexpr std::string_view name = [] {
-    switch (kInfluence) {
-      case Influence::force:
-        return "channel_force";
-      case Influence::dry_friction:
-        return "channel_friction";
-      case Influence::viscous_friction:
-        return "channel_damping";
-      case Influence::gain:
-        return "channel_gain";
-      case Influence::mass:
-        return "channel_mass";
-    }
-  }();
-  static constexpr std::string_view meaning = [] {
-    switch (kInfluence) {
-      case Influence::force:
-        return "force in proportion to a recorded channel";
-      case Influence::dry_friction:
-        return "dry friction that changes with a recorded channel";
-      case Influence::viscous_friction:
-        return "viscous friction that changes with a recorded channel";
-      case Influence::gain:
-        return "drive force per signal that changes with a recorded channel";
-      case Influence::mass:
-        return "mass that changes with a recorded channel";
-    }
-  }();
-  static constexpr ActsOn acts_on = [] {
-    switch (kInfluence) {
-      case Influence::force:
-        return ActsOn::arm_force;
-      case Influence::dry_friction:
-      case Influence::viscous_friction:
-        return ActsOn::friction;
-      case Influence::gain:
-        return ActsOn::motor_torque;
-      case Influence::mass:
-        return ActsOn::inertia;
-    }
-  }();
+  static constexpr const InfluenceInfo& kInfo = kInfluences[static_cast<std::size_t>(kInfluence)];
+  static constexpr std::string_view name = kInfo.name;
+  static constexpr std::string_view meaning = kInfo.meaning;
+  static constexpr ActsOn acts_on = kInfo.acts_on;
   static constexpr std::string_view excitation = "like motion while the channel changes";
 
   std::array<T, kChannels> k;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visit) {
+    constexpr double kMost = 1e9;
     for (std::size_t j = 0; j < kChannels; ++j)
-      visit(Quantity{kSymbols[j], kUnit, kPerChannel, -kMost, kMost, 0.0}.of_channel(j).typically(
-                kTypical),
+      visit(Quantity{kSymbols[j], kInfo.unit, kInfo.per_channel, -kMost, kMost, 0.0}
+                .of_channel(j)
+                .typically(kInfo.typical),
             self.k[j]);
   }
 
@@ -98,62 +84,21 @@ struct ChannelEffect {
   }
   T mass(const Instant<T>& at) const requires(kInfluence == Influence::mass) { return sum(at); }
   T mass_rate(const Instant<T>& at) const requires(kInfluence == Influence::mass) {
-    T rate(0.0);
-    if (at.channels == nullptr) return rate;
-    for (std::size_t j = 0; j < kChannels; ++j)
-      if (is_active(k[j])) rate += k[j] * at.channels->slope[j];
-    return rate;
+    return sum_of(at, [&](std::size_t j) { return T(at.channels->slope[j]); });
   }
 
  private:
   static constexpr std::array<std::string_view, kChannels> kSymbols{"k_1", "k_2", "k_3", "k_4"};
-  static constexpr std::string_view kUnit = [] {
-    switch (kInfluence) {
-      case Influence::force:
-      case Influence::dry_friction:
-        return "N";
-      case Influence::viscous_friction:
-        return "N s/m";
-      case Influence::gain:
-        return "1";
-      case Influence::mass:
-        return "kg";
-    }
-  }();
-  static constexpr std::string_view kPerChannel = [] {
-    switch (kInfluence) {
-      case Influence::force:
-        return "force per channel";
-      case Influence::dry_friction:
-        return "dry friction per channel";
-      case Influence::viscous_friction:
-        return "viscous friction per channel";
-      case Influence::gain:
-        return "relative change of the drive force per channel";
-      case Influence::mass:
-        return "mass per channel";
-    }
-  }();
-  static constexpr double kMost = 1e9;
-  static constexpr double kTypical = [] {
-    switch (kInfluence) {
-      case Influence::force:
-        return 20.0;
-      case Influence::dry_friction:
-      case Influence::mass:
-        return 8.0;
-      case Influence::viscous_friction:
-        return 60.0;
-      case Influence::gain:
-        return 0.1;
-    }
-  }();
 
   T sum(const Instant<T>& at) const {
+    return sum_of(at, [&](std::size_t j) { return at.channels->at(j, at.time); });
+  }
+  template <class Value>
+  T sum_of(const Instant<T>& at, Value&& value) const {
     T total(0.0);
     if (at.channels == nullptr) return total;
     for (std::size_t j = 0; j < kChannels; ++j)
-      if (is_active(k[j])) total += k[j] * at.channels->at(j, at.time);
+      if (is_active(k[j])) total += k[j] * value(j);
     return total;
   }
 };
