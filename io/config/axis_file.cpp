@@ -395,13 +395,13 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
   }
 
   // The quantities in use by group, in the order of the list; those at their standard value are
-  // left out where that is the custom (instruments, initial state).
+  // left out where that is the custom (instruments, initial state, channels).
   std::map<std::string, std::vector<std::pair<std::string, std::string>>> groups;
   Model<double> model = rig.model;
   const std::vector<double*> member = members(model);
   for (const QuantityEntry& entry : quantity_list(vocabulary)) {
     const double value = *member[entry.index];
-    const bool custom = entry.group == "initial" || entry.signal;
+    const bool custom = entry.group == "initial" || entry.signal || entry.quantity.channel;
     if (!is_used(entry, structure) || (custom && value == entry.quantity.default_value)) continue;
     groups[entry.group].emplace_back(entry.quantity.symbol, with_unit(value, entry.quantity.unit));
   }
