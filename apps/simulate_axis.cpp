@@ -108,12 +108,16 @@ std::string csv_of(const std::vector<Column>& columns, bool exact) {
   return text.str();
 }
 
+/// What a machine file leaves no room for.
+std::runtime_error no_more_than_a_machine(const std::string& path) {
+  return std::runtime_error(
+      fmt::format("{} is a machine: it names the motions and effects of its axes itself; leave "
+                  "out MOTION.yaml and --set",
+                  path));
+}
+
 void run_machine(Arguments arguments) {
-  if (!arguments.motion.empty() || !arguments.changes.empty())
-    throw std::runtime_error(
-        fmt::format("{} is a machine: it names the motions and effects of its axes itself; leave "
-                    "out MOTION.yaml and --set",
-                    arguments.axis));
+  if (!arguments.changes.empty()) throw no_more_than_a_machine(arguments.axis);
   if (arguments.output.empty())
     throw std::runtime_error("name a folder for the recordings of the axes: --output FOLDER");
   const MachineFile machine = read_machine_file(arguments.axis);
@@ -144,12 +148,14 @@ void run_machine(Arguments arguments) {
 
 void run_command(Arguments arguments) {
   arguments.recording.noise = !arguments.exact;
-  if (is_machine_file(arguments.axis)) return run_machine(std::move(arguments));
-  if (arguments.motion.empty())
+  if (arguments.motion.empty()) {
+    if (is_machine_file(arguments.axis)) return run_machine(std::move(arguments));
     throw std::runtime_error(fmt::format(
         "name the motion of {}, too: simulate-axis AXIS.yaml MOTION.yaml", arguments.axis));
+  }
   Diagnostics diagnostics;
   auto rig = read_axis_file(arguments.axis, diagnostics);
+  if (!rig && is_machine_file(arguments.axis)) throw no_more_than_a_machine(arguments.axis);
   diagnostics.throw_if_any();
   for (const std::string& text : arguments.changes) change(text, rig->model);
   if (const std::string reason = model_error(rig->model); !reason.empty())

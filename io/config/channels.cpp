@@ -14,10 +14,6 @@
 namespace axisfit {
 namespace {
 
-ChannelList list_of(const Structure& structure) {
-  return structure.channels == nullptr ? ChannelList() : *structure.channels;
-}
-
 const Section& channel_keys() {
   static const Section keys{
       Key::required("unit", Text{}, "unit of its values, such as degC or V"),
@@ -40,6 +36,21 @@ std::optional<std::string> unit_of(const ConfigNode& node) {
 
 }  // namespace
 
+bool is_plain_name(const ConfigNode& key, std::string_view what) {
+  static const std::regex is_name{std::string(kChannelName)};
+  const std::string name = key.text();
+  if (std::regex_match(name, is_name)) return true;
+  key.error(
+      fmt::format("'{}' cannot be the name of {}: use letters, digits and _, and "
+                  "begin with a letter",
+                  name, what));
+  return false;
+}
+
+ChannelList channels_of(const Structure& structure) {
+  return structure.channels == nullptr ? ChannelList() : *structure.channels;
+}
+
 Form amount_per_channel() {
   const char* text = "its unit per unit of the channel";
   return AnyOf{{NumberWithUnit{"N", -kUnlimited, kUnlimited, text},
@@ -55,26 +66,18 @@ Key axis_channels_key() {
 }
 
 bool add_channel(const ConfigNode& key, std::string unit, ChannelList& channels) {
-  const std::string name = key.text();
-  static const std::regex is_name{std::string(kChannelName)};
-  if (!std::regex_match(name, is_name)) {
-    key.error(
-        fmt::format("'{}' cannot be the name of a channel: use letters, digits and _, and "
-                    "begin with a letter",
-                    name));
-    return false;
-  }
+  if (!is_plain_name(key, "a channel")) return false;
   if (channels.size() == kChannels) {
     key.error(fmt::format("an axis has at most {} channels: leave out those that cannot act on it",
                           kChannels));
     return false;
   }
-  channels.push_back({name, std::move(unit), 0.0});
+  channels.push_back({key.text(), std::move(unit), 0.0});
   return true;
 }
 
 void read_channels(const ConfigNode& node, Structure& structure) {
-  ChannelList channels = list_of(structure);
+  ChannelList channels = channels_of(structure);
   ConfigMap map(node);
   for (const auto& [key, value] : map.entries()) {
     ConfigMap of_channel(value, channel_keys());
@@ -91,7 +94,7 @@ void read_channels(const ConfigNode& node, Structure& structure) {
 }
 
 void add_channels_of(const std::vector<ConfigNode>& recordings, Structure& structure) {
-  ChannelList channels = list_of(structure);
+  ChannelList channels = channels_of(structure);
   for (const ConfigNode& recording : recordings) {
     // What is no map is told where the recording is read.
     if (!recording.is_map()) continue;
@@ -109,7 +112,7 @@ void add_channels_of(const std::vector<ConfigNode>& recordings, Structure& struc
 }
 
 void set_channel_zeros(std::size_t declared, Job& job) {
-  ChannelList channels = list_of(job.model.structure);
+  ChannelList channels = channels_of(job.model.structure);
   for (std::size_t j = declared; j < channels.size(); ++j) {
     double sum = 0.0, count = 0.0, least = INFINITY, most = -INFINITY;
     for (const Recording& r : job.recordings) {

@@ -13,10 +13,16 @@
 
 namespace axisfit {
 
-/// What the names of channels are, as a regular expression.
+/// What the names of channels, and of the axes of a machine, are, as a regular expression.
 inline constexpr std::string_view kChannelName = "^[A-Za-z][A-Za-z0-9_]*$";
 /// What quantities that are related to a channel are called, as "channel_force.temperature".
 inline constexpr std::string_view kChannelQuantity = "^channel_[a-z]+\\.[A-Za-z][A-Za-z0-9_]*$";
+
+/// Whether a key is such a name; else with a diagnostic that calls it `what`, as "a channel".
+bool is_plain_name(const ConfigNode& key, std::string_view what);
+
+/// The channels of an axis.
+ChannelList channels_of(const Structure& structure);
 
 /// A quantity that is related to a channel, whose unit nobody knows before.
 Form amount_per_channel();

@@ -95,7 +95,7 @@ class JobReader {
       const auto effects = map.optional("effects");
       const auto recordings = map.required("recordings");
       Structure& structure = result_.rig.model.structure;
-      const std::size_t declared = structure.channels == nullptr ? 0 : structure.channels->size();
+      const std::size_t declared = channels_of(structure).size();
       if (recordings && recordings->is_sequence())
         add_channels_of(*recordings->as_sequence(), structure);
       if (effects) read_effects(*effects, result_.rig.model);

@@ -51,6 +51,7 @@ class MachineReader {
     ConfigMap map(node);
     for (const auto& [key, value] : map.entries()) {
       Draft draft;
+      is_plain_name(key, "an axis");  // it becomes that of a file
       draft.axis.name = key.text();
       ConfigMap entry(value, machine_axis_keys());
       const auto axis = entry.required("axis");
@@ -73,7 +74,7 @@ class MachineReader {
   /// The channels of an axis, with what they bring about.
   void connect(Draft& draft) {
     Structure& structure = draft.axis.rig.model.structure;
-    ChannelList channels = structure.channels == nullptr ? ChannelList() : *structure.channels;
+    ChannelList channels = channels_of(structure);
     draft.axis.sources.resize(channels.size());
     if (draft.channels) {
       ConfigMap map(*draft.channels);

@@ -88,6 +88,7 @@ TEST_F(MachineFileTest, MistakesAreToldWithTheirPlace) {
   expect("x.position", "x.velocity", "the channel 'slide' is in mm, and x.velocity in m/s");
   expect("N/(m/s^2)", "N/m", "6:47: y_acceleration: 'N/m' cannot be converted");
   expect("    motion: step.yaml\n", "", "key 'motion' is missing in x");
+  expect("  x:", "  ../x:", "machine.yaml:2:3: '../x' cannot be the name of an axis");
   expect("x.yaml", "none.yaml", "none.yaml");
   expect("step.yaml", "none.yaml", "none.yaml");
   EXPECT_NE(errors_with(std::string(kMachine).substr(std::string(kMachine).find("  y:")), "")
