@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -20,7 +21,7 @@
 #include "base/text_table.h"
 #include "fit/design/run_time_estimate.h"
 #include "fit/run.h"
-#include "init/init_job.h"
+#include "init/machine_choice.h"
 #include "init/starter_axis.h"
 #include "io/config/axis_file.h"
 #include "io/config/config.h"
@@ -174,6 +175,21 @@ int check(const Arguments& arguments, const Job& job, std::optional<ProgressLine
   return kUsable;
 }
 
+/// Which axes were tried for recordings, and how they did.
+std::string tried_text(const MachineChoice& choice) {
+  if (choice.tried.size() < 2) return {};
+  std::vector<std::vector<std::string>> rows{{"  axis", "free", "error / noise", ""}};
+  for (const TriedAxis& tried : choice.tried)
+    rows.push_back({tried.name == "mass" ? "  one mass" : "  " + tried.name,
+                    std::to_string(tried.parameters),
+                    tried.error ? fmt::format("{:.3g}", *tried.error) : "no fit",
+                    &tried == &choice.tried.front() ? "chosen" : ""});
+  using enum Alignment;
+  return fmt::format("Axes tried, with the error of {}\n{}",
+                     choice.is_validated ? "the recording that was not fitted" : "what was fitted",
+                     format_table(rows, {left, right, right, left}));
+}
+
 /// A job file for recordings, and an axis file where none is given.
 int init(const Arguments& arguments, std::optional<ProgressLine>& line) {
   namespace fs = std::filesystem;
@@ -181,9 +197,15 @@ int init(const Arguments& arguments, std::optional<ProgressLine>& line) {
   std::vector<ColumnAnswer> answers;
   for (const std::string& text : arguments.answers) answers.push_back(read_answer(text));
   const bool is_machine = !arguments.machine.empty();
-  const InitialJob created =
-      initial_job(arguments.files, is_machine ? arguments.machine : arguments.axis, folder.string(),
-                  arguments.gain, answers, is_machine);
+  MachineChoice choice;
+  if (is_machine || !arguments.axis.empty() || arguments.gain)
+    choice.job = initial_job(arguments.files, is_machine ? arguments.machine : arguments.axis,
+                             folder.string(), arguments.gain, answers, is_machine);
+  else
+    choice =
+        choose_machine(arguments.files, folder.string(), answers,
+                       {.progress = [&](const Progress& progress) { line->update(progress); }});
+  const InitialJob& created = choice.job;
   const auto path = [&](const std::string& name) {
     return (folder / name).lexically_normal().string();
   };
@@ -199,6 +221,7 @@ int init(const Arguments& arguments, std::optional<ProgressLine>& line) {
   if (arguments.quiet) return kUsable;
   std::string text;
   for (const auto& [name, contents] : created.files) text += fmt::format("Wrote {}\n", path(name));
+  text += tried_text(choice);
   if (!created.guesses.empty()) text += "Guessed, please check\n";
   for (const std::string& guess : created.guesses) text += paragraph(guess, 2);
   const std::string job = path(created.files.back().first);
@@ -341,6 +364,92 @@ void write(const Arguments& arguments, const JobFile& file, const RunResult& run
   folder.write(files_of(arguments, file, run_result, json), complete);
 }
 
+/// What a finished run is shown by, before it is written.
+using Show = std::function<void(const RunResult&, const std::string& json)>;
+
+/// Reads a job, runs it, shows and writes what it found. The exit code; of a check no result.
+int run_job(const Arguments& arguments, std::optional<ProgressLine>& line, const Show& show,
+            std::optional<RunResult>& result) {
+  JobFile file = read_job_file(arguments.files.front(), arguments.data);
+  if (!arguments.from.empty()) start_from(arguments.from, file.job);
+  FitOptions& options = file.job.options;
+  if (arguments.threads) options.threads = *arguments.threads;
+  if (arguments.starts) options.starts = *arguments.starts;
+  if (arguments.seed) options.seed = *arguments.seed;
+  if (arguments.check) return check(arguments, file.job, line);
+  const std::unique_ptr<OutputFolder> folder = open_folder(arguments, file.files, line);
+
+  const RunContext context{&stop_flag, folder ? &folder->journal() : nullptr,
+                           [&](const Progress& progress) { line->update(progress); }};
+  RunResult& found = result.emplace(run(file.job, arguments.options, context));
+  if (found.interrupted && time_limit_reached) found.time_limit = arguments.time_limit;
+  const std::string json = result_json(found).dump(2) + "\n";
+  line.reset();
+
+  // What was found is shown before anything can go wrong with writing it, and written even if
+  // nobody can be shown it.
+  std::exception_ptr unseen;
+  try {
+    show(found, json);
+  } catch (const OutputError&) {
+    unseen = std::current_exception();
+  }
+  if (folder) write(arguments, file, found, json, *folder);
+  if (unseen) std::rethrow_exception(unseen);
+  if (found.interrupted) {
+    if (!arguments.quiet) print_error(how_to_continue(arguments));
+    return exit_code_of_stop();
+  }
+  return found.grade.is_usable() ? kUsable : kNoUsableFit;
+}
+
+/// One job after the other, each with a folder of its own below that of the results. The exit code
+/// is the first that is not kUsable.
+int run_axes(const Arguments& arguments, const AxesJob& axes, std::optional<ProgressLine>& line) {
+  if (!arguments.from.empty())
+    throw std::runtime_error(
+        "--from has the values of one axis: leave it out, or run the axes' "
+        "jobs one by one");
+  if (arguments.check && arguments.json)
+    throw std::runtime_error("--check --json is for one axis: run the axes' jobs one by one");
+  std::vector<AxisRun> runs;
+  int code = kUsable;
+  for (const auto& [name, job] : axes.jobs) {
+    Arguments of_axis = arguments;
+    of_axis.files = {job};
+    if (!arguments.output.empty())
+      of_axis.output = (std::filesystem::path(arguments.output) / name).string();
+    if (!line) begin_line(arguments, line);
+    const auto heading = [&] {
+      print(fmt::format("{}Axis {}\n\n", runs.empty() ? "" : "\n", name));
+    };
+    if (arguments.check && !arguments.json && !arguments.quiet) {
+      line.reset();
+      heading();
+      begin_line(arguments, line);
+    }
+    std::optional<RunResult> result;
+    const int of_job = run_job(
+        of_axis, line,
+        [&](const RunResult& found, const std::string&) {
+          if (arguments.json || arguments.quiet) return;
+          heading();
+          print_report(arguments, [&](bool colour) { return report_text(found, colour); });
+        },
+        result);
+    if (code == kUsable) code = of_job;
+    if (result) runs.push_back({name, *std::move(result)});
+    if (is_set(&stop_flag)) break;
+  }
+  if (arguments.check) return code;
+  if (arguments.json)
+    print(axes_json(runs).dump(2) + "\n");
+  else if (const std::string text = couplings_text(shared_inertias(runs));
+           !text.empty() && !arguments.quiet)
+    print_report(arguments, [&](bool) { return "\n" + text; });
+  return code;
+}
+
 int run_command(const Arguments& arguments) {
   std::optional<ProgressLine> line;
   begin_line(arguments, line);
@@ -356,40 +465,17 @@ int run_command(const Arguments& arguments) {
     if (job.ends_with(ending))
       throw std::runtime_error(fmt::format(
           "{} is a recording; to create a job for it: fit-params --init {}", job, quoted(job)));
-  JobFile file = read_job_file(job, arguments.data);
-  if (!arguments.from.empty()) start_from(arguments.from, file.job);
-  FitOptions& options = file.job.options;
-  if (arguments.threads) options.threads = *arguments.threads;
-  if (arguments.starts) options.starts = *arguments.starts;
-  if (arguments.seed) options.seed = *arguments.seed;
-  if (arguments.check) return check(arguments, file.job, line);
-  const std::unique_ptr<OutputFolder> folder = open_folder(arguments, file.files, line);
-
-  const RunContext context{&stop_flag, folder ? &folder->journal() : nullptr,
-                           [&](const Progress& progress) { line->update(progress); }};
-  RunResult run_result = run(file.job, arguments.options, context);
-  if (run_result.interrupted && time_limit_reached) run_result.time_limit = arguments.time_limit;
-  const std::string json = result_json(run_result).dump(2) + "\n";
-  line.reset();
-
-  // What was found is shown before anything can go wrong with writing it, and written even if
-  // nobody can be shown it.
-  std::exception_ptr unseen;
-  try {
-    if (arguments.json)
-      print(json);
-    else if (!arguments.quiet)
-      print_report(arguments, [&](bool colour) { return report_text(run_result, colour); });
-  } catch (const OutputError&) {
-    unseen = std::current_exception();
-  }
-  if (folder) write(arguments, file, run_result, json, *folder);
-  if (unseen) std::rethrow_exception(unseen);
-  if (run_result.interrupted) {
-    if (!arguments.quiet) print_error(how_to_continue(arguments));
-    return exit_code_of_stop();
-  }
-  return run_result.grade.is_usable() ? kUsable : kNoUsableFit;
+  if (const auto axes = read_axes_job(job)) return run_axes(arguments, *axes, line);
+  std::optional<RunResult> result;
+  return run_job(
+      arguments, line,
+      [&](const RunResult& found, const std::string& json) {
+        if (arguments.json)
+          print(json);
+        else if (!arguments.quiet)
+          print_report(arguments, [&](bool colour) { return report_text(found, colour); });
+      },
+      result);
 }
 
 }  // namespace

@@ -3,7 +3,8 @@
 recordings of eight machines that are simulated here and not by the project: midpoint steps of 10 us, friction
 that sticks, controllers that sample every millisecond, encoders that round. The gains of the drives are
 those of the axis files, the masses and frictions are drawn. A case is right when every parameter is within
-four of its standard errors of the truth; it is open when the tool calls the fit unusable."""
+four of its standard errors of the truth; it is open when the tool calls the fit unusable. Besides: which machine
+`--init` takes the recording for without `--machine`, and its error over the noise."""
 import json
 import math
 import pathlib
@@ -233,6 +234,19 @@ def fit(machine, columns, folder):
     return json.loads(done.stdout), ""
 
 
+def choose(columns, folder):
+    """The machine that --init takes a recording for, and by how much its error is smaller than that of one mass."""
+    done = subprocess.run([BUILD / "apps" / "fit-params", "--init", "run.csv", "--output", "chosen"], cwd=folder,
+                          capture_output=True, text=True, check=False)
+    rows = [line.split() for line in done.stderr.splitlines() if line.startswith("    ")]
+    errors = {" ".join(row[:-3] if row[-1] == "chosen" else row[:-2]): row[-2 if row[-1] == "chosen" else -1]
+              for row in rows if row[0] != "axis"}
+    if not errors:
+        return "one of its kind", ""
+    chosen = next(iter(errors))
+    return chosen, f"{errors[chosen]}, one mass {errors.get('one mass', 'no fit')}"
+
+
 def judge(truth, result):
     worst = ("", 0.0)
     for p in result["parameters"]:
@@ -251,16 +265,17 @@ def judge(truth, result):
 
 def main():
     right = total = 0
-    print("| machine | seed | result |\n|---|---|---|")
+    print("| machine | seed | result | taken for | error |\n|---|---|---|---|---|")
     for name, simulate in MACHINES.items():
         for seed in range(1, SEEDS + 1):
             truth, columns = simulate(np.random.default_rng(seed))
             with tempfile.TemporaryDirectory() as folder:
                 result, said = fit(name, columns, pathlib.Path(folder))
+                chosen, error = choose(columns, pathlib.Path(folder))
             verdict = judge(truth, result) if result else "refused: " + (said.strip().splitlines() or ["?"])[-1]
             right += verdict == "right"
             total += 1
-            print(f"| {name} | {seed} | {verdict} |", flush=True)
+            print(f"| {name} | {seed} | {verdict} | {chosen} | {error} |", flush=True)
     print(f"\n{right} of {total} are right.")
     return 0 if right == total else 1
 

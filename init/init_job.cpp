@@ -32,6 +32,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kJobName = "job.yaml";
 constexpr const char* kAxisName = "axis.yaml";
+constexpr std::size_t kMostSamplesToTry = 50000;  ///< of recordings that short fits are made to
 constexpr double kRoom = 0.01;  ///< s, of the delay between two clocks, to either side
 constexpr const char* kOnlyRatios = "a motion shows only ratios to it";
 
@@ -141,6 +142,17 @@ bool has_input(const RecordingGuess& recording, const Input& input) {
 bool has_changing_input(const RecordingGuess& recording, const Input& input) {
   const GuessedColumn* column = recording.find(input.kind, input.is_setpoint);
   return column != nullptr && !column->is_constant();
+}
+
+/// Whether only a velocity loop has such columns. A velocity that is asked for is that of any
+/// drive, where a force or a current was recorded, too: then that drives a mass, whatever controls
+/// it.
+bool is_of_velocity_loop(const RecordingGuess& recording) {
+  return velocity_input(recording, false) &&
+         (recording.find(Kind::tachometer) || recording.find(Kind::preamplifier_voltage) ||
+          std::ranges::none_of(kForceInputs, [&](const Input& input) {
+            return input.kind != Kind::set_velocity && has_input(recording, input);
+          }));
 }
 
 struct Source {
@@ -368,16 +380,10 @@ class Initialiser {
     return best;
   }
 
-  /// By what the first recording has of a kind that only one drive makes. A velocity that is asked
-  /// for is that of any drive, where a force or a current was recorded, too: then that drives a
-  /// mass, whatever controls it.
+  /// By what the first recording has of a kind that only one drive makes.
   void choose_drive() {
     const RecordingGuess& first = sources_.front().guess;
-    const bool loop = velocity_input(first, false) &&
-                      (first.find(Kind::tachometer) || first.find(Kind::preamplifier_voltage) ||
-                       std::ranges::none_of(kForceInputs, [&](const Input& input) {
-                         return input.kind != Kind::set_velocity && has_input(first, input);
-                       }));
+    const bool loop = is_of_velocity_loop(first);
     structure_.drive = loop ? Drive::velocity_loop : Drive::force_source;
     structure_.transmission = loop ? Transmission::backlash : Transmission::rigid;
     if (!loop && is_of_angles(first)) structure_.joint = Joint::revolute;
@@ -653,9 +659,8 @@ class Initialiser {
   /// The motion is often logged a sample or two after what drives it, or before, which a fit
   /// without a delay takes for a smaller force. Each as short fits show it.
   void try_timing() {
-    constexpr std::size_t kMostSamples = 50000;
     const std::vector<double>& times = sources_.front().guess.time.values;
-    if (!force_source() || joined_ || times.size() > kMostSamples) return;
+    if (!force_source() || joined_ || times.size() > kMostSamplesToTry) return;
     const auto fitted = [&] {
       Job job = read_job();
       job.options.starts = 1;
@@ -1003,6 +1008,36 @@ InitialJob initial_job(const std::vector<std::string>& recordings, const std::st
                        const std::string& folder, std::optional<double> gain,
                        const std::vector<ColumnAnswer>& answers, bool is_machine) {
   return Initialiser(axis, is_machine, folder, gain, answers).make(recordings);
+}
+
+std::vector<std::string> machines_for(const std::vector<std::string>& recordings,
+                                      const std::vector<ColumnAnswer>& answers) {
+  std::vector<std::string> names;
+  const RecordingGuess first =
+      guess_recording(RecordingFile(recordings.front()), recordings.front(), answers);
+  if (first.time.values.size() > kMostSamplesToTry || is_of_velocity_loop(first)) return names;
+  const auto input = std::ranges::find_if(
+      kForceInputs, [&](const Input& i) { return has_changing_input(first, i); });
+  const auto is_driven_by = [&](const Capabilities& has) {
+    if (has.is_electric) return first.find(Kind::set_velocity) || first.find(Kind::velocity, true);
+    if (has.has_back_emf)
+      return first.find(Kind::motor_voltage) != nullptr ||
+             (input == kForceInputs.end() && voltage_input(first));
+    if (input == kForceInputs.end() || !has.is_force_driven) return false;
+    if (first.find(input->kind, input->is_setpoint)->of_rating)
+      return has.command == Command::share_of_rated;
+    return input->kind == Kind::current && has.command == Command::current;
+  };
+  for (const MachineAxis& machine : machine_axes()) {
+    Diagnostics diagnostics;
+    const auto rig =
+        read_axis(*ConfigNode::parse(std::string(machine.text), "", diagnostics), diagnostics);
+    const Structure& structure = rig->model.structure;
+    if ((structure.joint == Joint::revolute) == is_of_angles(first) &&
+        is_driven_by(capabilities(structure)))
+      names.emplace_back(machine.name);
+  }
+  return names;
 }
 
 }  // namespace axisfit

@@ -30,4 +30,10 @@ InitialJob initial_job(const std::vector<std::string>& recordings, const std::st
                        const std::string& folder, std::optional<double> gain = {},
                        const std::vector<ColumnAnswer>& answers = {}, bool is_machine = false);
 
+/// The machines of machine_axes() that the columns of recordings suit: the same joint, and what
+/// drives it was recorded. None for those of a velocity loop, which the columns tell, and for more
+/// than 50000 samples.
+std::vector<std::string> machines_for(const std::vector<std::string>& recordings,
+                                      const std::vector<ColumnAnswer>& answers = {});
+
 }  // namespace axisfit

@@ -566,4 +566,22 @@ Json check_json(const Job& job, const std::vector<RecordingCheck>& checks, const
   return json;
 }
 
+nlohmann::ordered_json axes_json(const std::vector<AxisRun>& axes) {
+  nlohmann::ordered_json json;
+  for (const AxisRun& axis : axes) json["axes"][axis.name] = result_json(axis.result);
+  json["shared_inertias"] = nlohmann::ordered_json::array();
+  const auto estimate = [](const Estimated& found) -> nlohmann::ordered_json {
+    return {{"value", found.value}, {"standard_error", found.error}};
+  };
+  for (const SharedInertia& s : shared_inertias(axes))
+    json["shared_inertias"].push_back({{"axes", {s.one, s.other}},
+                                       {"unit", s.unit},
+                                       {"value", s.both.value},
+                                       {"standard_error", s.both.error},
+                                       {s.one, estimate(s.from_one)},
+                                       {s.other, estimate(s.from_other)},
+                                       {"apart_standard_errors", s.apart}});
+  return json;
+}
+
 }  // namespace axisfit

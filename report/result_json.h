@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "fit/couplings.h"
 #include "fit/data/recording_check.h"
 #include "fit/design/forecast.h"
 #include "fit/design/run_time_estimate.h"
@@ -11,6 +12,9 @@
 namespace axisfit {
 
 nlohmann::ordered_json result_json(const RunResult& run_result);
+
+/// The results of several axes by their names under "axes", and what they say together.
+nlohmann::ordered_json axes_json(const std::vector<AxisRun>& axes);
 
 /// What the recordings show and can tell of the parameters, before the fit.
 nlohmann::ordered_json check_json(const Job& job, const std::vector<RecordingCheck>& checks,

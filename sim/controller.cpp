@@ -40,18 +40,16 @@ std::vector<double> command_from_reference(const Controller<double>& controller,
                                            std::span<const double> times,
                                            const ReferenceSamples& reference,
                                            std::span<const double> position) {
-  const double period = controller.timing.period;
+  const double period = controller.timing.command_period();
   ControllerMemory<double> memory;
+  if (!position.empty()) memory.begin(controller, position.front(), 0.0);
   std::vector<double> command;
-  long n = 0;
   double in_force = 0.0;
   for (std::size_t i = 0; i < times.size(); ++i) {
     // Sampling instants fall on samples of the recording, but for rounding.
-    while (times.front() + static_cast<double>(n) * period <= times[i] + 1e-6 * period) {
-      in_force = control(controller, reference(n), position[i],
-                         memory.has_read ? memory.position : position[i], memory);
-      ++n;
-    }
+    while (times.front() + static_cast<double>(memory.commands) * period <=
+           times[i] + 1e-6 * period)
+      in_force = control(controller, reference, position[i], memory);
     command.push_back(in_force);
   }
   return command;

@@ -7,26 +7,38 @@
 
 namespace axisfit {
 
+/// The most whole periods of its commands by which a controller's commands are late.
+inline constexpr std::size_t kMostPeriodsLate = 8;
+
 /// When the controller acts, and how finely it sees.
 struct ControllerTiming {
   double period = 5e-3;                 ///< s, of sampling
   double track_period = 80e-3;          ///< s, between track points of a move
   double counts_per_revolution = 4000;  ///< of the encoder on the motor shaft; zero: not quantised
+  double velocity_samples = 1.0;        ///< of the velocity loop in a period; a whole number
+
+  /// s, from one command to the next
+  double command_period() const { return period / velocity_samples; }
 };
 
 /// The law of the controller; see control().
 template <class T>
 struct ControllerGains {
   T k_ff{1.0};
-  T k_p{6.0};          ///< 1/s
-  T k_i{2.0};          ///< 1/s^2
-  T gain{10.0};        ///< command per m/s
-  T k_v{0.0};          ///< 1 closes a velocity loop
-  T k_n{0.0};          ///< 1/s
-  T k_a{0.0};          ///< command per m/s^2
-  T limit{10.0};       ///< of the command, either way
-  T speed_limit{1e3};  ///< m/s, of the set velocity
-  T u_0{0.0};          ///< command that the integral of the velocity loop begins with
+  T k_p{6.0};                ///< 1/s
+  T k_i{2.0};                ///< 1/s^2
+  T gain{10.0};              ///< command per m/s
+  T k_v{0.0};                ///< 1 closes a velocity loop
+  T k_n{0.0};                ///< 1/s
+  T k_a{0.0};                ///< command per m/s^2
+  T limit{10.0};             ///< of the command, either way
+  T speed_limit{1e3};        ///< m/s, of the set velocity
+  T u_0{0.0};                ///< command that the integral of the velocity loop begins with
+  T T_v{0.0};                ///< s, lag of the measured velocity
+  T T_u{0.0};                ///< s, lag of the command
+  T notch_depth{1.0};        ///< gain of the notch filter at its frequency; 1: there is none
+  T notch_frequency{100.0};  ///< Hz
+  T notch_width{0.5};        ///< of its frequency
 };
 
 template <class T>
@@ -47,6 +59,9 @@ void visit_timing(Timing& c, Visitor&& visit) {
   visit(Q{"counts_per_revolution", "1", "encoder counts per motor revolution; 0: no quantisation",
           0, 1e9, defaults.counts_per_revolution},
         c.counts_per_revolution);
+  visit(Q{"velocity_samples", "1", "samples of the velocity loop in a period", 1, 1000,
+          defaults.velocity_samples},
+        c.velocity_samples);
 }
 
 /// The same for what can be fitted.
@@ -76,6 +91,17 @@ void visit_gains(Gains& c, Visitor&& visit) {
   visit(Q{"u_0", "U", "command that the velocity loop's integral begins with", -1e4, 1e4,
           defaults.u_0, of_loop},
         c.u_0);
+  visit(Q{"T_v", "s", "lag of the measured velocity", 0, 1, defaults.T_v, of_loop}, c.T_v);
+  visit(Q{"T_u", "s", "lag of the command", 0, 1, defaults.T_u, of_loop}, c.T_u);
+  visit(Q{"notch_depth", "1", "gain of a notch filter of the command at its frequency; 1: none", 0,
+          10, defaults.notch_depth, of_loop},
+        c.notch_depth);
+  visit(Q{"notch_frequency", "Hz", "frequency of the notch filter", 1e-2, 1e5,
+          defaults.notch_frequency, of_loop},
+        c.notch_frequency);
+  visit(Q{"notch_width", "1", "bandwidth of the notch filter over its frequency", 1e-3, 10,
+          defaults.notch_width, of_loop},
+        c.notch_width);
 }
 
 /// Both.

@@ -61,10 +61,13 @@ class Equations {
       : m_(model),
         observer_(observer),
         slots_(slots::affine(model.effects, parts.effects)),
-        is_(parts) {}
+        is_(parts),
+        r_g_(motor_radius(model)) {}
 
   const Model<T>& model() const { return m_; }
   const Observer& observer() const { return observer_; }
+  /// r_g, m
+  const T& radius() const { return r_g_; }
   const ActiveTerms& parts() const { return is_; }
   bool has_smooth_forces() const { return is_.needs.is_smooth(); }
   /// Whether the signs of contact, motion and load change more than constants.
@@ -128,35 +131,34 @@ class Equations {
   /// Force at the rack of the motor's current alone, N on the arm side.
   T current_force(const Mode& mode, const State<T>& y, const Input<T>& input) const {
     return is_.has.is_force_driven ? m_.axis.K_f * followed_command(y, input)
-                                   : m_.axis.K_m * current(mode, y, input) / m_.axis.r_g;
+                                   : m_.axis.K_m * current(mode, y, input) / r_g_;
   }
 
   /// Motor torque as a force at the rack, N on the arm side.
   T drive_force(const Mode& mode, const State<T>& y, const Input<T>& input,
                 Terms terms = Terms::all) const {
     T force = current_force(mode, y, input);
-    if (is_.needs.motor_torque && terms == Terms::all)
-      force += motor_torque(mode, y, input) / m_.axis.r_g;
+    if (is_.needs.motor_torque && terms == Terms::all) force += motor_torque(mode, y, input) / r_g_;
     return force;
   }
 
   /// Position of the pinion relative to the rack, m; (4).
-  T gear_position(const State<T>& y) const { return m_.axis.r_g * y[2] - y[0]; }
+  T gear_position(const State<T>& y) const { return r_g_ * y[2] - y[0]; }
 
   /// Force of the gear on the arm, N; (5). Zero for a rigid transmission, which has none apart.
   T gear_force(const Mode& mode, const State<T>& y) const {
     if (mode.contact == 0) return T(0.0);
     return (gear_position(y) - double(mode.contact) * m_.axis.H) * m_.axis.k_g +
-           (m_.axis.r_g * y[3] - y[1]) * m_.axis.b_g;
+           (r_g_ * y[3] - y[1]) * m_.axis.b_g;
   }
 
   /// What the encoder on the motor reads, m at the rack: ahead of a rigid arm by what the
   /// transmission gives way under the force that it carries.
   T encoder_position(const Mode& mode, const State<T>& y, const Input<T>& input) const {
     const Axis<T>& p = m_.axis;
-    const T position = p.r_g * y[2];
+    const T position = r_g_ * y[2];
     if (!is_.soft_encoder) return position;
-    const T of_motor = (p.J_m * acceleration(mode, y, input) + p.B_m * y[1]) / (p.r_g * p.r_g);
+    const T of_motor = (p.J_m * acceleration(mode, y, input) + p.B_m * y[1]) / (r_g_ * r_g_);
     const T force = drive_force(mode, y, input) - of_motor;
     const double side = value_of(force) > 0.0 ? 1.0 : value_of(force) < 0.0 ? -1.0 : 0.0;
     return position + slots_.compliance * force + side * slots_.play;
@@ -172,8 +174,7 @@ class Equations {
     if (is_.has.has_backlash)
       force += gear_force(mode, y);
     else
-      force +=
-          drive_force(mode, y, input, terms) - m_.axis.B_m * y[1] / (m_.axis.r_g * m_.axis.r_g);
+      force += drive_force(mode, y, input, terms) - m_.axis.B_m * y[1] / (r_g_ * r_g_);
     if (is_.needs.arm_force && terms == Terms::all)
       force += slots::arm_force(m_.effects, is_.effects, instant(mode, y, input), input.memory);
     return force;
@@ -183,7 +184,7 @@ class Equations {
   T moving_mass() const {
     T mass = m_.axis.M + slots_.added_mass;
     if (is_.elastic) mass -= slots_.elastic_mass;
-    return is_.has.has_backlash ? mass : mass + m_.axis.J_m / (m_.axis.r_g * m_.axis.r_g);
+    return is_.has.has_backlash ? mass : mass + m_.axis.J_m / (r_g_ * r_g_);
   }
 
   /// y1' of the model itself, without observer, m/s^2: what an accelerometer reads.
@@ -221,13 +222,13 @@ class Equations {
       if (mode.sliding != 0) d[1] += observer_acceleration(y, input.target);
     }
     if (is_.has.has_backlash) {
-      const T torque = p.r_g * drive_force(mode, y, input, terms);
-      d[2] = y[3] + position_correction / p.r_g;
-      d[3] = (torque - p.B_m * y[3] - p.r_g * gear_force(mode, y)) / p.J_m +
-             acceleration_correction / p.r_g + input.disturbance.motor;
+      const T torque = r_g_ * drive_force(mode, y, input, terms);
+      d[2] = y[3] + position_correction / r_g_;
+      d[3] = (torque - p.B_m * y[3] - r_g_ * gear_force(mode, y)) / p.J_m +
+             acceleration_correction / r_g_ + input.disturbance.motor;
     } else {
-      d[2] = d[0] / p.r_g;
-      d[3] = d[1] / p.r_g;
+      d[2] = d[0] / r_g_;
+      d[3] = d[1] / r_g_;
     }
     if (is_.has.is_electric) {
       d[4] = y[5];
@@ -247,7 +248,7 @@ class Equations {
   State<T> disturbance_rate(const Mode& mode, const Disturbance<T>& disturbance) const {
     State<T> d{};
     if (mode.sliding != 0) d[1] = disturbance.arm;
-    d[3] = is_.has.has_backlash ? disturbance.motor : d[1] / m_.axis.r_g;
+    d[3] = is_.has.has_backlash ? disturbance.motor : d[1] / r_g_;
     if (is_.elastic) d[9] = -d[1];
     return d;
   }
@@ -257,7 +258,7 @@ class Equations {
     const Axis<T>& p = m_.axis;
     State<T> d{};
     T arm(0.0), motor(0.0);
-    if (is_.needs.motor_torque) motor = motor_torque(mode, y, input) / p.r_g;
+    if (is_.needs.motor_torque) motor = motor_torque(mode, y, input) / r_g_;
     if (mode.sliding != 0) {
       const Instant<T> at = instant(mode, y, input);
       arm = slots::arm_force(m_.effects, is_.effects, at, input.memory);
@@ -274,7 +275,7 @@ class Equations {
       d[1] = arm / mass;
       if (is_.elastic) d[9] = -d[1];
     }
-    d[3] = is_.has.has_backlash ? p.r_g * motor / p.J_m : d[1] / p.r_g;
+    d[3] = is_.has.has_backlash ? r_g_ * motor / p.J_m : d[1] / r_g_;
     return d;
   }
 
@@ -485,17 +486,10 @@ class Equations {
 
   Instant<T> instant(const Mode& mode, const State<T>& y, const Input<T>& input) const {
     const T force = current_force(mode, y, input);
-    return {input.time,
-            y[0],
-            y[1],
-            mode.sliding,
-            y[2],
-            current(mode, y, input),
-            force,
-            m_.axis.r_g * force,
-            load(mode, y, force),
-            {},
-            &input.channels};
+    return {input.time,   y[0],           y[1],
+            mode.sliding, y[2],           current(mode, y, input),
+            force,        r_g_ * force,   load(mode, y, force),
+            {},           &input.channels};
   }
 
   T motor_torque(const Mode& mode, const State<T>& y, const Input<T>& input) const {
@@ -546,7 +540,7 @@ class Equations {
 
   T position_error(const State<T>& y, const TargetOf<T>& target) const {
     const Instrument<T>& encoder = m_.instruments[index_of(Signal::position)];
-    return (target.position - encoder.bias) / encoder.gain - m_.axis.r_g * y[2];
+    return (target.position - encoder.bias) / encoder.gain - r_g_ * y[2];
   }
 
   T observer_acceleration(const State<T>& y, const TargetOf<T>& target) const {
@@ -563,6 +557,7 @@ class Equations {
   Observer observer_;
   Slots<T> slots_;
   ActiveTerms is_;
+  T r_g_;
 };
 
 /// What an instrument without lag and delay reads of `signal`, without noise, in its unit.

@@ -87,6 +87,20 @@ class Together {
     return sampling_times(fine);
   }
 
+  /// At the instants; of a second derivative the first.
+  static std::vector<double> values_of(const Course& course, const Motional& what) {
+    using enum Motional::Of;
+    const bool is_rate = what.derivative > 0;
+    if (what.of == position) return is_rate ? course.velocity : course.position;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < course.position.size(); ++i) {
+      const double sin = std::sin(course.position[i]), cos = std::cos(course.position[i]);
+      const double value = what.of == sine ? sin : cos, slope = what.of == sine ? cos : -sin;
+      values.push_back(is_rate ? slope * course.velocity[i] : value);
+    }
+    return values;
+  }
+
   std::vector<ChannelSeries> channels_of(std::size_t axis) const {
     std::vector<ChannelSeries> channels;
     for (std::size_t j = 0; j < axes_[axis].sources.size(); ++j) {
@@ -97,17 +111,15 @@ class Together {
         channels.push_back(std::move(series));
         continue;
       }
-      const Course& of = courses_[*source.axis];
-      if (source.what == Motional::acceleration) {
-        // It jumps. Its mean from one instant to the next is exact in what it gives to the axis.
+      series.values = values_of(courses_[*source.axis], source.what);
+      if (source.what.derivative == 2) {
+        // An acceleration jumps. Its mean from one instant to the next is exact in what it gives to
+        // the axis.
         series.hold = Hold::zero_order;
-        series.values = of.velocity;
         for (std::size_t i = 0; i + 1 < instants_.size(); ++i)
           series.values[i] =
-              (of.velocity[i + 1] - of.velocity[i]) / (instants_[i + 1] - instants_[i]);
+              (series.values[i + 1] - series.values[i]) / (instants_[i + 1] - instants_[i]);
         if (instants_.size() > 1) series.values.back() = series.values[instants_.size() - 2];
-      } else {
-        series.values = source.what == Motional::velocity ? of.velocity : of.position;
       }
       const double zero = (*axes_[axis].rig.model.structure.channels)[j].zero;
       for (double& x : series.values) x = source.per_si * x - zero;

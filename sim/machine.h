@@ -22,14 +22,18 @@
 
 namespace axisfit {
 
-/// What of an arm's motion is a channel of another axis.
-enum class Motional { position, velocity, acceleration };
+/// What of an arm's motion is a channel of another axis. Of a mass that turns with a joint, at the
+/// angle q, the sine and the cosine tell where it is, and their second derivatives how it pushes.
+struct Motional {
+  enum class Of { position, sine, cosine } of = Of::position;
+  int derivative = 0;  ///< by time: 0, 1 or 2
+};
 
 /// Where a channel of an axis comes from.
 struct ChannelSource {
   std::optional<std::size_t> axis;  ///< of the machine; none: the channel is at its zero
-  Motional what = Motional::position;
-  double per_si = 1.0;  ///< the channel's unit per m, m/s or m/s^2 (rad ...)
+  Motional what;
+  double per_si = 1.0;  ///< the channel's unit per that of the source in SI
 };
 
 struct CoupledAxis {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "sim/controller.h"
+
 namespace axisfit {
 
 namespace {
@@ -102,6 +104,10 @@ std::string model_error(const Model<double>& model) {
   if (capabilities(model.structure).has_backlash && a.J_m <= 0.0)
     return "J_m must be above zero with backlash: while the teeth are apart, the motor torque acts "
            "on J_m alone";
+  if (model.structure.closed_loop &&
+      whole_periods(model.controller.timing, a.T_d).first > kMostPeriodsLate)
+    return "T_d must be below " + std::to_string(kMostPeriodsLate + 1) +
+           " periods of the controller's commands, whose loop is simulated";
   return {};
 }
 

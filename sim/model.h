@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct Structure {
   Joint joint = Joint::prismatic;
   bool closed_loop = false;  ///< the controller is part of what is simulated
   Channels channels = nullptr;
+  Gearing gearing = Gearing::radius;
 };
 
 /// What an axis has by its drive and its transmission.
@@ -71,7 +73,7 @@ constexpr const Capabilities& capabilities(const Structure& structure) {
 
 /// How its quantities are called.
 constexpr Vocabulary vocabulary_of(const Structure& structure) {
-  return {structure.joint, capabilities(structure).command, structure.channels};
+  return {structure.joint, capabilities(structure).command, structure.channels, structure.gearing};
 }
 
 template <class T>
@@ -85,14 +87,24 @@ struct Model {
       initial{};  ///< with x = r_g y2 - y0 and its rate in place of y2 and y3
 };
 
+/// Metres (radians) of the load per radian of the motor.
+template <class T>
+T motor_radius(const Model<T>& model) {
+  const T& given = model.axis.r_g;
+  if (model.structure.gearing == Gearing::radius) return given;
+  return model.structure.joint == Joint::prismatic ? T(given / (2.0 * std::numbers::pi))
+                                                   : T(1.0 / given);
+}
+
 /// The state at the start. The motor's place is given relative to the arm, so that an initial
 /// position that is estimated moves both and does not tear the gear apart.
 template <class T>
 State<T> initial_state(const Model<T>& model) {
   State<T> y{};
   std::ranges::copy(model.initial, y.begin());
-  y[2] = (model.initial[0] + model.initial[2]) / model.axis.r_g;
-  y[3] = (model.initial[1] + model.initial[3]) / model.axis.r_g;
+  const T radius = motor_radius(model);
+  y[2] = (model.initial[0] + model.initial[2]) / radius;
+  y[3] = (model.initial[1] + model.initial[3]) / radius;
   return y;
 }
 

@@ -115,7 +115,7 @@ std::vector<Column> record(const Rig& rig, const Motion& motion, const Recording
       if (!options.noise) break;
       x += rig.noise[index_of(signal)] * stream.next();
       if (signal == Signal::position)
-        x = encoder_reading(x, rig.model.axis.r_g,
+        x = encoder_reading(x, motor_radius(rig.model),
                             rig.model.controller.timing.counts_per_revolution);
     }
     columns.push_back(std::move(column));

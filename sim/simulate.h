@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "sim/command.h"
@@ -104,9 +105,10 @@ class KnownCommands {
   T delay_{0.0};
 };
 
-/// Commands that the model's controller writes while it reads the encoder: at each of its samples,
-/// from the first instant on, and in force later by the dead time. One below zero is that of a log,
-/// not of a machine. Before the first the command is zero.
+/// Commands that the model's controller writes while it reads the encoder: every command_period(),
+/// from the first instant on, and in force later by the dead time, of at most kMostPeriodsLate and
+/// a part of a period. One below zero is that of a log, not of a machine. Before the first the
+/// command is zero.
 template <class T>
 class ControlledCommands {
  public:
@@ -122,8 +124,10 @@ class ControlledCommands {
 
   void start(Integrator<T>& axis, double time, const Target& target) {
     start_ = time;
-    delay_ = axis.command_delay();
-    if (value_of(delay_) < 0.0) delay_ = T(0.0);
+    T delay = axis.command_delay();
+    if (value_of(delay) < 0.0) delay = T(0.0);
+    std::tie(periods_late_, delay_) = whole_periods(controller_.timing, delay);
+    periods_late_ = std::min(periods_late_, kMostPeriodsLate);
     axis.start(time, T(0.0), target);
   }
   std::optional<T> next() const { return is_pending_ ? sample_time() + delay_ : T(sample_time()); }
@@ -131,12 +135,14 @@ class ControlledCommands {
     ControllerMemory<T>& memory = axis.controller_memory();
     if (!is_pending_) {
       const T position = read_(axis);
-      const T before = memory.has_read
-                           ? memory.position
-                           : position - controller_.timing.period *
-                                            axis.equations().model().axis.r_g * axis.state()[3];
-      memory.pending = control(controller_, reference_(sample_), position, before, memory);
-      if (written_) written_(sample_time(), memory.pending);
+      if (memory.commands == 0)
+        memory.begin(controller_, position, T(axis.equations().radius() * axis.state()[3]));
+      const T written = control(controller_, reference_, position, memory);
+      if (written_) written_(sample_time(), written);
+      // The command of so many periods before.
+      memory.pending = periods_late_ == 0 ? written : memory.written[periods_late_ - 1];
+      std::shift_right(memory.written.begin(), memory.written.end(), 1);
+      memory.written.front() = written;
       is_pending_ = true;
       if (value_of(delay_) > 0.0 || ScalarTraits<T>::has_derivative(delay_)) return;
     }
@@ -147,7 +153,7 @@ class ControlledCommands {
 
  private:
   double sample_time() const {
-    return start_ + static_cast<double>(sample_) * controller_.timing.period;
+    return start_ + static_cast<double>(sample_) * controller_.timing.command_period();
   }
 
   const Controller<T>& controller_;
@@ -157,7 +163,8 @@ class ControlledCommands {
   double start_ = 0.0;
   long sample_ = 0;
   bool is_pending_ = false;
-  T delay_{0.0};
+  std::size_t periods_late_ = 0;
+  T delay_{0.0};  ///< s, behind whole periods
 };
 
 /// Simulates from times[0] on and calls read(i, integrator) at every instant times[i] (s,
@@ -250,8 +257,8 @@ Schedule simulate_move(const Model<double>& model, Reference reference,
   Schedule written;
   const ControllerTiming& timing = model.controller.timing;
   const auto encoder = [&](const Integrator<double>& axis) {
-    return encoder_reading(model.axis.r_g * axis.state()[2], model.axis.r_g,
-                           timing.counts_per_revolution);
+    const double radius = axis.equations().radius();
+    return encoder_reading(radius * axis.state()[2], radius, timing.counts_per_revolution);
   };
   simulate_commands(model,
                     ControlledCommands<double>(

@@ -179,6 +179,18 @@ Quantity on_joint(Vocabulary vocabulary, const Quantity& quantity) {
     called.meaning = "force per ampere of the motor";
   if (quantity.symbol == "K_f" && vocabulary.command == Command::share_of_rated)
     called.meaning = "rated force";
+  if (quantity.symbol == "r_g" && vocabulary.gearing == Gearing::turns) {
+    called.lower = 1e-5;
+    called.symbol = "lead";
+    called.meaning = "way per revolution of the motor";
+    if (vocabulary.joint == Joint::prismatic) return called;
+    called.symbol = "gear_ratio";
+    called.unit = "1";
+    called.meaning = "turns of the motor per turn of the joint";
+    called.lower = 1e-3;
+    called.upper = 1e5;
+    return called;
+  }
   if (vocabulary.joint == Joint::prismatic) return called;
   called.meaning = words_on(vocabulary, called.meaning);
   if (const Exchange* symbol = find(kSymbols, quantity.symbol))

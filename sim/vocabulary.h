@@ -31,6 +31,13 @@ enum class Command {
 };
 inline constexpr Command kCommands[]{Command::voltage, Command::current, Command::share_of_rated};
 
+/// By what the motor and the load are geared to each other.
+enum class Gearing {
+  radius,  ///< r_g, metres (radians) of the load per radian of the motor
+  turns,   ///< the lead of a screw, m per revolution; the ratio of a gearbox before a joint
+};
+inline constexpr Gearing kGearings[]{Gearing::radius, Gearing::turns};
+
 /// A list of channels that stays: the same one for the same channels; null for none.
 using Channels = const ChannelList*;
 Channels kept(const ChannelList& channels);
@@ -39,31 +46,36 @@ struct Vocabulary {
   Joint joint = Joint::prismatic;
   Command command = Command::voltage;
   Channels channels = nullptr;  ///< by which the quantities that are related to them are called
+  Gearing gearing = Gearing::radius;
 
   constexpr Vocabulary() = default;
   // Implicit: a joint alone is that of a command in volts.
   // NOLINTNEXTLINE(google-explicit-constructor)
   constexpr Vocabulary(Joint of_joint, Command of_command = Command::voltage,
-                       Channels of_channels = nullptr)
-      : joint(of_joint), command(of_command), channels(of_channels) {}
+                       Channels of_channels = nullptr, Gearing of_gearing = Gearing::radius)
+      : joint(of_joint), command(of_command), channels(of_channels), gearing(of_gearing) {}
   bool operator==(const Vocabulary&) const = default;
 };
 
-inline constexpr std::size_t kVocabularies = std::size(kJoints) * std::size(kCommands);
+inline constexpr std::size_t kVocabularies =
+    std::size(kGearings) * std::size(kJoints) * std::size(kCommands);
 
 /// All without channels, that of the sources first.
 constexpr std::array<Vocabulary, kVocabularies> all_vocabularies() {
   std::array<Vocabulary, kVocabularies> all;
   auto next = all.begin();
-  for (const Joint joint : kJoints)
-    for (const Command command : kCommands) *next++ = {joint, command};
+  for (const Gearing gearing : kGearings)
+    for (const Joint joint : kJoints)
+      for (const Command command : kCommands) *next++ = {joint, command, nullptr, gearing};
   return all;
 }
 
 /// Its place among them, whatever its channels.
 constexpr std::size_t index_of(Vocabulary vocabulary) {
-  return static_cast<std::size_t>(vocabulary.joint) * std::size(kCommands) +
-         static_cast<std::size_t>(vocabulary.command);
+  const auto gearing = static_cast<std::size_t>(vocabulary.gearing),
+             joint = static_cast<std::size_t>(vocabulary.joint),
+             command = static_cast<std::size_t>(vocabulary.command);
+  return (gearing * std::size(kJoints) + joint) * std::size(kCommands) + command;
 }
 
 /// Something that is made of a vocabulary when it is first asked for, and stays. Safe to use by

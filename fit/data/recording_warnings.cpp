@@ -40,7 +40,7 @@ std::optional<UnitMistake> mistake_of(const RateCheck& rate) {
 double command_gain(const Model<double>& model) {
   const auto& a = model.axis;
   if (!capabilities(model.structure).is_electric || !(a.K_2 * a.K_t > 0.0)) return 0.0;
-  return a.K_1 * a.r_g / (a.K_2 * a.K_t);
+  return a.K_1 * motor_radius(model) / (a.K_2 * a.K_t);
 }
 
 /// A wrong unit of the time shows in every rate.

@@ -202,7 +202,7 @@ Schedule commands_of(const Experiment& experiment, const Model<double>& model,
   const double period = model.controller.timing.period;
   const auto* move = std::get_if<MoveMotion>(&experiment.motion);
   if (move == nullptr) return schedule_of(experiment.motion, experiment.duration, period);
-  if (!(model.axis.T_d < period)) return {};  // nor can it be simulated
+  if (whole_periods(model.controller.timing, model.axis.T_d).first > kMostPeriodsLate) return {};
   return simulate_move(model, reference_of(*move), times,
                        [](std::size_t, const Integrator<double>&) {});
 }

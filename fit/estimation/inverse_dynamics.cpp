@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
+#include "fit/data/derivative.h"
 #include "fit/estimation/jet.h"
 #include "fit/estimation/least_squares.h"
 #include "fit/estimation/parameters.h"
@@ -15,34 +15,10 @@
 namespace axisfit {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
-
 double rms(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double x : values) sum += x * x;
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, values.size())));
-}
-
-/// Values (at `times`, increasing) at the instants of an even grid of as many, linear in between.
-std::vector<double> on_even_grid(std::span<const double> times, std::vector<double> values) {
-  const double interval = mean_interval(times);
-  std::vector<double> even;
-  even.reserve(values.size());
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double t = times.front() + static_cast<double>(i) * interval;
-    while (k + 2 < values.size() && times[k + 1] < t) ++k;
-    const double share = std::clamp((t - times[k]) / (times[k + 1] - times[k]), 0.0, 1.0);
-    even.push_back(values[k] + share * (values[k + 1] - values[k]));
-  }
-  return even;
-}
-
-std::vector<double> central_differences(const std::vector<double>& values, double interval) {
-  std::vector<double> rates(values.size(), 0.0);
-  for (std::size_t i = 1; i + 1 < values.size(); ++i)
-    rates[i] = (values[i + 1] - values[i - 1]) / (2.0 * interval);
-  return rates;
 }
 
 /// Mean of a command over an interval about any instant. That of the force that gave the mean
@@ -118,13 +94,6 @@ std::optional<std::vector<double>> truth_of(const Recording& recording, const Mo
       (instrument.lag + instrument.delay) / mean_interval(recording.times) + delay_of(m->filter);
   values = on_even_grid(recording.times, std::move(values));
   return late > 0.0 ? advanced(values, late) : values;
-}
-
-/// White noise of variance one after `derivatives` differentiations and a low-pass, relative to
-/// 1 / s^derivatives.
-double noise_gain(int derivatives, double cutoff, double interval) {
-  const double bands = 2.0 * cutoff * interval;  // of the noise that pass
-  return std::pow(kTwoPi * cutoff, derivatives) * std::sqrt(bands / (2.0 * derivatives + 1.0));
 }
 
 /// Position, velocity and acceleration by a zero-phase filter. None where there is neither a
@@ -255,8 +224,8 @@ class BalanceCost : public ceres::CostFunction {
     for (std::size_t i = 0; i < path_.velocity.size(); ++i) {
       y[0] = T(path_.position[i]);
       y[1] = T(path_.velocity[i]);
-      y[2] = y[0] / model.axis.r_g;
-      y[3] = y[1] / model.axis.r_g;
+      y[2] = y[0] / motor_radius(model);
+      y[3] = y[1] / motor_radius(model);
       if (!path_.current.empty()) y[6] = T(path_.current[i]);
       y[7] = commands[i];
       input.command = commands[i];

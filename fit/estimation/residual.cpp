@@ -27,7 +27,7 @@ SimulationResult run(const Job& job, const Recording& recording, const Model<T>&
                      std::span<const Disturbance<T>> disturbances = {}) {
   // A controller switches the command at each of its samples.
   const double step = recording.command.meaning == Meaning::reference
-                          ? std::min(job.options.step, model.controller.timing.period)
+                          ? std::min(job.options.step, model.controller.timing.command_period())
                           : job.options.step;
   IntegratorOptions options = recording_options(recording.times, step);
   options.step = job.options.step;
@@ -54,8 +54,8 @@ SimulationResult run(const Job& job, const Recording& recording, const Model<T>&
 
 /// Calls visit(x) for the states in use, and for what is remembered where that counts.
 template <class T, class Visitor>
-void visit_followed(const ActiveTerms& parts, bool is_controlled, State<T>& y, Input<T>& input,
-                    ControllerMemory<T>& controller, Visitor&& visit) {
+void visit_followed(const ActiveTerms& parts, const Model<double>* controlled, State<T>& y,
+                    Input<T>& input, ControllerMemory<T>& memory, Visitor&& visit) {
   const std::array<bool, kStates> is_used{true,
                                           true,
                                           true,
@@ -68,12 +68,12 @@ void visit_followed(const ActiveTerms& parts, bool is_controlled, State<T>& y, I
                                           parts.elastic};
   for (std::size_t i = 0; i < kStates; ++i)
     if (is_used[i]) visit(y[i]);
-  if (is_controlled) {
+  if (controlled != nullptr) {
+    const ControllerTiming& timing = controlled->controller.timing;
     visit(input.command);
-    visit(controller.pending);
-    visit(controller.sum);
-    visit(controller.held);
-    visit(controller.position);
+    visit_memory(controlled->controller,
+                 std::min(kMostPeriodsLate, whole_periods(timing, controlled->axis.T_d).first),
+                 memory, visit);
   }
   if (!parts.needs.hysteresis) return;
   visit(input.memory.position);
@@ -81,12 +81,12 @@ void visit_followed(const ActiveTerms& parts, bool is_controlled, State<T>& y, I
 }
 
 /// How many these are.
-Eigen::Index states_to_follow(const ActiveTerms& parts, bool is_controlled) {
+Eigen::Index states_to_follow(const ActiveTerms& parts, const Model<double>* controlled) {
   State<double> y{};
   Input<double> input;
-  ControllerMemory<double> controller;
+  ControllerMemory<double> memory;
   Eigen::Index count = 0;
-  visit_followed(parts, is_controlled, y, input, controller, [&](double&) { ++count; });
+  visit_followed(parts, controlled, y, input, memory, [&](double&) { ++count; });
   return count;
 }
 
@@ -259,7 +259,8 @@ std::optional<RecordingCost::Transitions> RecordingCost::transitions(
   const Recorder<T> recorder(model.instruments, signals_, recording.times);
   const auto instants = static_cast<Eigen::Index>(recorder.instants().size());
   Transitions result;
-  result.states = states_to_follow(Equations<double>(values).parts(), is_controlled());
+  const Model<double>* controlled = is_controlled() ? &values : nullptr;
+  result.states = states_to_follow(Equations<double>(values).parts(), controlled);
   const Eigen::Index n = result.states, wide = n + Transitions::kDisturbances;
   const auto signals = static_cast<Eigen::Index>(signals_.size());
   result.states_to.setZero(instants * n, wide);
@@ -271,9 +272,9 @@ std::optional<RecordingCost::Transitions> RecordingCost::transitions(
   const std::vector<Disturbance<T>> disturbances(recorder.instants().size(), unit);
   const auto read = [&](std::size_t i, Integrator<T>& axis) {
     const auto at = static_cast<Eigen::Index>(i);
-    axis.differentiate([&](State<T>& y, Input<T>& input, ControllerMemory<T>& controller) {
+    axis.differentiate([&](State<T>& y, Input<T>& input, ControllerMemory<T>& memory) {
       Eigen::Index k = 0;
-      visit_followed(axis.equations().parts(), is_controlled(), y, input, controller, [&](T& x) {
+      visit_followed(axis.equations().parts(), controlled, y, input, memory, [&](T& x) {
         if (i > 0) result.states_to.row(at * n + k) = x.v.head(wide);
         x.v.setZero();
         x.v[k++] = 1.0;
@@ -298,12 +299,13 @@ Eigen::MatrixXd RecordingCost::disturbance_response(const double* u,
                                                     const Disturbances& disturbances) const {
   const Model<double> values = model_at(job_, space_, u, recording_);
   constexpr Eigen::Index kNarrow = 12;
-  const bool is_narrow = states_to_follow(Equations<double>(values).parts(), is_controlled()) +
-                             Transitions::kDisturbances <=
-                         kNarrow;
+  const Eigen::Index width =
+      states_to_follow(Equations<double>(values).parts(), is_controlled() ? &values : nullptr) +
+      Transitions::kDisturbances;
+  if (width > kWidestJet) return {};
   const std::optional<Transitions> found =
-      is_narrow ? transitions<ceres::Jet<double, kNarrow>>(values)
-                : transitions<ceres::Jet<double, kWidestJet>>(values);
+      width <= kNarrow ? transitions<ceres::Jet<double, kNarrow>>(values)
+                       : transitions<ceres::Jet<double, kWidestJet>>(values);
   if (!found) return {};
   const Eigen::Index n = found->states, all = disturbances.arm.cols(),
                      signals = static_cast<Eigen::Index>(signals_.size());

@@ -69,7 +69,7 @@ std::vector<Candidate> transmission_candidates(const Job& job, const SearchScale
     if (splits_mass) c->shapes.push_back(index_of("J_m"));
     if (frees_mass) c->shapes.push_back(index_of("M"));
   }
-  const double r2 = axis.r_g * axis.r_g;
+  const double r2 = std::pow(motor_radius(job.model), 2);
   const auto setting = [&](std::vector<double> values, double motor) {
     if (splits_mass) values.push_back(motor * r2);
     if (frees_mass) values.push_back(scales.mass - motor);
@@ -103,7 +103,7 @@ void give_backlash(Job& job, double J_m) {
   axis.H = 0.0;
   if (!capabilities(job.model.structure).is_force_driven) return;
   axis.J_m = J_m;
-  const double motor = J_m / (axis.r_g * axis.r_g);
+  const double motor = J_m / std::pow(motor_radius(job.model), 2);
   // At least a hundredth of it all is the arm.
   const auto without_motor = [&](double mass) { return std::max(mass - motor, 0.01 * mass); };
   axis.M = without_motor(axis.M);
@@ -119,7 +119,7 @@ double mass_of_motor(const Structure& declared, const Model<double>& fitted) {
   const bool splits = capabilities(declared).is_force_driven &&
                       declared.transmission == Transmission::rigid &&
                       fitted.structure.transmission == Transmission::backlash;
-  return splits ? fitted.axis.J_m / (fitted.axis.r_g * fitted.axis.r_g) : 0.0;
+  return splits ? fitted.axis.J_m / std::pow(motor_radius(fitted), 2) : 0.0;
 }
 
 }  // namespace axisfit

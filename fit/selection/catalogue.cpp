@@ -135,7 +135,7 @@ bool is_part_of(const Candidate& part, const Candidate& whole) {
 }
 
 std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
-  scales.pinion_radius = job.model.axis.r_g;
+  scales.pinion_radius = motor_radius(job.model);
   if (job.vocabulary().joint == Joint::revolute)
     scales.short_travel *= 10.0;  // at a radius of 0.1 m
   const Structure& structure = job.model.structure;

@@ -35,6 +35,15 @@ Section quantity_keys(Vocabulary vocabulary, std::string_view group) {
   return keys;
 }
 
+/// Whether the parameters tell a lead or a gear ratio instead of a radius.
+Gearing gearing_of(const ConfigNode& parameters, Vocabulary vocabulary) {
+  if (!parameters.is_map()) return Gearing::radius;
+  vocabulary.gearing = Gearing::turns;
+  const QuantityEntry& in_turns = quantity_list(vocabulary)[find_quantity("r_g")->index];
+  return ConfigMap(parameters).optional(in_turns.quantity.symbol) ? Gearing::turns
+                                                                  : Gearing::radius;
+}
+
 /// Whether its quantities are related to channels.
 bool acts_by_channels(const EffectInfo& effect) { return effect.name.starts_with("channel_"); }
 
@@ -135,6 +144,16 @@ void read_controller(const ConfigNode& node, Vocabulary vocabulary, Controller<d
   ConfigMap map(node, keys_below(axis_keys(vocabulary), "controller"));
   visit_settings(settings,
                  [&](const Quantity& setting, double& value) { map.read(setting.symbol, value); });
+  const double samples = settings.timing.velocity_samples,
+               frequency = settings.gains.notch_frequency,
+               nyquist = 0.5 / settings.timing.command_period();
+  if (samples != std::round(samples))
+    node.error(fmt::format("velocity_samples must be a whole number, not {:.6g}", samples));
+  if (settings.gains.notch_depth != 1.0 && !(frequency < nyquist))
+    node.error(
+        fmt::format("notch_frequency must be below {:.6g} Hz, half the sampling frequency of "
+                    "the loop that filters",
+                    nyquist));
   map.finish();
 }
 
@@ -343,10 +362,12 @@ std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
   map.read("drive", drive);
   map.read("transmission", transmission);
   rig.model.structure.drive = drive.value_or(Drive());
+  const auto parameters = map.required("parameters");
+  if (parameters)
+    rig.model.structure.gearing = gearing_of(*parameters, vocabulary_of(rig.model.structure));
   map.describe(axis_keys(vocabulary_of(rig.model.structure)));
   rig.model.structure.transmission = transmission.value_or(Transmission());
   if (const auto effects = map.optional("effects")) read_effects(*effects, rig.model);
-  const auto parameters = map.required("parameters");
   const auto initial = map.optional("initial");
   const auto guessed = map.optional("guessed");
   if (drive && transmission) {  // what quantities an axis has depends on them

@@ -65,6 +65,19 @@ Key axis_channels_key() {
                        "`{temperature: {unit: degC, zero: 25 degC}}`");
 }
 
+std::string differentiated(const std::string& unit, int order) {
+  if (order == 0) return unit;
+  const bool is_plain = unit.find_first_of("/ *") == std::string::npos;
+  return (is_plain ? unit : "(" + unit + ")") + (order == 1 ? "/s" : "/s^2");
+}
+
+std::string integrated(const std::string& unit, int order) {
+  const std::string per = order == 1 ? "/s" : "/s^2";
+  if (order == 0) return unit;
+  if (unit.ends_with(per)) return unit.substr(0, unit.size() - per.size());
+  return "(" + unit + (order == 1 ? ") s" : ") s^2");
+}
+
 bool add_channel(const ConfigNode& key, std::string unit, ChannelList& channels) {
   if (!is_plain_name(key, "a channel")) return false;
   if (channels.size() == kChannels) {
@@ -103,9 +116,13 @@ void add_channels_of(const std::vector<ConfigNode>& recordings, Structure& struc
     ConfigMap map(*given);
     for (const auto& [key, value] : map.entries()) {
       if (std::ranges::count(channels, key.text(), &Channel::name) > 0 || !value.is_map()) continue;
-      const auto unit_node = ConfigMap(value).optional("unit");
+      ConfigMap of_channel(value);
+      int order = 0;
+      if (const auto derivative = of_channel.optional("derivative"))
+        order = derivative->text() == "1" ? 1 : derivative->text() == "2" ? 2 : 0;
+      const auto unit_node = of_channel.optional("unit");
       if (const auto unit = unit_node ? unit_of(*unit_node) : std::nullopt)
-        add_channel(key, *unit, channels);
+        add_channel(key, differentiated(*unit, order), channels);
     }
   }
   structure.channels = kept(channels);

@@ -30,6 +30,11 @@ Form amount_per_channel();
 /// The key `channels` of an axis file.
 Key axis_channels_key();
 
+/// The unit of the first or second derivative of a column by time; of the zeroth its own.
+std::string differentiated(const std::string& unit, int order);
+/// That of a column whose derivative has the unit.
+std::string integrated(const std::string& unit, int order);
+
 /// Adds one with zero at 0, unless it cannot be, with a diagnostic at its key.
 bool add_channel(const ConfigNode& key, std::string unit, ChannelList& channels);
 

@@ -332,4 +332,36 @@ JobFile read_job_draft(const Files& files, const std::string& folder) {
   return JobReader(drafts.back().first, {}, drafts).read();
 }
 
+const Section& axes_job_keys() {
+  static const Section keys{Key::required(
+      "axes", Map{{}, 2, false, {}, {{std::string(kChannelName), Text{}}}},
+      "the job file of each axis of a machine, by the name of the axis; at least two")};
+  return keys;
+}
+
+std::optional<AxesJob> read_axes_job(const std::string& path) {
+  Diagnostics diagnostics;
+  const auto root = ConfigNode::load(path, diagnostics);
+  if (!root || !root->is_map() || !ConfigMap(*root).optional("axes")) return std::nullopt;
+  ConfigMap map(*root, axes_job_keys());
+  const auto axes = map.required("axes");
+  map.finish();
+  AxesJob found;
+  for (ConfigMap entries(*axes); const auto& [name, job] : entries.entries()) {
+    if (job.is_map()) {
+      axes->error(
+          "this is a machine file, which is for simulate-axis; a job of several axes has the job "
+          "file of each, as in 'axes: {x: x-job.yaml, y: y-job.yaml}'");
+      break;
+    }
+    is_plain_name(name, "an axis");  // it becomes that of a folder
+    if (const auto file = job.as_string())
+      found.jobs.emplace_back(name.text(), resolved(job, *file, {}));
+  }
+  if (axes->is_map() && diagnostics.empty() && found.jobs.size() < 2)
+    axes->error("a job of several axes has at least two; for one, run its job");
+  diagnostics.throw_if_any();
+  return found;
+}
+
 }  // namespace axisfit

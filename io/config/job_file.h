@@ -2,7 +2,10 @@
 // key.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "fit/design/experiment.h"
 #include "io/config/key.h"
@@ -31,5 +34,17 @@ JobFile read_job_file(const std::string& path, const std::string& data_directory
 /// The same for a job that is yet to be written: as if `files`, the last of which is the job, were
 /// in `folder`, which need not exist.
 JobFile read_job_draft(const Files& files, const std::string& folder);
+
+/// A file that names a job for each of several axes of one machine.
+struct AxesJob {
+  std::vector<std::pair<std::string, std::string>> jobs;  ///< names of axes, paths as found
+};
+
+/// The keys of such a file.
+const Section& axes_job_keys();
+
+/// Reads it; none for a file without the key `axes`. Throws ConfigError with everything that is
+/// wrong.
+std::optional<AxesJob> read_axes_job(const std::string& path);
 
 }  // namespace axisfit

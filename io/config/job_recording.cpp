@@ -9,6 +9,7 @@
 #include <map>
 
 #include "base/units.h"
+#include "fit/data/derivative.h"
 #include "fit/data/noise.h"
 #include "fit/data/recording_check.h"
 #include "fit/data/standstill.h"
@@ -19,6 +20,7 @@
 #include "io/recording/csv.h"
 #include "io/recording/recording_file.h"
 #include "sim/controller.h"
+#include "sim/sampling.h"
 
 namespace axisfit {
 namespace {
@@ -174,8 +176,18 @@ Section signal_keys() {
 
 /// Columns by the names of channels.
 const Map& keys_of_channels() {
-  static const Map keys{
-      {}, 0, false, {}, {{std::string(kChannelName), Map{series_keys(), 0, false, "series"}}}};
+  static const Map keys = [] {
+    Section of_channel = series_keys();
+    of_channel.push_back(Key::optional(
+        "derivative", Integer{1, 2}, DefaultText{"the values themselves"},
+        "the channel is the first or second derivative of the column by time, without a delay; "
+        "`unit` is that of the column"));
+    return Map{{},
+               0,
+               false,
+               {},
+               {{std::string(kChannelName), Map{std::move(of_channel), 0, false, "channel"}}}};
+  }();
   return keys;
 }
 
@@ -507,13 +519,25 @@ class RecordingReader {
       const auto given = map.required(channel.name);
       if (!given) continue;
       ConfigMap column(*given, keys);
-      if (auto series = read_series(*given, column, channel.unit))
+      int order = 0;
+      column.read("derivative", order);
+      if (auto series = read_series(*given, column, integrated(channel.unit, order))) {
+        if (order > 0) differentiate(*series, order);
         channels.push_back({std::move(series->times), std::move(series->values), Hold::linear});
+      }
       column.finish();
     }
     map.finish();
     if (channels.size() < rig_.model.structure.channels->size()) channels.clear();
     return channels;
+  }
+
+  static void differentiate(Series& series, int order) {
+    const double interval = mean_interval(series.times), start = series.times.front();
+    series.values =
+        derivative(on_even_grid(series.times, std::move(series.values)), interval, order);
+    for (std::size_t i = 0; i < series.times.size(); ++i)
+      series.times[i] = start + static_cast<double>(i) * interval;
   }
 
   /// A column and its times, without what is missing. Nothing, with diagnostics, where something is

@@ -14,10 +14,25 @@
 namespace axisfit {
 namespace {
 
-/// What of a neighbour can be a channel, by the signal that is called so.
-constexpr std::array kMotional{std::pair{Motional::position, Signal::position},
-                               std::pair{Motional::velocity, Signal::velocity},
-                               std::pair{Motional::acceleration, Signal::acceleration}};
+/// What of a neighbour can be a channel. Of one that slides the first three.
+struct NamedMotional {
+  std::string_view name;
+  Motional what;
+  std::string_view unit;
+};
+constexpr std::size_t kOfSliding = 3;
+constexpr auto kMotional = [] {
+  using enum Motional::Of;
+  return std::to_array<NamedMotional>({
+      {"position", {position, 0}, "m"},
+      {"velocity", {position, 1}, "m/s"},
+      {"acceleration", {position, 2}, "m/s^2"},
+      {"sine", {sine, 0}, "1"},
+      {"cosine", {cosine, 0}, "1"},
+      {"sine_acceleration", {sine, 2}, "1/s^2"},
+      {"cosine_acceleration", {cosine, 2}, "1/s^2"},
+  });
+}();
 
 /// An axis, and what it says of the others, which can only be read when all are known.
 struct Draft {
@@ -94,17 +109,22 @@ class MachineReader {
     const std::string what = dot == std::string::npos ? "" : text->substr(dot + 1);
     const auto neighbour =
         std::ranges::find(drafts_, of, [](const Draft& d) { return d.axis.name; });
-    const auto motional = std::ranges::find(
-        kMotional, what, [](const auto& m) { return std::string(info(m.second).name); });
+    const auto motional = std::ranges::find(kMotional, what, &NamedMotional::name);
     if (neighbour == drafts_.end() || motional == kMotional.end() || of == draft.axis.name) {
       value.error(
-          fmt::format("'{}' is no motion of another axis: write AXIS.position, "
-                      "AXIS.velocity or AXIS.acceleration, with an axis of this machine",
+          fmt::format("'{}' is no motion of another axis: write AXIS.position, AXIS.velocity or "
+                      "AXIS.acceleration, or of a joint that turns AXIS.sine, AXIS.cosine, "
+                      "AXIS.sine_acceleration or AXIS.cosine_acceleration, with an axis of this "
+                      "machine",
                       *text));
       return;
     }
-    const std::string si(
-        info(motional->second, vocabulary_of(neighbour->axis.rig.model.structure)).unit);
+    const Joint joint = neighbour->axis.rig.model.structure.joint;
+    if (joint == Joint::prismatic && motional - kMotional.begin() >= std::ptrdiff_t(kOfSliding)) {
+      value.error(fmt::format("'{}' needs a joint that turns, and {} slides", *text, of));
+      return;
+    }
+    const std::string si(unit_on(joint, motional->unit));
     auto channel = std::ranges::find(channels, key.text(), &Channel::name);
     if (channel == channels.end()) {
       if (!add_channel(key, si, channels)) return;
@@ -118,7 +138,7 @@ class MachineReader {
       return;
     }
     draft.axis.sources[static_cast<std::size_t>(channel - channels.begin())] = {
-        static_cast<std::size_t>(neighbour - drafts_.begin()), motional->first,
+        static_cast<std::size_t>(neighbour - drafts_.begin()), motional->what,
         1.0 / std::get<double>(factor)};
   }
 

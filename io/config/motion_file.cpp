@@ -12,6 +12,7 @@
 #include "io/config/config.h"
 #include "io/recording/csv.h"
 #include "io/recording/recording_file.h"
+#include "sim/controller.h"
 
 namespace axisfit {
 namespace {
@@ -90,6 +91,15 @@ const std::vector<MotionType>& motion_types(Vocabulary vocabulary = {}) {
   return types[index_of(vocabulary)];
 }
 
+/// But for the limits, which every axis has.
+bool is_standard(const ControllerGains<double>& gains) {
+  bool is_all = true;
+  visit_gains(gains, [&](const Quantity& quantity, double value) {
+    is_all = is_all && (quantity.symbol.ends_with("limit") || value == quantity.default_value);
+  });
+  return is_all;
+}
+
 /// Reads the keys of one type of motion. Values that are wrong are reported.
 class MotionReader {
  public:
@@ -144,11 +154,17 @@ class MotionReader {
       map_.read("speed", motion.speed);
       map_.read("acceleration", motion.acceleration);
       file.motion = motion;
-      if (!capabilities(rig_.model.structure).is_electric)
+      const Controller<double>& controller = rig_.model.controller;
+      if (!capabilities(rig_.model.structure).is_electric && is_standard(controller.gains))
         type->error(
-            "a move needs a set-velocity input, which the drive of this axis does not have");
-      else if (rig_.model.axis.T_d >= rig_.model.controller.timing.period)
-        type->error("a move needs a command delay T_d below the controller's period");
+            "a move needs a controller: its standard gains are those of a set-velocity "
+            "input, which the drive of this axis does not have; give 'controller' in the "
+            "axis file");
+      else if (whole_periods(controller.timing, rig_.model.axis.T_d).first > kMostPeriodsLate)
+        type->error(
+            fmt::format("a move needs a command delay T_d below {} periods of the "
+                        "controller's commands",
+                        kMostPeriodsLate + 1));
     } else {
       file.motion = recorded(file.recording);
     }

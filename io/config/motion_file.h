@@ -23,7 +23,7 @@ const Section& motion_keys();
 const Section& motion_keys(const std::string& type, Vocabulary vocabulary = {});
 
 /// Reads a motion file for a rig. Throws ConfigError with everything that is wrong, among it a
-/// voltage beyond the rig's limit and a move for an axis without a set-velocity input.
+/// voltage beyond the rig's limit and a move for an axis without a controller.
 MotionFile read_motion_file(const std::string& path, const Rig& rig);
 
 /// A motion file that reads back as the same motion, digit for digit. A recorded motion has a file

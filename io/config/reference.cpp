@@ -127,6 +127,7 @@ std::map<std::string, Section> tables() {
        keys_below(keys_below(signals, "position"), "filter")},
       {"job.free.NAME", keys_below(keys_below(job, "free"), "M")},
       {"job.fit", keys_below(job, "fit")},
+      {"job.axes", axes_job_keys()},
       {"job.limits", keys_below(job, "limits")},
       {"axis", axis},
       {"axis.parameters", keys_below(axis, "parameters")},

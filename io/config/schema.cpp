@@ -174,19 +174,26 @@ Json when(const Json& constants, const Json& then, const std::string& may_be_mis
 /// The maps of an axis file whose keys depend on the structure.
 constexpr std::array<const char*, 3> kPartsOfStructure{"parameters", "effects", "initial"};
 
-/// What such a part holds on the joint, or has otherwise with another command than a voltage.
+/// What such a part holds on the joint, or has otherwise with another command than a voltage or
+/// another gearing than a radius.
 std::string group_of(const std::string& part, Vocabulary vocabulary) {
   const std::string unit(unit_on(vocabulary, kCommandUnit));
   return part + "." + joint_name(vocabulary.joint) +
-         (vocabulary.command == Command::voltage ? "" : "." + unit);
+         (vocabulary.command == Command::voltage ? "" : "." + unit) +
+         (vocabulary.gearing == Gearing::radius ? "" : ".turns");
 }
 
 /// That in whose group the key of a quantity, or of the effect with it, stands.
 Vocabulary defining(const QuantityEntry& entry, Vocabulary vocabulary) {
-  const auto unit_of = [](const QuantityEntry& e) { return e.quantity.unit; };
-  return unit_of(entry) == unit_of(quantity_list(vocabulary.joint)[entry.index])
-             ? Vocabulary(vocabulary.joint)
-             : vocabulary;
+  const auto is_same_in = [&](Vocabulary other) {
+    const QuantityEntry& there = quantity_list(other)[entry.index];
+    return entry.name == there.name && entry.quantity.unit == there.quantity.unit;
+  };
+  for (const Vocabulary first :
+       {Vocabulary(vocabulary.joint),
+        Vocabulary(vocabulary.joint, Command::voltage, nullptr, vocabulary.gearing)})
+    if (is_same_in(first)) return first;
+  return vocabulary;
 }
 
 /// Which keys they have, and must have, in an axis of this structure.
@@ -197,6 +204,8 @@ Json parts_of(Structure structure) {
   for (const char* part : kPartsOfStructure)
     parts[part] = {{"properties", Json::object()}, {"additionalProperties", false}};
   const Vocabulary vocabulary = vocabulary_of(structure);
+  structure.gearing = Gearing::turns;
+  const Vocabulary in_turns = vocabulary_of(structure);
   for (const QuantityEntry& entry : quantity_list(vocabulary)) {
     if (!is_used(entry, structure)) continue;
     const auto add = [&](const std::string& part, const std::string& name) {
@@ -204,7 +213,21 @@ Json parts_of(Structure structure) {
           SchemaMaker::reference(group_of(part, defining(entry, vocabulary)) + "." + name);
     };
     const std::string symbol(entry.quantity.symbol);
-    if (entry.group.empty()) {
+    if (entry.quantity.symbol != quantity_list(in_turns)[entry.index].quantity.symbol) {
+      // Either name will do.
+      Json either = Json::array();
+      for (const Vocabulary v : {vocabulary, in_turns}) {
+        const QuantityEntry& named = quantity_list(v)[entry.index];
+        const std::string name(named.quantity.symbol);
+        parts["parameters"]["properties"][name] =
+            SchemaMaker::reference(group_of("parameters", defining(named, v)) + "." + name);
+        either.push_back({{"required", {name}}});
+      }
+      if (Key::of(entry.quantity).is_required)
+        parts["parameters"]["oneOf"] = std::move(either);
+      else
+        parts["parameters"]["not"] = {{"allOf", std::move(either)}};
+    } else if (entry.group.empty()) {
       add("parameters", symbol);
       if (Key::of(entry.quantity).is_required) parts["parameters"]["required"].push_back(symbol);
     } else if (entry.group == "initial") {
@@ -220,7 +243,13 @@ Json parts_of(Structure structure) {
 
 nlohmann::ordered_json job_schema() {
   SchemaMaker maker;
-  return maker.with_definitions(maker.schema("axisfit job file", job_keys()));
+  Json top = maker.schema("axisfit job file", job_keys());
+  // Or one of several axes.
+  const Json axes = maker.map(axes_job_keys());
+  top["properties"].update(axes["properties"]);
+  top["anyOf"] = {{{"required", top["required"]}}, {{"required", axes["required"]}}};
+  top.erase("required");
+  return maker.with_definitions(std::move(top));
 }
 
 nlohmann::ordered_json axis_schema() {
@@ -235,7 +264,7 @@ nlohmann::ordered_json axis_schema() {
   for (const Vocabulary vocabulary : all_vocabularies())
     for (const char* part : kPartsOfStructure) {
       Section keys = keys_below(axis_keys(vocabulary), part);
-      if (vocabulary.command != Command::voltage)
+      if (vocabulary != Vocabulary(vocabulary.joint))
         std::erase_if(keys, [&](const Key& key) {
           return std::ranges::none_of(quantity_list(vocabulary), [&](const QuantityEntry& entry) {
             return (entry.name == key.name || entry.group == key.name) &&

@@ -93,10 +93,18 @@ std::string parameters_text(const RunResult& run_result) {
                                               Alignment::right, Alignment::right, Alignment::left});
 }
 
-/// How many of several starts ended in the same place, and where the others did.
-std::string starts_text(const FitResult& first) {
+/// How many of several starts ended in the same place, and where the others did. Of one that leaves
+/// much in a model with many minima, that more may find a better one.
+std::string starts_text(const Job& job, const FitResult& first) {
   const std::size_t starts = first.starts.size();
-  if (starts < 2) return "";
+  if (starts < 2) {
+    constexpr double kMuch = 4.0;
+    const bool has_many = capabilities(job.model.structure).has_backlash;
+    return has_many && first.usable && first.reduced_chi_square > kMuch
+               ? paragraph(
+                     "A gear makes wrong minima: --starts 8 shows whether this is one of them.", 2)
+               : "";
+  }
   const std::vector<Minimum> minima = distinct_minima(first.starts);
   if (minima.empty()) return "";
   std::string text = fmt::format("{} of {} starts reach this minimum", minima[0].starts, starts);
@@ -171,7 +179,7 @@ std::string report_text(const RunResult& run_result, bool colour) {
   std::string text = fmt::format(
       "{}\n{}{}\n{}\n{}\n", recordings_text(run_result), parameters_text(run_result),
       uncertainty_text(job, result) + second_opinion_text(run_result) +
-          starts_text(run_result.first),
+          starts_text(run_result.baseline, run_result.first),
       legend_text(job, result, colour),
       run_result.selection ? selection_text(run_result, colour) : errors_text(job, result));
   if (const std::string profiles = profiles_text(run_result); !profiles.empty())

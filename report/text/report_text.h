@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "fit/couplings.h"
 #include "fit/data/recording_warnings.h"
 #include "fit/design/forecast.h"
 #include "fit/design/run_time_estimate.h"
@@ -14,6 +15,9 @@ namespace axisfit {
 
 /// Recordings, table of parameters, errors per signal or the models of the loop, and the verdicts.
 std::string report_text(const RunResult& run_result, bool colour = false);
+
+/// What the runs of several axes of one machine say together; empty where that is nothing.
+std::string couplings_text(const std::vector<SharedInertia>& shared);
 
 /// Its part on a residual that is not explained: how much that is, and what it depends on.
 std::string residual_text(const Job& job, const Diagnosis& diagnosis);

@@ -822,6 +822,50 @@ TEST_F(CommandLineTest, TheNextExperimentCanBeRun) {
   }
 }
 
+TEST_F(CommandLineTest, AxesOfAMachineAreFittedInTurn) {
+  const auto job_of = [&](const std::string& axis, const std::string& other, const char* mass) {
+    folder_.write(
+        axis + ".yaml",
+        "axis: " AXISFIT_CONFIGS "/jobs/three-axes/axis.yaml\neffects: {channel_force: {" + other +
+            "_acceleration: 0 N/(m/s^2)}}\nrecordings:\n  - file: " AXISFIT_TESTDATA
+            "/three-axes-fit.csv\n    time: {column: t, unit: s}\n    initial_state: data\n"
+            "    signals:\n      drive_force: {column: " +
+            axis + "_force, unit: N}\n      position: {column: " + axis +
+            "_position, unit: mm}\n    channels:\n      " + other + "_acceleration: {column: " +
+            other + "_position, unit: mm, derivative: 2}\nfree: {M: {initial: " + mass +
+            "}, B_a: {}, coulomb_friction.F_c: {}, channel_force." + other +
+            "_acceleration: {}}\nfit: {observer: {fixed: 30 1/s}}\n");
+  };
+  job_of("x", "y", "14 kg");
+  job_of("y", "x", "9 kg");
+  const std::string both = folder_.write("axes.yaml", "axes: {x: x.yaml, y: y.yaml}\n");
+  const std::string results = folder_.path("results");
+  const Outcome run = fit({both, "--output", results});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  for (const char* expected : {"Axis x\n\nRecordings\n", "\n\nAxis y\n\nRecordings\n",
+                               "\n\nCouplings\n  x and y share an inertia of 0.2"})
+    EXPECT_NE(run.out.find(expected), std::string::npos) << expected << run.out;
+  EXPECT_EQ(folder_.names("results"), (Names{"x", "y"}));
+  EXPECT_TRUE(folder_.names("results/y").contains("fitted.yaml"));
+  const Outcome json = fit({both, "--json"});
+  const Json parsed = Json::parse(json.out);
+  const Json& shared = parsed.at("shared_inertias").at(0);
+  EXPECT_EQ(shared.at("axes"), Json({"x", "y"}));
+  EXPECT_NEAR(shared.at("value").get<double>(), 0.230, 0.002);
+  EXPECT_EQ(parsed.at("axes").at("x").at("usable"), true);
+  // Of one axis at least there is nothing to say together.
+  const auto refused = [&](const std::string& text, const std::string& message) {
+    const Outcome bad = fit({folder_.write("bad.yaml", text)});
+    EXPECT_EQ(bad.exit_code, 2);
+    EXPECT_NE(bad.err.find(message), std::string::npos) << bad.err;
+  };
+  refused("axes: {x: x.yaml}\n", "a job of several axes has at least two");
+  refused("axes: {x: {axis: x.yaml}, y: {axis: y.yaml}}\n", "this is a machine file");
+  refused("axes: {x: x.yaml, y: no.yaml}\n", "no.yaml");
+  refused("axes: {x: x.yaml, y: y.yaml}\nfree: {}\n", "unknown key 'free'");
+  EXPECT_EQ(fit({both, "--from", results + "/x/fitted.yaml"}).exit_code, 2);
+}
+
 TEST_F(CommandLineTest, ResultsServeBothPrograms) {
   const std::string results = folder_.path("results");
   const Outcome first = fit({job(), "--output", results, "--json"});
@@ -958,9 +1002,10 @@ TEST_F(CommandLineTest, AMachineIsRecordedAxisByAxis) {
   const std::string robot = AXISFIT_CONFIGS "/machines/robot.yaml", results = folder_.path("robot");
   const Outcome outcome = simulate({robot, "--output", results, "--rate", "100"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("3 axes, each simulated"), std::string::npos);
+  EXPECT_NE(outcome.out.find("4 axes, each simulated"), std::string::npos);
   const Table x = recorded(folder_.read("robot/x.csv"));
-  EXPECT_EQ(x.columns.back().name, "y_acceleration_mps2");
+  EXPECT_EQ(x.columns[x.columns.size() - 2].name, "y_acceleration_mps2");
+  EXPECT_EQ(x.columns.back().name, "hand_1ps2");
   EXPECT_EQ(x.columns.back().values.size(), 401u);
   EXPECT_EQ(folder_.read("robot/z.csv").find("time_s,command_v"), 0u);
 

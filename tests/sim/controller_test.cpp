@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "sim/rig.h"
@@ -144,6 +145,151 @@ TEST(Controller, OfAHobbyServoHasExactDerivatives) {
   m.initial = {1e-3, 0.03};
   m.axis.T_d = 0.3e-3;
   add_effect<CoulombFriction>(m).F_c = 20.0;
+  experiment.command = reference();
+  experiment.times = instants(350, 2e-3);
+  expect_derivatives(experiment);
+}
+
+/// With a velocity loop of four samples in each period, lags and a notch filter.
+Model<double> filtering_axis() {
+  Model<double> model = servo_axis();
+  model.controller.timing.velocity_samples = 4;
+  model.controller.gains.T_v = 0.8e-3;
+  model.controller.gains.T_u = 0.3e-3;
+  model.controller.gains.notch_depth = 0.2;
+  model.controller.gains.notch_frequency = 180.0;
+  model.controller.gains.notch_width = 0.7;
+  return model;
+}
+
+TEST(Controller, WithALoopWithinTheLoopFollowsTheExactRecursion) {
+  Model<double> model = filtering_axis();
+  model.controller.gains.notch_depth = 1.0;
+  const Schedule schedule = reference();
+  const double T = model.controller.timing.period, t = T / 4, M = model.axis.M, B = model.axis.B_a,
+               K = model.axis.K_f;
+  const ControllerGains<double>& g = model.controller.gains;
+  std::vector<double> times, positions;
+  for (int i = 0; i < 1600; ++i) times.push_back(t * i);
+  ASSERT_TRUE(simulate(model, schedule, times, [&](std::size_t, const Integrator<double>& axis) {
+                positions.push_back(axis.state()[0]);
+              }).finished);
+  double x = 0.0, v = 0.0, last = 0.0, sum = 0.0, held = 0.0, worst = 0.0, w = 0.0, k_a = 0.0,
+         speed = 0.0, lagged = 0.0;
+  const auto r = [&](int i) { return i < 0 ? 0.0 : schedule.values[static_cast<std::size_t>(i)]; };
+  for (int n = 0; n < 1600; ++n) {
+    worst = std::max(worst, std::abs(positions[static_cast<std::size_t>(n)] - x));
+    if (const int i = n / 4; n % 4 == 0) {
+      sum += r(i) - x;
+      w = g.k_ff * (r(i) - r(i - 1)) / T + g.k_p * (r(i) - x) + g.k_i * T * sum;
+      w = std::clamp(w, -g.speed_limit, g.speed_limit);
+      k_a = g.k_a * (r(i) - 2.0 * r(i - 1) + r(i - 2)) / (T * T);
+    }
+    speed = (g.T_v * speed + (x - last)) / (g.T_v + t);
+    last = x;
+    const double s = w - speed, most = g.limit / g.gain;
+    held = std::clamp(held + g.k_n * t * s, -most, most);
+    const double u = std::clamp(g.gain * (s + held) + k_a + g.u_0, -g.limit, g.limit);
+    lagged = n == 0 ? u : (g.T_u * lagged + t * u) / (g.T_u + t);
+    const double decay = std::exp(-B * t / M), end = K * lagged / B;
+    x += end * t + (v - end) * (1.0 - decay) * M / B;
+    v = end + (v - end) * decay;
+  }
+  EXPECT_LT(worst, 1e-12);
+}
+
+// The filter has the gain that is asked for at its frequency, and none at zero and far above.
+TEST(Controller, NotchFilterHasItsDepthAndWidth) {
+  const Controller<double> controller = filtering_axis().controller;
+  const auto gain_at = [&](double frequency) {
+    ControllerMemory<double> memory;
+    double in_phase = 0.0, across = 0.0;
+    constexpr int kSettled = 4000, kMeasured = 20000;
+    for (int n = 0; n < kSettled + kMeasured; ++n) {
+      const double angle =
+          2.0 * std::numbers::pi * frequency * n * controller.timing.command_period();
+      const double passed = notched(controller, std::cos(angle), memory);
+      ++memory.commands;
+      if (n < kSettled) continue;
+      in_phase += 2.0 * passed * std::cos(angle) / kMeasured;
+      across += 2.0 * passed * std::sin(angle) / kMeasured;
+    }
+    return std::hypot(in_phase, across);
+  };
+  EXPECT_NEAR(gain_at(180.0), 0.2, 1e-6);
+  EXPECT_NEAR(gain_at(1.0), 1.0, 1e-3);
+  EXPECT_NEAR(gain_at(990.0), 1.0, 1e-3);
+  // At the edges of the band the real part of the answer is half-way: sqrt((1 + c^2) / 2). Their
+  // frequencies are bent by the bilinear transformation.
+  const double T = controller.timing.command_period(), pi = std::numbers::pi;
+  const double k = std::tan(pi * 180.0 * T), half = 0.5 * 0.7;
+  const double upper = std::atan(k * (half + std::sqrt(1.0 + half * half))) / (pi * T);
+  EXPECT_NEAR(gain_at(upper), std::sqrt((1.0 + 0.04) / 2.0), 1e-3);
+}
+
+TEST(Controller, NotchFilterBeginsSettled) {
+  const Controller<double> controller = filtering_axis().controller;
+  ControllerMemory<double> memory;
+  for (int n = 0; n < 10; ++n) {
+    EXPECT_NEAR(notched(controller, 3.5, memory), 3.5, 1e-14);
+    ++memory.commands;
+  }
+}
+
+TEST(Controller, WithFiltersHasExactDerivatives) {
+  Experiment experiment;
+  experiment.model = filtering_axis();
+  experiment.model.axis.T_d = 0.2e-3;
+  experiment.model.initial = {1e-3, 0.03};
+  add_effect<CoulombFriction>(experiment.model).F_c = 30.0;
+  experiment.command = reference();
+  experiment.times = instants(350, 2e-3);
+  expect_derivatives(experiment);
+}
+
+// Commands that act several periods after they were written.
+TEST(Controller, WithALongDeadTimeFollowsTheExactRecursion) {
+  Model<double> model = servo_axis();
+  model.controller.gains.k_p = 10.0;
+  model.controller.gains.k_i = model.controller.gains.k_n = model.controller.gains.k_a = 0.0;
+  model.controller.gains.gain = 4.0;
+  const double T = model.controller.timing.period, M = model.axis.M, B = model.axis.B_a,
+               K = model.axis.K_f;
+  model.axis.T_d = 2.25 * T;
+  const Schedule schedule = reference();
+  const ControllerGains<double>& g = model.controller.gains;
+  std::vector<double> times, positions;
+  for (int i = 0; i < 400; ++i) times.push_back(T * i);
+  ASSERT_TRUE(simulate(model, schedule, times, [&](std::size_t, const Integrator<double>& axis) {
+                positions.push_back(axis.state()[0]);
+              }).finished);
+  double x = 0.0, v = 0.0, last = 0.0, worst = 0.0;
+  std::vector<double> commands{0.0, 0.0, 0.0};  // the ones before the first
+  const auto r = [&](int i) { return i < 0 ? 0.0 : schedule.values[static_cast<std::size_t>(i)]; };
+  const auto go_on = [&](double command, double time) {
+    const double decay = std::exp(-B * time / M), end = K * command / B;
+    x += end * time + (v - end) * (1.0 - decay) * M / B;
+    v = end + (v - end) * decay;
+  };
+  for (int i = 0; i < 400; ++i) {
+    worst = std::max(worst, std::abs(positions[static_cast<std::size_t>(i)] - x));
+    const double w = std::clamp(g.k_ff * (r(i) - r(i - 1)) / T + g.k_p * (r(i) - x), -g.speed_limit,
+                                g.speed_limit);
+    commands.push_back(std::clamp(g.gain * (w - (x - last) / T) + g.u_0, -g.limit, g.limit));
+    last = x;
+    const std::size_t now = commands.size() - 1;
+    go_on(commands[now - 3], 0.25 * T);  // until the command of two periods before acts
+    go_on(commands[now - 2], 0.75 * T);
+  }
+  EXPECT_LT(worst, 1e-12);
+}
+
+TEST(Controller, WithALongDeadTimeHasExactDerivatives) {
+  Experiment experiment;
+  experiment.model = servo_axis();
+  experiment.model.controller.gains.gain = 4.0;
+  experiment.model.axis.T_d = 5.3e-3;
+  experiment.model.initial = {1e-3, 0.03};
   experiment.command = reference();
   experiment.times = instants(350, 2e-3);
   expect_derivatives(experiment);

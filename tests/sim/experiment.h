@@ -150,6 +150,8 @@ inline double natural_size(const QuantityEntry& entry, double value) {
     return kSizes[entry.index - find_quantity("initial.y0")->index];
   }
   if (entry.name == "T_d") return 0.01;
+  // Of filters within a period.
+  if (entry.name == "controller.T_v" || entry.name == "controller.T_u") return 1e-3;
   return value != 0.0 ? std::abs(value) : 1.0;
 }
 

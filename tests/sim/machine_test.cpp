@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iostream>
@@ -17,6 +18,8 @@ namespace {
 /// whose place shifts its weight, and its acceleration shakes x.
 constexpr double kX = 12.0, kY = 8.0, kZ = 5.0, kShared = 0.9, kWeight = 6.0, kReaction = -0.4;
 constexpr double kBx = 30.0, kBy = 15.0, kBz = 25.0;
+
+constexpr Motional kPosition{Motional::Of::position, 0}, kAcceleration{Motional::Of::position, 2};
 
 CoupledAxis driven(const char* name, double mass, double damping, StepMotion step) {
   CoupledAxis axis;
@@ -38,9 +41,9 @@ std::vector<CoupledAxis> machine() {
     axis.sources = std::move(sources);
   };
   channels(axes[0], {{"y", "m/s^2", 0.0}, {"z", "m/s^2", 0.0}},
-           {{1, Motional::acceleration, 1.0}, {2, Motional::acceleration, 1.0}});
-  channels(axes[1], {{"x", "m/s^2", 0.0}}, {{0, Motional::acceleration, 1.0}});
-  channels(axes[2], {{"y", "mm", 0.0}}, {{1, Motional::position, 1e3}});
+           {{1, kAcceleration, 1.0}, {2, kAcceleration, 1.0}});
+  channels(axes[1], {{"x", "m/s^2", 0.0}}, {{0, kAcceleration, 1.0}});
+  channels(axes[2], {{"y", "mm", 0.0}}, {{1, kPosition, 1e3}});
   add_effect<ChannelForce>(axes[0].rig.model).k = {-kShared, kReaction, 0.0, 0.0};
   add_effect<ChannelForce>(axes[1].rig.model).k[0] = -kShared;
   add_effect<ChannelForce>(axes[2].rig.model).k[0] = kWeight / 1e3;
@@ -160,13 +163,40 @@ TEST(Machine, MovesOfTheControllerShakeANeighbour) {
   axes[1].name = "y";
   axes[1].motion = StepMotion{0.0, 0.0};
   axes[1].rig.model.structure.channels = kept({{"x", "m/s^2", 0.0}});
-  axes[1].sources = {{0, Motional::acceleration, 1.0}};
+  axes[1].sources = {{0, kAcceleration, 1.0}};
   add_effect<ChannelForce>(axes[1].rig.model).k[0] = -3.0;
   RecordingOptions options = exactly(1.5, 200.0);
   const MachineRecording found = recorded(axes, options);
   EXPECT_LE(found.sweeps, 3);  // y follows, x is not shaken back
   const std::vector<double>& y = found.axes[1][3].values;
   EXPECT_GT(*std::ranges::max_element(y), 1e-5);
+}
+
+// A mass that a joint swings on a carriage: with nothing else acting, momentum and inertia stay.
+TEST(Machine, AMassThatTurnsPushesAsItsMomentumSays) {
+  constexpr double kLever = 0.35;  // kg m
+  CoupledAxis carriage = driven("carriage", 5.0, 0.0, {0.0, 0.0}),
+              wrist = driven("wrist", 0.02, 0.05, {0.3, 0.1});
+  wrist.rig.model.structure.joint = Joint::revolute;
+  carriage.rig.model.structure.channels =
+      kept({{"swing", "1/s^2", 0.0}, {"place", "1", 0.0}, {"height", "1", 0.0}});
+  carriage.sources = {{1, {Motional::Of::sine, 2}, 1.0},
+                      {1, {Motional::Of::sine, 0}, 1.0},
+                      {1, {Motional::Of::cosine, 0}, 1.0}};
+  add_effect<ChannelForce>(carriage.rig.model).k[0] = -kLever;
+  const MachineRecording found = recorded({carriage, wrist}, exactly(1.0, 500.0));
+  const auto& speed = found.axes[0][3].values;
+  const auto &angle = found.axes[1][2].values, &rate = found.axes[1][3].values;
+  double worst = 0.0, range = 0.0;
+  for (std::size_t i = 0; i < speed.size(); ++i) {
+    const double expected = -kLever * std::cos(angle[i]) * rate[i] / 5.0;
+    worst = std::max(worst, std::abs(speed[i] - expected));
+    range = std::max(range, std::abs(expected));
+    ASSERT_NEAR(found.axes[0][5].values[i], std::sin(angle[i]), 1e-12);
+    ASSERT_NEAR(found.axes[0][6].values[i], std::cos(angle[i]), 1e-12);
+  }
+  EXPECT_GT(*std::ranges::max_element(angle), 1.0);
+  EXPECT_LT(worst, 1e-9 * range);
 }
 
 }  // namespace

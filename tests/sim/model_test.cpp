@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <string>
 
@@ -253,6 +254,23 @@ TEST(Refusal, OfAGearWithoutMotorInertia) {
   EXPECT_NE(model_error(model).find("J_m"), std::string::npos);
   model.structure.transmission = Transmission::rigid;
   EXPECT_EQ(model_error(model), "");
+}
+
+// A lead, a ratio and the radius that they come to are one axis.
+TEST(Gearing, IsGivenByRadiusLeadOrRatio) {
+  for (const Joint joint : kJoints) {
+    Model<double> radius = paper_axis(), turns = radius;
+    radius.structure.joint = turns.structure.joint = joint;
+    turns.structure.gearing = Gearing::turns;
+    const double r_g = radius.axis.r_g;
+    turns.axis.r_g = joint == Joint::prismatic ? 2.0 * std::numbers::pi * r_g : 1.0 / r_g;
+    EXPECT_NEAR(motor_radius(turns), r_g, 1e-15);
+    radius.initial[0] = turns.initial[0] = 0.1;
+    EXPECT_NEAR(initial_state(turns)[2], initial_state(radius)[2], 1e-12);
+    const auto& entry = quantity_list(vocabulary_of(turns.structure))[find_quantity("r_g")->index];
+    EXPECT_EQ(entry.name, joint == Joint::prismatic ? "lead" : "gear_ratio");
+    EXPECT_EQ(entry.quantity.unit, joint == Joint::prismatic ? "m" : "1");
+  }
 }
 
 }  // namespace

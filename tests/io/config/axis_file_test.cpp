@@ -177,6 +177,10 @@ Rig random_rig(std::mt19937_64& generator, const Structure& structure) {
   visit_settings(rig.model.controller, [&](const Quantity& setting, double& value) {
     value = random_value(generator, setting.lower, setting.upper);
   });
+  Controller<double>& controller = rig.model.controller;
+  controller.timing.velocity_samples = std::round(controller.timing.velocity_samples);
+  controller.gains.notch_frequency =
+      std::clamp(0.3 / controller.timing.command_period(), 1e-2, 1e5);
   return rig;
 }
 
@@ -234,6 +238,21 @@ TEST_F(AxisFileTest, ReadsARevoluteJointInItsOwnWords) {
             std::string::npos);
 }
 
+TEST_F(AxisFileTest, ReadsALeadOrAGearRatioInsteadOfARadius) {
+  const std::string motor = "K_m: 0.1 N m/A, R: 1 ohm, J_m: 1e-4 kg m^2, B_a: 0 ";
+  const Rig screw = read("drive: motor_voltage\ntransmission: rigid\nparameters: {" + motor +
+                         "N s/m, M: 20 kg, lead: 10 mm}\n");
+  EXPECT_DOUBLE_EQ(motor_radius(screw.model), 0.01 / (2.0 * std::numbers::pi));
+  const std::string written = format_axis_file(screw, "");
+  EXPECT_NE(written.find("lead: 0.01 m\n"), std::string::npos) << written;
+  EXPECT_EQ(value_of(read(written), "r_g"), 0.01);
+  const Rig joint = read(
+      "joint: revolute\ndrive: motor_voltage\ntransmission: rigid\n"
+      "parameters: {" +
+      motor + "N m s/rad, J: 1 kg m^2, gear_ratio: 50}\n");
+  EXPECT_DOUBLE_EQ(motor_radius(joint.model), 0.02);
+}
+
 TEST_F(AxisFileTest, ValuesOnTheirLimitsSurviveWriting) {
   for (const bool upper : {false, true}) {
     Rig rig;
@@ -244,6 +263,7 @@ TEST_F(AxisFileTest, ValuesOnTheirLimitsSurviveWriting) {
     for (const QuantityEntry& entry : quantity_list())
       *member[entry.index] = upper ? entry.quantity.upper : entry.quantity.lower;
     rig.model.axis.J_m = std::max(rig.model.axis.J_m, std::numeric_limits<double>::min());
+    rig.model.controller.gains.notch_frequency = 1e-2;  // below half of the sampling frequency
     expect_same(read(format_axis_file(rig, "")), rig);
   }
 }
@@ -393,7 +413,8 @@ TEST_F(AxisFileTest, EveryMistakeIsNamedWithItsPlace) {
 }
 
 TEST_F(AxisFileTest, AllMistakesAreNamedAtOnce) {
-  EXPECT_EQ(errors(R"(drive: force_source
+  EXPECT_EQ(
+      errors(R"(drive: force_source
 transmission: rigid
 colour: red
 parameters:
@@ -406,16 +427,16 @@ instruments:
   position: {noise: 1 s}
 controller: {limit: 0 V}
 )"),
-            "axis.yaml:3:1: unknown key 'colour'; known keys: joint, name, channels, drive, "
-            "transmission, effects, "
-            "parameters, initial, guessed, instruments, controller\naxis.yaml:5:3: key 'B_a' is "
-            "missing in "
-            "parameters\naxis.yaml:5:8: K_f: 'N' cannot be converted to 'N/V'; use for example "
-            "'N/V'\naxis.yaml:6:6: M needs a unit, for example '95 kg'\naxis.yaml:7:8: r_g is not "
-            "used by an axis with drive force_source and transmission rigid: remove "
-            "it\naxis.yaml:9:25: F_0 must be a number with a unit, for example '1 N', not "
-            "'up'\naxis.yaml:11:21: noise: 's' cannot be converted to 'm'; use for example "
-            "'m'\naxis.yaml:12:21: limit must lie between 0.001 V and 10000 V, not 0 V\n");
+      "axis.yaml:3:1: unknown key 'colour'; known keys: joint, name, channels, drive, "
+      "transmission, "
+      "parameters, effects, initial, guessed, instruments, controller\naxis.yaml:5:3: key 'B_a' is "
+      "missing in "
+      "parameters\naxis.yaml:5:8: K_f: 'N' cannot be converted to 'N/V'; use for example "
+      "'N/V'\naxis.yaml:6:6: M needs a unit, for example '95 kg'\naxis.yaml:7:8: r_g is not "
+      "used by an axis with drive force_source and transmission rigid: remove "
+      "it\naxis.yaml:9:25: F_0 must be a number with a unit, for example '1 N', not "
+      "'up'\naxis.yaml:11:21: noise: 's' cannot be converted to 'm'; use for example "
+      "'m'\naxis.yaml:12:21: limit must lie between 0.001 V and 10000 V, not 0 V\n");
 }
 
 TEST_F(AxisFileTest, FilesThatAreNoAxisAreRefused) {

@@ -75,6 +75,35 @@ class ChannelsTest : public ::testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(ChannelsTest, MayBeDerivativesOfColumns) {
+  const std::string text = replaced(
+      replaced(kJob, "other: {column: y, unit: mm}", "other: {column: y, unit: mm, derivative: 1}"),
+      "other: {column: y, unit: m, factor: 1e-3}",
+      "other: {column: y, unit: m, factor: 1e-3, derivative: 1}");
+  for (const char* name : {"a.csv", "b.csv"}) {
+    std::vector<double> t, u, v, warm, y;
+    for (int i = 0; i < 400; ++i) {
+      t.push_back(0.01 * i);
+      u.push_back(i % 5);
+      v.push_back((name[0] - 'a') + 0.1 * i);
+      warm.push_back(20.0);
+      y.push_back(10.0 * t.back());
+    }
+    Table table;
+    table.columns = {{"t", t}, {"u", u}, {"v", v}, {"T", warm}, {"y", y}};
+    folder_.write(name, table);
+  }
+  const Job read = job(text);
+  EXPECT_EQ((*read.model.structure.channels)[1].unit, "mm/s");
+  for (const Recording& r : read.recordings)
+    EXPECT_NEAR(r.channels[1][200] + (*read.model.structure.channels)[1].zero, 10.0, 1e-6);
+  axis_with("channels: {other: {unit: m/s}}\n");
+  EXPECT_NEAR(job(text).recordings[0].channels[0][200], 10e-3, 1e-9);
+  axis_with("channels: {other: {unit: N}}\n");
+  EXPECT_NE(errors(text).find("'mm' cannot be converted to '(N) s'"), std::string::npos)
+      << errors(text);
+}
+
 TEST_F(ChannelsTest, AreReadWithUnitsTimesAndZeros) {
   const Job read = job();
   ASSERT_NE(read.model.structure.channels, nullptr);

@@ -59,7 +59,8 @@ TEST_F(MachineFileTest, ConnectsItsAxes) {
   EXPECT_EQ(*x.rig.model.structure.channels, (ChannelList{{"y_acceleration", "m/s^2", 0.0}}));
   ASSERT_EQ(x.sources.size(), 1u);
   EXPECT_EQ(x.sources[0].axis, 1u);
-  EXPECT_EQ(x.sources[0].what, Motional::acceleration);
+  EXPECT_EQ(x.sources[0].what.of, Motional::Of::position);
+  EXPECT_EQ(x.sources[0].what.derivative, 2);
   EXPECT_EQ(std::get<ChannelForce<double>>(x.rig.model.effects).k[0], -2.0);
   // What the axis file declares has its unit; what nothing feeds stays at its zero.
   ASSERT_EQ(y.sources.size(), 2u);
@@ -70,7 +71,7 @@ TEST_F(MachineFileTest, ConnectsItsAxes) {
 
 TEST_F(MachineFileTest, ReadsTheShippedRobot) {
   const MachineFile file = read_machine_file(AXISFIT_CONFIGS "/machines/robot.yaml");
-  ASSERT_EQ(file.axes.size(), 3u);
+  ASSERT_EQ(file.axes.size(), 4u);
   EXPECT_EQ(file.axes[1].name, "y");
   EXPECT_TRUE(is_machine_file(AXISFIT_CONFIGS "/machines/robot.yaml"));
   EXPECT_FALSE(is_machine_file(AXISFIT_CONFIGS "/axes/x.yaml"));
@@ -85,6 +86,7 @@ TEST_F(MachineFileTest, MistakesAreToldWithTheirPlace) {
   expect("y.acceleration", "z.acceleration", "machine.yaml:5:32: 'z.acceleration' is no motion of");
   expect("y.acceleration", "x.acceleration", "'x.acceleration' is no motion of another axis");
   expect("y.acceleration", "y.force", "write AXIS.position");
+  expect("y.acceleration", "y.sine", "'y.sine' needs a joint that turns, and y slides");
   expect("x.position", "x.velocity", "the channel 'slide' is in mm, and x.velocity in m/s");
   expect("N/(m/s^2)", "N/m", "6:47: y_acceleration: 'N/m' cannot be converted");
   expect("    motion: step.yaml\n", "", "key 'motion' is missing in x");

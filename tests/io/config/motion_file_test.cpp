@@ -135,13 +135,18 @@ TEST_F(MotionFileTest, VoltagesBeyondTheLimitAreRefused) {
 constexpr const char* kMove =
     "type: move\ndistance: 1 m\nspeed: 1 m/s\nacceleration: 2 m/s^2\nduration: 1 s\n";
 
-TEST_F(MotionFileTest, AMoveNeedsASetVelocityInput) {
+TEST_F(MotionFileTest, AMoveNeedsAController) {
   EXPECT_EQ(errors(kMove), "");
   rig_ = shipped_axis("emps");
   EXPECT_EQ(errors(kMove),
-            "motion.yaml:1:7: a move needs a set-velocity input, which the drive of this "
-            "axis does not have");
+            "motion.yaml:1:7: a move needs a controller: its standard gains are those of a "
+            "set-velocity input, which the drive of this axis does not have; give 'controller' in "
+            "the axis file");
   EXPECT_EQ(errors("type: step\nlevel: 1 V\nduration: 1 s\n"), "");
+  rig_ = shipped_axis("hobby-servo");
+  EXPECT_EQ(errors("type: move\ndistance: 30 deg\nspeed: 1 rad/s\nacceleration: 5 rad/s^2\n"
+                   "duration: 1 s\n"),
+            "");
 }
 
 TEST_F(MotionFileTest, WritesWhatReadsBackTheSame) {
@@ -164,10 +169,13 @@ TEST_F(MotionFileTest, WritesWhatReadsBackTheSame) {
   EXPECT_THROW(format_motion_file({RecordedMotion{}, 1.0}, ""), std::logic_error);
 }
 
-TEST_F(MotionFileTest, AMoveNeedsACommandThatActsWithinAPeriod) {
-  rig_.model.axis.T_d = rig_.model.controller.timing.period;
+TEST_F(MotionFileTest, AMoveNeedsACommandThatActsWithinAFewPeriods) {
+  rig_.model.axis.T_d = 8.9 * rig_.model.controller.timing.period;
+  EXPECT_EQ(errors(kMove), "");
+  rig_.model.axis.T_d = 9.0 * rig_.model.controller.timing.period;
   EXPECT_EQ(errors(kMove),
-            "motion.yaml:1:7: a move needs a command delay T_d below the controller's period");
+            "motion.yaml:1:7: a move needs a command delay T_d below 9 periods of the "
+            "controller's commands");
 }
 
 TEST_F(MotionFileTest, EveryMistakeIsNamedWithItsPlace) {

@@ -92,11 +92,14 @@ RIGHT = [
     ("axis", "x.yaml", "K_v: 1000 ", "K_v: 100000 % "),
     ("axis", "x.yaml", "H: 0.01 mm", "H: 10 µm"),
     ("motion", "prbs.yaml", "seed: 1", "offset: -1 V"),
-    ("machine", "robot.yaml", "{y_acceleration: -2.2 N/(m/s^2)}", "{y_acceleration: -2.2 kg}"),
+    ("machine", "robot.yaml", "y_acceleration: -2.2 N/(m/s^2)", "y_acceleration: -2.2 kg"),
     ("axis", "x.yaml", "parameters:", "channels: {oil: {unit: degC, zero: 20 degC}}\n"
      "effects: {channel_friction: {oil: -1 N/K}, channel_gain: {oil: 0.01 1/K}}\nparameters:"),
     ("job", "channels.yaml", "free:", "effects: {channel_force: {supply: 1 N/V}}\nfree:\n  channel_force.supply: {}"),
     ("axis", "pendulum.yaml", "J: 24 g m^2", "J: 0.024 kg m^2"),
+    # a lead instead of a radius; several axes
+    ("axis", "x.yaml", "r_g: 5.73 mm", "lead: 36 mm"),
+    ("job", "three-axes.yaml", "three-axes/", "configs/jobs/three-axes/"),
 ]
 
 WRONG = [
@@ -109,6 +112,9 @@ WRONG = [
     ("job", "paper.yaml", "free:", "effects: {quadratic_darg: {c: 3 N s^2/m^2}}\nfree:"),
     ("axis", "x.yaml", "  M: 146 kg", "  M: 146 kg\n  mass: 146 kg"),
     ("axis", "x.yaml", "period: 5 ms", "perod: 5 ms"),
+    ("axis", "x.yaml", "r_g: 5.73 mm", "r_g: 5.73 mm\n  lead: 36 mm"),
+    ("axis", "x.yaml", "r_g: 5.73 mm", "gear_ratio: 5"),
+    ("job", "three-axes.yaml", "  x: three-axes/x.yaml\n  y: three-axes/y.yaml\n", ""),
     ("motion", "step.yaml", "level: 10 V", "level: 10 V\namplitude: 1 V"),
     # the words of a load that slides
     ("axis", "pendulum.yaml", "J: 24 g m^2", "M: 24 kg"),
@@ -134,7 +140,7 @@ WRONG = [
     ("axis", "x.yaml", "drive: velocity_loop", "drive: velocty_loop"),
     ("motion", "step.yaml", "type: step", "type: stop"),
     ("machine", "robot.yaml", "    motion: ../motions/move.yaml\n", ""),
-    ("machine", "robot.yaml", "    channels: {y_position: y.position}", "    channel: {y_position: y.position}"),
+    ("machine", "robot.yaml", "    channels: {y_position:", "    channel: {y_position:"),
     ("job", "channels.yaml", "temperature: {column: temperature_degc, unit: degC}", "temperature: {column: temperature_degc}"),
     # a value of the wrong kind, or beyond the range of a number
     ("job", "paper.yaml", "axis: ../axes/x.yaml", "axis: [../axes/x.yaml]"),
@@ -178,7 +184,7 @@ def expect(condition, what):
         failures.append(what)
 
 
-examples = sorted(CONFIGS.glob("*/*.yaml"))
+examples = sorted(CONFIGS.rglob("*.yaml"))
 expect(len(examples) >= 20, "there are fewer examples than there were")
 for file in examples:
     text = file.read_text()
