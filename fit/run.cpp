@@ -155,6 +155,8 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   if (result.grade.grade == Grade::model_wrong)
     for (ParameterResult& p : last.parameters)
       p.uncertainty = {.of_wrong_model = true, .inflation = p.uncertainty.inflation};
+  if (result.grade.is_usable() && !result.interrupted)
+    result.scatter = allow_for_scatter(result.job(), last);
   result.second_opinion = second_opinion(result.job(), last);
   find_guess_influences(result.baseline, result.first);
   if (result.selection) {

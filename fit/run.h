@@ -12,6 +12,7 @@
 #include "fit/design/experiment.h"
 #include "fit/estimation/estimate.h"
 #include "fit/estimation/profile.h"
+#include "fit/estimation/scatter.h"
 #include "fit/selection/diagnosis.h"
 #include "fit/selection/grade.h"
 #include "fit/selection/second_opinion.h"
@@ -61,6 +62,7 @@ struct RunResult {
   std::optional<Diagnosis> diagnosis;           ///< of the final model; none unless that is usable
   FitGrade grade;                               ///< of the final model
   std::optional<SecondOpinion> second_opinion;  ///< of the final model, where there can be one
+  std::optional<Scatter> scatter;               ///< of the final model, in its errors
   std::vector<Profile> profiles;                ///< of the final model, those asked for
   std::vector<Discrimination> discriminations;  ///< of the loop's undecided effects, pair by pair
   std::optional<Suggestion> suggestion;         ///< of the next experiment, where it was asked for

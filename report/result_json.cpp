@@ -201,6 +201,28 @@ Json inverse_dynamics_json(const SecondOpinion& opinion, InverseStart start,
           {"parameters", std::move(parameters)}};
 }
 
+Json scatter_json(const Scatter& scatter, const Job& job, const FitResult& fit) {
+  return {{"of_stretches", scatter.of_stretches},
+          {"groups", list(scatter.groups,
+                          [&](const Scatter::Group& g) {
+                            return Json{{"recording", job.recordings[g.recording].name},
+                                        {"fitted", g.fitted},
+                                        {"from_s", g.from},
+                                        {"to_s", g.to}};
+                          })},
+          {"parameters", list(scatter.parameters, [&](const ParameterScatter& p) {
+             return Json{{"name", fit.parameters[p.parameter].name},
+                         {"standard_error_within", p.within},
+                         {"standard_deviation", p.deviation},
+                         {"interval", {p.lower, p.upper}},
+                         {"estimates", list(p.groups, [](const EstimateOfGroup& e) {
+                            return Json{
+                                {"value", optional(e.determined, e.value)},
+                                {"standard_error", optional(e.determined, e.standard_error)}};
+                          })}};
+           })}};
+}
+
 Json profile_json(const Profile& profile, const FitResult& fit) {
   const auto end = [](const ProfileEnd& e) {
     return Json{{"value", optional(!e.open, e.value)}, {"open", e.open}};
@@ -488,6 +510,7 @@ Json result_json(const RunResult& run_result) {
   if (run_result.second_opinion)
     json["inverse_dynamics"] = inverse_dynamics_json(*run_result.second_opinion,
                                                      run_result.inverse_start, job.vocabulary());
+  if (run_result.scatter) json["scatter"] = scatter_json(*run_result.scatter, job, fit);
   if (!run_result.profiles.empty())
     json["profile"] =
         list(run_result.profiles, [&](const Profile& p) { return profile_json(p, fit); });

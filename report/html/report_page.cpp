@@ -286,6 +286,7 @@ class Page {
                      rows) +
                paragraph_of(uncertainty_text(job_, fit_) + second_opinion_text(run_result_)) +
                correlation();
+    if (run_result_.scatter) all += html("<pre>{}</pre>", scatter_text(run_result_));
     if (!run_result_.profiles.empty())
       all += html("<h3>Likelihood profiles</h3>{}",
                   figures(each(run_result_.profiles,

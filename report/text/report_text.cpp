@@ -182,6 +182,7 @@ std::string report_text(const RunResult& run_result, bool colour) {
           starts_text(run_result.baseline, run_result.first),
       legend_text(job, result, colour),
       run_result.selection ? selection_text(run_result, colour) : errors_text(job, result));
+  text += scatter_text(run_result);
   if (const std::string profiles = profiles_text(run_result); !profiles.empty())
     text += profiles + "\n";
   if (run_result.diagnosis && !run_result.diagnosis->explained) {

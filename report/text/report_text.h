@@ -50,6 +50,9 @@ std::string uncertainty_text(const Job& job, const FitResult& result);
 /// it; empty where there is nothing to say.
 std::string second_opinion_text(const RunResult& run_result);
 
+/// How the parameters differ between recordings; empty where that was not to be seen.
+std::string scatter_text(const RunResult& run_result);
+
 /// What is known of the parameters together: weak directions, and the combinations that are
 /// determined.
 std::string identifiability_text(const Identifiability& known);

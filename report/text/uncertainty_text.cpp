@@ -205,10 +205,10 @@ std::string suggestion_text(const RunResult& run_result) {
   const std::string& name = fit.parameters[s.parameter].name;
   std::string text = fmt::format(
       "Record {}, for {:.3g} s: it does most for {}, the least determined parameter. Of {} motions "
-      "tried, {} stay within {:.4g} .. {:.4g} {}, {:.3g} {} and {:.3g} V.",
+      "tried, {} stay within {:.4g} .. {:.4g} {}, {:.3g} {} and {}.",
       motion_text(s.experiment.motion, vocabulary), s.experiment.duration, name, s.tried,
       s.feasible, *s.limits.lowest, *s.limits.highest, metre, *s.limits.speed, speed,
-      *s.limits.command);
+      command_text(*s.limits.command, vocabulary));
   text += fmt::format(
       " For all values within the 95 % intervals, or the bounds of what is not determined, the "
       "simulated {} stays within {:.4g} .. {:.4g} {} and {:.3g} {}, {:.2g} {} and {:.2g} {} from "

@@ -134,8 +134,7 @@ std::string text_of(const warning::NoCommand&, const Names&) {
 std::string text_of(const warning::UnlikelySpeed& w, const Names& name) {
   return fmt::format(
       "The {} reaches {} {}, but at its largest command, {} V, the axis file gives {} {}. Check "
-      "the "
-      "units of the command and of the {}, and K_1, K_2, K_t and r_g.",
+      "the units of the command and of the {}, and K_1, K_2, K_t and r_g.",
       words_on(name.vocabulary, "arm"), short_number(w.speed), unit_on(name.vocabulary, "m/s"),
       short_number(w.command), short_number(w.expected), unit_on(name.vocabulary, "m/s"),
       name(w.from));

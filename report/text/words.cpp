@@ -67,8 +67,8 @@ std::string advice_text(const EffectTrial& trial, Vocabulary vocabulary) {
   return fmt::format("; record {}", words_on(vocabulary, kEffectTable[*effect].excitation));
 }
 
-std::string text_of(const StepMotion& motion) {
-  return fmt::format("a step of {:.3g} V", motion.level);
+std::string text_of(const StepMotion& motion, Vocabulary vocabulary) {
+  return fmt::format("a step of {}", command_text(motion.level, vocabulary));
 }
 
 /// A level as it relates to the first.
@@ -78,10 +78,10 @@ std::string level_text(double ratio) {
                          : fmt::format("{:g} times that", ratio);
 }
 
-std::string text_of(const LevelsMotion& motion) {
+std::string text_of(const LevelsMotion& motion, Vocabulary vocabulary) {
   const std::vector<double>& levels = motion.levels;
   const double first = levels.front();
-  std::string text = fmt::format("levels of {:.3g} V", first);
+  std::string text = fmt::format("levels of {}", command_text(first, vocabulary));
   std::vector<double> ratios;
   for (const double level : levels) ratios.push_back(level / first);
   if (levels.size() > 4 && levels.back() == 0.0) {
@@ -95,16 +95,16 @@ std::string text_of(const LevelsMotion& motion) {
   return text + fmt::format(", each held for {:.3g} s", motion.hold);
 }
 
-std::string text_of(const SineMotion& motion) {
+std::string text_of(const SineMotion& motion, Vocabulary vocabulary) {
+  const std::string amplitude = command_text(motion.amplitude, vocabulary);
   return motion.from == motion.to
-             ? fmt::format("a sine of {:.3g} V and {:g} Hz", motion.amplitude, motion.from)
-             : fmt::format("a chirp of {:.3g} V from {:g} to {:g} Hz", motion.amplitude,
-                           motion.from, motion.to);
+             ? fmt::format("a sine of {} and {:g} Hz", amplitude, motion.from)
+             : fmt::format("a chirp of {} from {:g} to {:g} Hz", amplitude, motion.from, motion.to);
 }
 
-std::string text_of(const PrbsMotion& motion) {
-  return fmt::format("a pseudo-random binary sequence of +-{:.3g} V with a bit period of {:g} s",
-                     std::abs(motion.amplitude), motion.bit);
+std::string text_of(const PrbsMotion& motion, Vocabulary vocabulary) {
+  return fmt::format("a pseudo-random binary sequence of +-{} with a bit period of {:g} s",
+                     command_text(std::abs(motion.amplitude), vocabulary), motion.bit);
 }
 
 std::string text_of(const MoveMotion& motion, Vocabulary vocabulary) {
@@ -113,7 +113,7 @@ std::string text_of(const MoveMotion& motion, Vocabulary vocabulary) {
                      motion.acceleration, unit_on(vocabulary, "m/s^2"));
 }
 
-std::string text_of(const RecordedMotion&) { return "a recorded motion"; }
+std::string text_of(const RecordedMotion&, Vocabulary) { return "a recorded motion"; }
 
 std::string grade_heading(const FitGrade& grade, bool colour) {
   switch (grade.grade) {
@@ -341,15 +341,14 @@ std::string weak_direction_text(const WeakDirection& weak) {
                      fmt::join(changes, ", "));
 }
 
+std::string command_text(double value, Vocabulary vocabulary) {
+  return vocabulary.command == Command::share_of_rated
+             ? fmt::format("{:.3g} %", 100.0 * value)
+             : fmt::format("{:.3g} {}", value, unit_on(vocabulary, kCommandUnit));
+}
+
 std::string motion_text(const Motion& motion, Vocabulary vocabulary) {
-  return std::visit(
-      [vocabulary]<class M>(const M& m) {
-        if constexpr (std::is_same_v<M, MoveMotion>)
-          return text_of(m, vocabulary);
-        else
-          return text_of(m);
-      },
-      motion);
+  return std::visit([vocabulary](const auto& m) { return text_of(m, vocabulary); }, motion);
 }
 
 std::string gain_shift_text(const GainShift& shift, std::string_view unit) {

@@ -28,6 +28,9 @@ std::string reason_text(const EffectTrial& trial, Vocabulary vocabulary = {});
 /// What the recordings leave open in that direction, one sentence.
 std::string weak_direction_text(const WeakDirection& weak);
 
+/// A command with the unit of the drive: "2 A", "40 %".
+std::string command_text(double value, Vocabulary vocabulary);
+
 /// "a step of 10 V"
 std::string motion_text(const Motion& motion, Vocabulary vocabulary = {});
 
