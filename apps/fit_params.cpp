@@ -414,9 +414,10 @@ int run_axes(const Arguments& arguments, const AxesJob& axes, std::optional<Prog
     throw std::runtime_error("--check --json is for one axis: run the axes' jobs one by one");
   std::vector<AxisRun> runs;
   int code = kUsable;
-  for (const auto& [name, job] : axes.jobs) {
+  for (const auto& axis : axes.jobs) {
+    const std::string& name = axis.first;
     Arguments of_axis = arguments;
-    of_axis.files = {job};
+    of_axis.files = {axis.second};
     if (!arguments.output.empty())
       of_axis.output = (std::filesystem::path(arguments.output) / name).string();
     if (!line) begin_line(arguments, line);

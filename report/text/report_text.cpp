@@ -95,12 +95,13 @@ std::string parameters_text(const RunResult& run_result) {
 
 /// How many of several starts ended in the same place, and where the others did. Of one that leaves
 /// much in a model with many minima, that more may find a better one.
-std::string starts_text(const Job& job, const FitResult& first) {
+std::string starts_text(const RunResult& run_result) {
+  const FitResult& first = run_result.first;
   const std::size_t starts = first.starts.size();
   if (starts < 2) {
     constexpr double kMuch = 4.0;
-    const bool has_many = capabilities(job.model.structure).has_backlash;
-    return has_many && first.usable && first.reduced_chi_square > kMuch
+    const bool has_many = capabilities(run_result.job().model.structure).has_backlash;
+    return has_many && run_result.fit().usable && run_result.fit().reduced_chi_square > kMuch
                ? paragraph(
                      "A gear makes wrong minima: --starts 8 shows whether this is one of them.", 2)
                : "";
@@ -178,8 +179,7 @@ std::string report_text(const RunResult& run_result, bool colour) {
   const FitResult& result = run_result.fit();
   std::string text = fmt::format(
       "{}\n{}{}\n{}\n{}\n", recordings_text(run_result), parameters_text(run_result),
-      uncertainty_text(job, result) + second_opinion_text(run_result) +
-          starts_text(run_result.baseline, run_result.first),
+      uncertainty_text(job, result) + second_opinion_text(run_result) + starts_text(run_result),
       legend_text(job, result, colour),
       run_result.selection ? selection_text(run_result, colour) : errors_text(job, result));
   text += scatter_text(run_result);
