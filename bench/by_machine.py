@@ -238,7 +238,7 @@ def choose(columns, folder):
     """The machine that --init takes a recording for, and by how much its error is smaller than that of one mass."""
     done = subprocess.run([BUILD / "apps" / "fit-params", "--init", "run.csv", "--output", "chosen"], cwd=folder,
                           capture_output=True, text=True, check=False)
-    rows = [line.split() for line in done.stderr.splitlines() if line.startswith("    ")]
+    rows = [line.split() for line in done.stderr.splitlines() if line.startswith("    ") and "fit-params" not in line]
     errors = {" ".join(row[:-3] if row[-1] == "chosen" else row[:-2]): row[-2 if row[-1] == "chosen" else -1]
               for row in rows if row[0] != "axis"}
     if not errors:
