@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/convolution.h"
 #include "base/distributions.h"
@@ -188,11 +187,6 @@ std::size_t stretches_of(const Linearization& at, std::size_t recording) {
 
 /// The groups with their rows.
 std::vector<Rows> group(const Job& job, const Linearization& at, Scatter& scatter) {
-  std::vector<std::size_t> fitted;
-  for (std::size_t r = 0; r < job.recordings.size(); ++r)
-    if (job.recordings[r].role == Role::fit) fitted.push_back(r);
-  scatter.of_stretches = fitted.size() == 1;
-  if (scatter.of_stretches && job.options.observer != ObserverMode::fixed) return {};
   std::vector<Rows> groups;
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     const bool is_fitted = job.recordings[r].role == Role::fit;
@@ -222,6 +216,9 @@ std::size_t Scatter::fitted_groups() const {
 
 std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
   if (!fit.usable || !fit.at_solution) return std::nullopt;
+  Scatter scatter;
+  scatter.of_stretches = std::ranges::count(job.recordings, Role::fit, &Recording::role) == 1;
+  if (scatter.of_stretches && job.options.observer != ObserverMode::fixed) return std::nullopt;
   Job all = job;
   for (Recording& r : all.recordings) r.role = Role::fit;
   const ParameterSpace space(all);
@@ -237,7 +234,6 @@ std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
       of_machine.push_back(static_cast<Index>(columns.size()));
     columns.push_back(static_cast<Index>(i));
   }
-  Scatter scatter;
   const std::vector<Rows> groups = group(job, at, scatter);
   if (of_machine.empty() || scatter.fitted_groups() < 2) return std::nullopt;
 

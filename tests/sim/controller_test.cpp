@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "sim/rig.h"
@@ -79,20 +80,54 @@ Schedule reference() {
   return schedule;
 }
 
+/// At these instants.
+std::vector<double> positions_of(const Model<double>& model, const Schedule& schedule,
+                                 const std::vector<double>& times) {
+  std::vector<double> positions;
+  EXPECT_TRUE(simulate(model, schedule, times, [&](std::size_t, const Integrator<double>& axis) {
+                positions.push_back(axis.state()[0]);
+              }).finished);
+  positions.resize(times.size(), NAN);
+  return positions;
+}
+
+/// A mass with viscous friction under a command that is held: it moves exactly.
+struct ExactMass {
+  const Axis<double>& axis;
+  double x = 0.0, v = 0.0;
+
+  void go_on(double command, double time) {
+    const double B = axis.B_a, M = axis.M;
+    const double decay = std::exp(-B * time / M), end = axis.K_f * command / B;
+    x += end * time + (v - end) * (1.0 - decay) * M / B;
+    v = end + (v - end) * decay;
+  }
+};
+
+/// What the controller of an axis, which moves at the start, makes of the reference.
+Experiment in_the_loop(Model<double> model, double dead_time) {
+  Experiment experiment;
+  experiment.model = std::move(model);
+  experiment.model.axis.T_d = dead_time;
+  experiment.model.initial = {1e-3, 0.03};
+  experiment.command = reference();
+  experiment.times = instants(350, 2e-3);
+  return experiment;
+}
+
 // A mass with viscous friction has an exact recursion from one sample of its controller to the
 // next.
 TEST(Controller, InTheLoopFollowsTheExactRecursion) {
   const Model<double> model = servo_axis();
   const Schedule schedule = reference();
-  const double T = model.controller.timing.period, M = model.axis.M, B = model.axis.B_a,
-               K = model.axis.K_f;
+  const double T = model.controller.timing.period;
   const ControllerGains<double>& g = model.controller.gains;
-  std::vector<double> times, positions;
+  std::vector<double> times;
   for (int i = 0; i < 400; ++i) times.push_back(T * i);
-  ASSERT_TRUE(simulate(model, schedule, times, [&](std::size_t, const Integrator<double>& axis) {
-                positions.push_back(axis.state()[0]);
-              }).finished);
-  double x = 0.0, v = 0.0, last = 0.0, sum = 0.0, held = 0.0, worst = 0.0;
+  const std::vector<double> positions = positions_of(model, schedule, times);
+  ExactMass mass{model.axis};
+  const double& x = mass.x;
+  double last = 0.0, sum = 0.0, held = 0.0, worst = 0.0;
   int at_limit = 0, at_speed = 0;
   const auto r = [&](int i) { return i < 0 ? 0.0 : schedule.values[static_cast<std::size_t>(i)]; };
   for (int i = 0; i < 400; ++i) {
@@ -109,9 +144,7 @@ TEST(Controller, InTheLoopFollowsTheExactRecursion) {
     const double u = std::clamp(raw, -g.limit, g.limit);
     at_limit += u == raw ? 0 : 1;
     last = x;
-    const double decay = std::exp(-B * T / M), end = K * u / B;
-    x += end * T + (v - end) * (1.0 - decay) * M / B;
-    v = end + (v - end) * decay;
+    mass.go_on(u, T);
   }
   EXPECT_LT(worst, 1e-12);
   EXPECT_GE(at_limit, 5);
@@ -121,33 +154,22 @@ TEST(Controller, InTheLoopFollowsTheExactRecursion) {
 TEST(Controller, InTheLoopHasExactDerivatives) {
   for (const double dead_time : {0.2e-3, 0.7e-3}) {
     SCOPED_TRACE(dead_time);
-    Experiment experiment;
-    experiment.model = servo_axis();
-    experiment.model.axis.T_d = dead_time;
-    experiment.model.initial = {1e-3, 0.03};
-    add_effect<CoulombFriction>(experiment.model).F_c = 30.0;
-    experiment.command = reference();
-    experiment.times = instants(350, 2e-3);
-    expect_derivatives(experiment);
+    Model<double> model = servo_axis();
+    add_effect<CoulombFriction>(model).F_c = 30.0;
+    expect_derivatives(in_the_loop(std::move(model), dead_time));
   }
 }
 
 // Of a motor at the voltage that a proportional law makes of the error, as in hobby servos.
 TEST(Controller, OfAHobbyServoHasExactDerivatives) {
-  Experiment experiment;
-  Model<double>& m = experiment.model;
-  m = paper_axis();
+  Model<double> m = paper_axis();
   m.structure = {Drive::motor_voltage, Transmission::rigid};
   m.structure.closed_loop = true;
   normalize(m);
   m.controller.timing.period = 2e-3;
   m.controller.gains = {.k_ff = 0.05, .k_p = 1.0, .k_i = 0.0, .gain = 400.0, .limit = 40.0};
-  m.initial = {1e-3, 0.03};
-  m.axis.T_d = 0.3e-3;
   add_effect<CoulombFriction>(m).F_c = 20.0;
-  experiment.command = reference();
-  experiment.times = instants(350, 2e-3);
-  expect_derivatives(experiment);
+  expect_derivatives(in_the_loop(std::move(m), 0.3e-3));
 }
 
 /// With a velocity loop of four samples in each period, lags and a notch filter.
@@ -166,16 +188,15 @@ TEST(Controller, WithALoopWithinTheLoopFollowsTheExactRecursion) {
   Model<double> model = filtering_axis();
   model.controller.gains.notch_depth = 1.0;
   const Schedule schedule = reference();
-  const double T = model.controller.timing.period, t = T / 4, M = model.axis.M, B = model.axis.B_a,
-               K = model.axis.K_f;
+  const double T = model.controller.timing.period, t = T / 4;
   const ControllerGains<double>& g = model.controller.gains;
-  std::vector<double> times, positions;
+  std::vector<double> times;
   for (int i = 0; i < 1600; ++i) times.push_back(t * i);
-  ASSERT_TRUE(simulate(model, schedule, times, [&](std::size_t, const Integrator<double>& axis) {
-                positions.push_back(axis.state()[0]);
-              }).finished);
-  double x = 0.0, v = 0.0, last = 0.0, sum = 0.0, held = 0.0, worst = 0.0, w = 0.0, k_a = 0.0,
-         speed = 0.0, lagged = 0.0;
+  const std::vector<double> positions = positions_of(model, schedule, times);
+  ExactMass mass{model.axis};
+  const double& x = mass.x;
+  double last = 0.0, sum = 0.0, held = 0.0, worst = 0.0, w = 0.0, k_a = 0.0, speed = 0.0,
+         lagged = 0.0;
   const auto r = [&](int i) { return i < 0 ? 0.0 : schedule.values[static_cast<std::size_t>(i)]; };
   for (int n = 0; n < 1600; ++n) {
     worst = std::max(worst, std::abs(positions[static_cast<std::size_t>(n)] - x));
@@ -191,9 +212,7 @@ TEST(Controller, WithALoopWithinTheLoopFollowsTheExactRecursion) {
     held = std::clamp(held + g.k_n * t * s, -most, most);
     const double u = std::clamp(g.gain * (s + held) + k_a + g.u_0, -g.limit, g.limit);
     lagged = n == 0 ? u : (g.T_u * lagged + t * u) / (g.T_u + t);
-    const double decay = std::exp(-B * t / M), end = K * lagged / B;
-    x += end * t + (v - end) * (1.0 - decay) * M / B;
-    v = end + (v - end) * decay;
+    mass.go_on(lagged, t);
   }
   EXPECT_LT(worst, 1e-12);
 }
@@ -237,14 +256,9 @@ TEST(Controller, NotchFilterBeginsSettled) {
 }
 
 TEST(Controller, WithFiltersHasExactDerivatives) {
-  Experiment experiment;
-  experiment.model = filtering_axis();
-  experiment.model.axis.T_d = 0.2e-3;
-  experiment.model.initial = {1e-3, 0.03};
-  add_effect<CoulombFriction>(experiment.model).F_c = 30.0;
-  experiment.command = reference();
-  experiment.times = instants(350, 2e-3);
-  expect_derivatives(experiment);
+  Model<double> model = filtering_axis();
+  add_effect<CoulombFriction>(model).F_c = 30.0;
+  expect_derivatives(in_the_loop(std::move(model), 0.2e-3));
 }
 
 // Commands that act several periods after they were written.
@@ -253,24 +267,18 @@ TEST(Controller, WithALongDeadTimeFollowsTheExactRecursion) {
   model.controller.gains.k_p = 10.0;
   model.controller.gains.k_i = model.controller.gains.k_n = model.controller.gains.k_a = 0.0;
   model.controller.gains.gain = 4.0;
-  const double T = model.controller.timing.period, M = model.axis.M, B = model.axis.B_a,
-               K = model.axis.K_f;
+  const double T = model.controller.timing.period;
   model.axis.T_d = 2.25 * T;
   const Schedule schedule = reference();
   const ControllerGains<double>& g = model.controller.gains;
-  std::vector<double> times, positions;
+  std::vector<double> times;
   for (int i = 0; i < 400; ++i) times.push_back(T * i);
-  ASSERT_TRUE(simulate(model, schedule, times, [&](std::size_t, const Integrator<double>& axis) {
-                positions.push_back(axis.state()[0]);
-              }).finished);
-  double x = 0.0, v = 0.0, last = 0.0, worst = 0.0;
+  const std::vector<double> positions = positions_of(model, schedule, times);
+  ExactMass mass{model.axis};
+  const double& x = mass.x;
+  double last = 0.0, worst = 0.0;
   std::vector<double> commands{0.0, 0.0, 0.0};  // the ones before the first
   const auto r = [&](int i) { return i < 0 ? 0.0 : schedule.values[static_cast<std::size_t>(i)]; };
-  const auto go_on = [&](double command, double time) {
-    const double decay = std::exp(-B * time / M), end = K * command / B;
-    x += end * time + (v - end) * (1.0 - decay) * M / B;
-    v = end + (v - end) * decay;
-  };
   for (int i = 0; i < 400; ++i) {
     worst = std::max(worst, std::abs(positions[static_cast<std::size_t>(i)] - x));
     const double w = std::clamp(g.k_ff * (r(i) - r(i - 1)) / T + g.k_p * (r(i) - x), -g.speed_limit,
@@ -278,21 +286,16 @@ TEST(Controller, WithALongDeadTimeFollowsTheExactRecursion) {
     commands.push_back(std::clamp(g.gain * (w - (x - last) / T) + g.u_0, -g.limit, g.limit));
     last = x;
     const std::size_t now = commands.size() - 1;
-    go_on(commands[now - 3], 0.25 * T);  // until the command of two periods before acts
-    go_on(commands[now - 2], 0.75 * T);
+    mass.go_on(commands[now - 3], 0.25 * T);  // until the command of two periods before acts
+    mass.go_on(commands[now - 2], 0.75 * T);
   }
   EXPECT_LT(worst, 1e-12);
 }
 
 TEST(Controller, WithALongDeadTimeHasExactDerivatives) {
-  Experiment experiment;
-  experiment.model = servo_axis();
-  experiment.model.controller.gains.gain = 4.0;
-  experiment.model.axis.T_d = 5.3e-3;
-  experiment.model.initial = {1e-3, 0.03};
-  experiment.command = reference();
-  experiment.times = instants(350, 2e-3);
-  expect_derivatives(experiment);
+  Model<double> model = servo_axis();
+  model.controller.gains.gain = 4.0;
+  expect_derivatives(in_the_loop(std::move(model), 5.3e-3));
 }
 
 }  // namespace
