@@ -178,6 +178,7 @@ class Initialiser {
       : axis_(axis), is_machine_(is_machine), folder_(folder), gain_(gain), answers_(answers) {}
 
   InitialJob make(const std::vector<std::string>& paths) {
+    if (!axis_.empty()) read_structure();
     for (auto path = paths.begin(); path != paths.end(); ++path) {
       std::error_code ignored;
       if (std::any_of(paths.begin(), path, [&](const std::string& earlier) {
@@ -189,18 +190,7 @@ class Initialiser {
     }
     check_answers();
     join_files();
-    if (axis_.empty()) {
-      choose_drive();
-    } else {
-      Diagnostics diagnostics;
-      if (is_machine_) take_machine();
-      const auto rig =
-          is_machine_
-              ? read_axis(*ConfigNode::parse(axis_text_, kAxisName, diagnostics), diagnostics)
-              : read_axis_file(axis_, diagnostics);
-      diagnostics.throw_if_any();
-      structure_ = rig->model.structure;
-    }
+    if (axis_.empty()) choose_drive();
     for (Source& source : sources_) write_units(source.guess, vocabulary());
     choose_inputs();
     drop_recordings_without_input();
@@ -215,6 +205,17 @@ class Initialiser {
   }
 
  private:
+  /// Of the axis that was named.
+  void read_structure() {
+    Diagnostics diagnostics;
+    if (is_machine_) take_machine();
+    const auto rig =
+        is_machine_ ? read_axis(*ConfigNode::parse(axis_text_, kAxisName, diagnostics), diagnostics)
+                    : read_axis_file(axis_, diagnostics);
+    diagnostics.throw_if_any();
+    structure_ = rig->model.structure;
+  }
+
   /// Its axis file, without the line for editors, which says where the schema is.
   void take_machine() {
     const auto machine = std::ranges::find(machine_axes(), axis_, &MachineAxis::name);
@@ -266,7 +267,7 @@ class Initialiser {
   void add(const std::string& path) {
     Source source{fs::path(path).stem().string(),
                   relative(path),
-                  guess_recording(RecordingFile(path), path, answers_),
+                  guess_recording(RecordingFile(path), path, answers_, structure_.joint),
                   {}};
     for (int n = 2; std::ranges::count(sources_, source.name, &Source::name) > 0; ++n)
       source.name = fmt::format("{}-{}", fs::path(path).stem().string(), n);
@@ -1020,9 +1021,12 @@ std::vector<std::string> machines_for(const std::vector<std::string>& recordings
       kForceInputs, [&](const Input& i) { return has_changing_input(first, i); });
   const auto is_driven_by = [&](const Capabilities& has) {
     if (has.is_electric) return first.find(Kind::set_velocity) || first.find(Kind::velocity, true);
-    if (has.has_back_emf)
-      return first.find(Kind::motor_voltage) != nullptr ||
-             (input == kForceInputs.end() && voltage_input(first));
+    if (has.has_back_emf) {
+      // What a servo reports beside its goal is its duty, or some other measure of how hard it
+      // pulls.
+      const bool has_force = input != kForceInputs.end() && input->kind != Kind::command;
+      return first.find(Kind::motor_voltage) != nullptr || (!has_force && voltage_input(first));
+    }
     if (input == kForceInputs.end() || !has.is_force_driven) return false;
     if (first.find(input->kind, input->is_setpoint)->of_rating)
       return has.command == Command::share_of_rated;
@@ -1033,9 +1037,9 @@ std::vector<std::string> machines_for(const std::vector<std::string>& recordings
     const auto rig =
         read_axis(*ConfigNode::parse(std::string(machine.text), "", diagnostics), diagnostics);
     const Structure& structure = rig->model.structure;
-    if ((structure.joint == Joint::revolute) == is_of_angles(first) &&
-        is_driven_by(capabilities(structure)))
-      names.emplace_back(machine.name);
+    const bool moves_so = has_motion_without_unit(first) ||
+                          (structure.joint == Joint::revolute) == is_of_angles(first);
+    if (moves_so && is_driven_by(capabilities(structure))) names.emplace_back(machine.name);
   }
   return names;
 }

@@ -38,8 +38,7 @@ void mark_examples(InitialJob& created, const JobFile& read) {
   std::vector<std::string> names;
   for (const QuantityEntry& entry : quantity_list(read.job.vocabulary())) {
     const double value = *values[entry.index];
-    if (entry.group.empty() && is_used(entry, structure) && value != 0.0 &&
-        value != entry.quantity.default_value &&
+    if (is_used(entry, structure) && value != 0.0 && value != entry.quantity.default_value &&
         std::ranges::count(read.job.free, entry.index, &FreeParameter::quantity) == 0)
       names.push_back(entry.name);
   }

@@ -130,8 +130,8 @@ struct UnscaledColumn {
 class Guesser {
  public:
   Guesser(const RecordingFile& file, const std::string& path,
-          const std::vector<ColumnAnswer>& answers)
-      : file_(file), path_(path) {
+          const std::vector<ColumnAnswer>& answers, Joint joint)
+      : file_(file), path_(path), joint_(joint) {
     read_headings(answers);
   }
 
@@ -592,7 +592,7 @@ class Guesser {
   }
 
   /// What nothing but the size of the values tells.
-  static void size_by_range(UnscaledColumn& column) {
+  void size_by_range(UnscaledColumn& column) const {
     const bool position = column.column.kind == Kind::position;
     const double range = largest(column.raw);
     if (position && resolution_of(column.raw) == 1.0 && range > 1e4) {
@@ -601,8 +601,12 @@ class Guesser {
           "whole numbers, taken as encoder counts: set the factor to metres per count";
       return;
     }
-    const char* text = position ? (range < 10.0 ? "m" : "mm") : (range < 10.0 ? "m/s" : "mm/s");
+    const bool is_large = range >= 10.0;
+    const std::string_view length = is_large ? "mm" : "m", angle = is_large ? "deg" : "rad";
+    const std::string text =
+        fmt::format("{}{}", joint_ == Joint::revolute ? angle : length, position ? "" : "/s");
     column.set_unit(*stored_unit(column.column.kind, text));
+    column.column.sized_by_range = true;
     column.guess(
         fmt::format("no unit in the header; values up to {:.4g}, taken as {}", range, text));
   }
@@ -667,6 +671,7 @@ class Guesser {
 
   const RecordingFile& file_;
   const std::string& path_;
+  Joint joint_;
   std::vector<Heading> headings_;  ///< of the columns of the file
   std::size_t time_column_ = 0;
   UnscaledColumn time_;
@@ -749,8 +754,8 @@ ColumnAnswer read_answer(const std::string& text) {
 }
 
 RecordingGuess guess_recording(const RecordingFile& file, const std::string& path,
-                               const std::vector<ColumnAnswer>& answers) {
-  return Guesser(file, path, answers).guess();
+                               const std::vector<ColumnAnswer>& answers, Joint joint) {
+  return Guesser(file, path, answers, joint).guess();
 }
 
 namespace {
@@ -788,6 +793,12 @@ bool is_of_angles(const RecordingGuess& recording) {
     any = true;
   }
   return any;
+}
+
+bool has_motion_without_unit(const RecordingGuess& recording) {
+  const GuessedColumn* motion = recording.find(Kind::position);
+  if (motion == nullptr) motion = recording.find(Kind::velocity);
+  return motion != nullptr && motion->sized_by_range;
 }
 
 void write_units(RecordingGuess& recording, Vocabulary vocabulary) {

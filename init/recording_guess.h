@@ -30,6 +30,7 @@ struct GuessedColumn {
   std::vector<std::string> reasons;  ///< what was measured, sentences without a full stop
   bool idle = false;                 ///< told by another one, and more precisely
   bool guessed = false;              ///< something of it neither name nor measurement says
+  bool sized_by_range = false;       ///< its unit was guessed, by how large its values are
   std::string remark;                ///< on a unit that a job cannot write, as a reason; a guess
   std::vector<double> values;        ///< in the SI unit of its kind, at the times of the recording
   std::string clock;                 ///< column of times of its own; empty: those of the recording
@@ -76,16 +77,21 @@ struct RecordingGuess {
 /// signs; last the size of the values. What never changes measures nothing, but it may drive: the
 /// command of a step. Where no column has a name, the values alone tell what moves, and what drives
 /// it. An answer comes before all that. Columns with a clock of their own, or gaps, are compared at
-/// the times of the recording. Units are those of a job for a prismatic joint, and what it cannot
-/// write of them is in the remarks.
+/// the times of the recording. Where nothing tells the unit of a motion, it is the one that suits
+/// the `joint`. Other units are those of a job for a prismatic joint, and what it cannot write of
+/// them is in the remarks.
 ///
 /// Throws RecordingError where nothing can be the time, and where a column of an answer cannot be
 /// used; one that is not there counts for other files.
 RecordingGuess guess_recording(const RecordingFile& file, const std::string& path,
-                               const std::vector<ColumnAnswer>& answers = {});
+                               const std::vector<ColumnAnswer>& answers = {},
+                               Joint joint = Joint::prismatic);
 
 /// Whether the motion was recorded in units of angles, and none of it in units of lengths.
 bool is_of_angles(const RecordingGuess& recording);
+
+/// Whether nothing tells if the motion is one of angles or of lengths.
+bool has_motion_without_unit(const RecordingGuess& recording);
 
 /// Writes the units as a job for an axis with that joint takes them, and makes reasons of the
 /// remarks that remain.

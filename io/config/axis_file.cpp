@@ -160,9 +160,10 @@ void read_controller(const ConfigNode& node, Vocabulary vocabulary, Controller<d
 void read_guessed(const ConfigNode& node, Rig& rig) {
   const auto entries = node.as_sequence();
   if (!entries) return;
+  Structure structure = rig.model.structure;
+  structure.closed_loop = true;  // jobs may simulate the loop
   for (const ConfigNode& entry : *entries) {
-    const QuantityEntry* quantity =
-        entry.as_string() ? quantity_named(entry, rig.model.structure) : nullptr;
+    const QuantityEntry* quantity = entry.as_string() ? quantity_named(entry, structure) : nullptr;
     if (quantity == nullptr) continue;
     if (std::ranges::count(rig.guessed, quantity->index) > 0)
       entry.error(fmt::format("{} is listed twice", quantity->name));

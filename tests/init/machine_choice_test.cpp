@@ -2,10 +2,13 @@
 #include "init/machine_choice.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "init/starter_axis.h"
 #include "io/config/axis_file.h"
@@ -82,12 +85,41 @@ TEST_F(MachineChoiceTest, AGapIsSeen) {
   EXPECT_EQ(std::ranges::count(file.job.guessed, find_quantity("M")->index), 0);
 }
 
+// All that tells it is that the position follows a goal.
+TEST_F(MachineChoiceTest, AServoIsSeenWithoutUnits) {
+  const auto servo = std::ranges::find(machine_axes(), "hobby-servo", &MachineAxis::name);
+  Diagnostics diagnostics;
+  const auto rig =
+      read_axis(*ConfigNode::parse(std::string(servo->text), "", diagnostics), diagnostics);
+  diagnostics.throw_if_any();
+  RecordingOptions options;
+  options.duration = 3.0;
+  options.signals = {Signal::position};
+  Table table{"", axisfit::record(*rig, LevelsMotion{{1.0, -0.5, 0.8, -1.0}, 0.7}, options), {}};
+  table.columns[0].name = "timestamp";
+  table.columns[1].name = "goal_position";
+  table.columns[2].name = "position";
+  table.columns.push_back({"load", {}});
+  for (std::size_t i = 0; i < table.columns[1].values.size(); ++i)
+    table.columns[3].values.push_back(
+        std::round(100.0 * (table.columns[1].values[i] - table.columns[2].values[i])));
+  const MachineChoice choice = choose(folder_.write("run.csv", table));
+  EXPECT_EQ(choice.tried.front().name, "hobby-servo");
+  EXPECT_NE(folder_.read("job.yaml").find("taken as rad"), std::string::npos);
+  // Its gain and the weight of its load are those of an example.
+  const std::vector<std::size_t> guessed = read_job_file(folder_.path("job.yaml")).job.guessed;
+  for (const char* name : {"controller.gain", "pendulum_gravity.G_s"})
+    EXPECT_EQ(std::ranges::count(guessed, find_quantity(name)->index), 1) << name;
+}
+
 TEST_F(MachineChoiceTest, ColumnsSayWhatIsTried) {
   const auto machines = [&](const std::string& header) {
     std::string text = header + "\n";
     for (int i = 0; i < 200; ++i) {
       const double t = 0.002 * i, wave = std::sin(9.0 * t);
-      text += fmt::format("{},{},{}\n", t, 2.0 * wave, 0.3 * std::cos(9.0 * t));
+      const std::array values{t, 2.0 * wave, 0.3 * std::cos(9.0 * t), std::round(9.0 * wave)};
+      const auto columns = static_cast<std::size_t>(1 + std::ranges::count(header, ','));
+      text += fmt::format("{}\n", fmt::join(std::span(values).first(columns), ","));
     }
     return machines_for({folder_.write("run.csv", text)});
   };
@@ -98,6 +130,11 @@ TEST_F(MachineChoiceTest, ColumnsSayWhatIsTried) {
   EXPECT_EQ(machines("time_s,torque [%],angle_rad"), Names{"geared-joint"});
   EXPECT_EQ(machines("time_s,goal position [rad],position [rad]"), Names{"hobby-servo"});
   EXPECT_EQ(machines("time_s,force_N,position_m"), Names{});
+  // Without units, both joints are tried; what a servo reports beside its goal need not drive it.
+  EXPECT_EQ(machines("time_s,current_A,position"),
+            (Names{"rack", "screw", "belt", "linear-motor", "turntable"}));
+  EXPECT_EQ(machines("timestamp,goal_position,position,load"), Names{"hobby-servo"});
+  EXPECT_EQ(machines("timestamp,goal_position [mm],position [mm],load"), Names{});
 }
 
 }  // namespace

@@ -47,6 +47,25 @@ TEST(RecordingGuessTest, APositionHasTheUnitThatItsVelocityTells) {
   }
 }
 
+TEST(RecordingGuessTest, WhereNothingTellsTheUnitTheJointDoes) {
+  for (const auto& [largest, length, angle] : {std::tuple{1.0, "m", "rad"}, {1e3, "mm", "deg"}}) {
+    Table table = swing(1e3, 10.0 * largest);
+    table.columns.pop_back();
+    const TempFolder folder;
+    const std::string path = folder.write("a.csv", table);
+    for (const Joint joint : {Joint::prismatic, Joint::revolute}) {
+      RecordingGuess guess = guess_recording(RecordingFile(path), path, {}, joint);
+      EXPECT_EQ(is_of_angles(guess), joint == Joint::revolute);
+      EXPECT_TRUE(has_motion_without_unit(guess));
+      write_units(guess, joint);
+      const GuessedColumn& position = *guess.find(Kind::position);
+      EXPECT_EQ(position.unit, joint == Joint::revolute ? angle : length);
+      EXPECT_EQ(position.factor, 1.0);
+    }
+  }
+  EXPECT_FALSE(has_motion_without_unit(guess_of(swing(1e3, 1.0))));
+}
+
 TEST(RecordingGuessTest, ATimeHasTheUnitThatPositionAndVelocityTell) {
   Table table = swing(1e6, 1e3);
   table.columns[0].name = "time";
