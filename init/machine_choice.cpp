@@ -55,6 +55,16 @@ struct Trial {
   std::size_t place;  ///< in the order of trials: one mass first
   TriedAxis result;
   InitialJob job;
+  Job read;
+
+  double error() const { return result.error.value_or(std::numeric_limits<double>::infinity()); }
+
+  void fit(int attempts, const RunContext& context) {
+    if (context.progress) context.progress({.phase = "trying " + result.name});
+    Job tried = read;
+    tried.options.attempts = attempts;
+    result.error = error_of(tried, estimate(tried, context.quiet()));
+  }
 };
 
 }  // namespace
@@ -69,19 +79,18 @@ MachineChoice choose_machine(const std::vector<std::string>& recordings, const s
   names.insert(names.end(), machines.begin(), machines.end());
   MachineChoice choice;
   for (const std::string& name : names) {
-    if (context.progress) context.progress({.phase = "trying " + name});
     try {
       const bool is_machine = name != kMass;
       Trial trial{trials.size(),
                   {name, {}, 0},
-                  initial_job(recordings, is_machine ? name : "", folder, {}, answers, is_machine)};
+                  initial_job(recordings, is_machine ? name : "", folder, {}, answers, is_machine),
+                  {}};
       const JobFile read = read_job_draft(trial.job.files, folder);
       if (is_machine) mark_examples(trial.job, read);
-      Job job = read.job;
-      job.options.attempts = 1;  // an axis that takes more is not the one
-      trial.result.error = error_of(job, estimate(job, context.quiet()));
-      trial.result.parameters = job.free.size();
-      choice.is_validated = job.recordings.size() > 1;
+      trial.read = read.job;
+      trial.result.parameters = read.job.free.size();
+      trial.fit(1, context);
+      choice.is_validated = read.job.recordings.size() > 1;
       trials.push_back(std::move(trial));
     } catch (const std::runtime_error& error) {
       // Columns that do not suit one axis may suit another.
@@ -89,13 +98,16 @@ MachineChoice choose_machine(const std::vector<std::string>& recordings, const s
     }
   }
   if (trials.empty()) throw std::runtime_error(refusal);
-  const auto error = [](const Trial& t) {
-    return t.result.error.value_or(std::numeric_limits<double>::infinity());
-  };
+  const auto best = [&] { return std::ranges::min_element(trials, {}, &Trial::error)->error(); };
+  // What explains the recordings does so at once, but for axes whose valleys are narrow.
+  constexpr double kExplains = 3.0;
+  for (Trial& t : trials)
+    if (t.read.options.starts > 1 && best() > kExplains) t.fit(t.read.options.attempts, context);
   constexpr double kAsGood = 1.05;
-  const double best = error(*std::ranges::min_element(trials, {}, error));
-  std::ranges::stable_sort(trials, {}, error);
-  const auto as_good = [&](const Trial& t) { return error(t) <= kAsGood * best; };
+  std::ranges::stable_sort(trials, {}, &Trial::error);
+  const auto as_good = [&](const Trial& t) {
+    return t.error() <= kAsGood * trials.front().error();
+  };
   const auto end = std::ranges::find_if_not(trials, as_good);
   const auto chosen = std::ranges::min_element(trials.begin(), end, {}, [](const Trial& t) {
     return std::pair(t.result.parameters, t.place);
