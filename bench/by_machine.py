@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""by_machine.py [BUILD [SEEDS]]: from `fit-params --init --machine NAME` to the fit, without an edit, on
+"""by_machine.py [BUILD [SEEDS [MACHINE...]]]: from `fit-params --init --machine NAME` to the fit, without an edit, on
 recordings of eight machines that are simulated here and not by the project: midpoint steps of 10 us, friction
 that sticks, controllers that sample every millisecond, encoders that round. The gains of the drives are
 those of the axis files, the masses and frictions are drawn. A case is right when every parameter is within
@@ -266,7 +266,8 @@ def judge(truth, result):
 def main():
     right = total = 0
     print("| machine | seed | result | taken for | error |\n|---|---|---|---|---|")
-    for name, simulate in MACHINES.items():
+    for name in sys.argv[3:] or MACHINES:
+        simulate = MACHINES[name]
         for seed in range(1, SEEDS + 1):
             truth, columns = simulate(np.random.default_rng(seed))
             with tempfile.TemporaryDirectory() as folder:

@@ -560,17 +560,22 @@ class Initialiser {
     return found ? std::optional(found->correlation) : std::nullopt;
   }
 
-  /// Of a direct drive, whose simulation follows the recording.
+  /// What the position tells better.
   void drop_idle_velocities() {
-    if (!is_direct()) return;
     for (Source& source : sources_) {
-      RecordingGuess& guess = source.guess;
       const GuessedColumn& input = input_of(source);
-      const GuessedColumn* velocity = guess.find(Kind::velocity);
-      if (velocity == &input || !is_velocity_idle(guess, input.values)) continue;
-      GuessedColumn& idle = *guess.find(Kind::velocity);
-      idle.idle = true;
-      idle.reasons.push_back("not used: the position tells the same more precisely");
+      GuessedColumn* velocity = source.guess.find(Kind::velocity);
+      if (velocity == nullptr || velocity == &input) continue;
+      const double late = lateness(source.guess);
+      // The simulation of a direct drive follows the recording.
+      velocity->idle = late > 0.0 || (is_direct() && is_velocity_idle(source.guess, input.values));
+      if (late > 0.0)
+        velocity->reasons.push_back(fmt::format(
+            "not used: it comes {:.2g} ms behind the derivative of the position, as one "
+            "that a filter has smoothed",
+            1e3 * late));
+      else if (velocity->idle)
+        velocity->reasons.push_back("not used: the position tells the same more precisely");
     }
   }
 
@@ -720,18 +725,29 @@ class Initialiser {
            noise_from_differences(position.values) < resolution_of(position.values);
   }
 
-  /// Takes out one after the other what the recordings leave open, the least wanted first.
+  /// Takes out one after the other what the recordings leave open, the least wanted first. What is
+  /// told apart only by effects that the machine need not have is open, too.
   void choose_free() {
+    constexpr double kHardly = 1e-3;
+    if (take_out_open(1.0)) take_out_open(kHardly);
+  }
+  /// With the effects at that part of their initial strengths. False: it cannot be told.
+  bool take_out_open(double strength) {
     for (;;) {
       const Job job = read_job();
-      const Forecast found = forecast(job, draw_start(job, 0));
+      std::vector<double> values = draw_start(job, 0);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const QuantityEntry& entry = job.entry(job.free[i].quantity);
+        if (entry.effect && entry.quantity.lower == 0.0) values[i] *= strength;
+      }
+      const Forecast found = forecast(job, values);
       if (!found.finite) {
         guesses_.push_back(
             "identifiability could not be checked: with the values of the axis file the simulation "
             "does not finish");
-        return;
+        return false;
       }
-      if (job.free.size() == 1) return;
+      if (job.free.size() == 1) return true;
       Candidate* last = nullptr;
       bool unseen = false;
       std::size_t index = 0;
@@ -744,7 +760,7 @@ class Initialiser {
         }
         ++index;
       }
-      if (last == nullptr) return;
+      if (last == nullptr) return true;
       const std::string_view need =
           excitation_needed(*find_quantity(last->name, vocabulary()), vocabulary());
       last->reason_not_free =
@@ -934,6 +950,35 @@ class Initialiser {
     if (position == nullptr || position->values.front() == 0.0) return {};
     return fmt::format("    set: {{initial.y0: {}}}   # it starts at rest at this position\n",
                        with_unit(position->values.front(), unit_on(vocabulary(), "m")));
+  }
+
+  /// By how much the velocity comes behind the derivative of the position, s, where it clearly does
+  /// by two samples or more; or else zero.
+  static double lateness(const RecordingGuess& recording) {
+    const GuessedColumn *position = recording.find(Kind::position),
+                        *velocity = recording.find(Kind::velocity);
+    constexpr std::size_t kMost = 20;
+    const std::size_t n = recording.time.values.size();
+    if (position == nullptr || velocity == nullptr || n < 10 * kMost) return 0.0;
+    /// The part of the velocity that is not that derivative, so many samples before.
+    const auto unlike = [&](std::size_t samples) {
+      const auto found = rate_ratio(std::span(recording.time.values).first(n - samples),
+                                    std::span(position->values).first(n - samples),
+                                    std::span(velocity->values).last(n - samples));
+      return found ? 1.0 - found->correlation * std::abs(found->correlation) : 1.0;
+    };
+    std::size_t best = 0;
+    double least = unlike(0);
+    const double now = least;
+    for (std::size_t samples = 1; samples <= kMost; ++samples)
+      if (const double left = unlike(samples); left < least) {
+        least = left;
+        best = samples;
+      }
+    constexpr double kClear = 0.5;
+    return best >= 2 && least < kClear * now
+               ? static_cast<double>(best) * sampling(recording.time.values).interval
+               : 0.0;
   }
 
   /// Whether the velocity says less than the position, over the time in which an observer follows

@@ -256,8 +256,7 @@ class Page {
     };
     Html all =
         html(R"(<span class="badge {}">{}</span>)", kind(), std::string(verdict_name(u.verdict())));
-    for (const GuessInfluence& guess : p.rests_on)
-      all += html(" <small>{}</small>", guess_text(guess));
+    if (!p.rests_on.empty()) all += html(" <small>{}</small>", guesses_text(p.rests_on));
     if (p.gain_shift) all += html(" <small>{}</small>", gain_shift_text(*p.gain_shift, unit));
     return all;
   }

@@ -45,8 +45,8 @@ std::string remarks_text(const Job& job, const FitResult& result) {
   std::string text;
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     const ParameterResult& p = result.parameters[i];
-    for (const GuessInfluence& guess : p.rests_on)
-      text += paragraph(fmt::format("{}: {}.", p.name, guess_text(guess)), 2);
+    if (!p.rests_on.empty())
+      text += paragraph(fmt::format("{}: {}.", p.name, guesses_text(p.rests_on)), 2);
     if (p.gain_shift)
       text += paragraph(
           fmt::format("{}: {}.", p.name, gain_shift_text(*p.gain_shift, unit_of(job, i))), 2);

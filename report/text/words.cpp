@@ -364,14 +364,27 @@ std::string better_gain_text(const FitResult& fit) {
       *fit.better_gain);
 }
 
-std::string guess_text(const GuessInfluence& guess) {
+std::string guesses_text(const std::vector<GuessInfluence>& guesses) {
   constexpr double kWhole = 0.005;  // of an elasticity of one
-  if (std::abs(guess.elasticity - 1.0) < kWhole)
-    return fmt::format("known only as a ratio to {}, which is a guess", guess.name);
-  if (std::abs(guess.elasticity + 1.0) < kWhole)
-    return fmt::format("known only as a product with {}, which is a guess", guess.name);
-  return fmt::format("rests on {}, which is a guess: 1 % more of that makes {:+.2g} % here",
-                     guess.name, guess.elasticity);
+  std::vector<std::string> whole, part;
+  for (const auto& [name, elasticity] : guesses) {
+    if (std::abs(elasticity - 1.0) < kWhole)
+      whole.push_back("as a ratio to " + name);
+    else if (std::abs(elasticity + 1.0) < kWhole)
+      whole.push_back("as a product with " + name);
+    else
+      part.push_back(part.empty()
+                         ? fmt::format("1 % more of {} makes {:+.2g} % here", name, elasticity)
+                         : fmt::format("of {} {:+.2g} %", name, elasticity));
+  }
+  std::vector<std::string> said;
+  if (!whole.empty())
+    said.push_back(fmt::format("known only {}, which {}", fmt::join(whole, " and "),
+                               whole.size() == 1 ? "is a guess" : "are guesses"));
+  if (!part.empty())
+    said.push_back(fmt::format("rests on {}: {}", part.size() == 1 ? "a guess" : "guesses",
+                               fmt::join(part, ", ")));
+  return fmt::format("{}", fmt::join(said, "; "));
 }
 
 std::string discrimination_text(const Discrimination& discrimination, Vocabulary vocabulary) {

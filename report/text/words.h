@@ -35,7 +35,7 @@ std::string command_text(double value, Vocabulary vocabulary);
 std::string motion_text(const Motion& motion, Vocabulary vocabulary = {});
 
 /// "known only as a ratio to K_f, which is a guess"
-std::string guess_text(const GuessInfluence& guess);
+std::string guesses_text(const std::vector<GuessInfluence>& guesses);
 
 /// "157 N s/m at an observer gain of 100 1/s, which its error allows for".
 std::string gain_shift_text(const GainShift& shift, std::string_view unit);

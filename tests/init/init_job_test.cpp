@@ -300,6 +300,22 @@ TEST_F(InitJobTest, WhatWasMeasuredIsNoStaircase) {
   }
 }
 
+// As that which a servo smooths.
+TEST_F(InitJobTest, AVelocityThatIsLateIsNotUsed) {
+  Table table = renamed(
+      driven(), {{"t_s", 1.0}, {"iq [A]", 1.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
+  table.columns.pop_back();
+  for (const int late : {0, 1, 8}) {
+    std::vector<double>& v = table.columns[3].values;
+    std::shift_right(v.begin(), v.end(), late);
+    std::fill_n(v.begin(), late, v[static_cast<std::size_t>(late)]);
+    make({folder_.write("a.csv", table)});
+    const bool said =
+        folder_.read("job.yaml").find("ms behind the derivative") != std::string::npos;
+    EXPECT_EQ(said, late == 8) << late;
+  }
+}
+
 TEST_F(InitJobTest, NamesCannotBreakOutOfTheFile) {
   const std::string name = "pos: {x}, # \"q\" - 'a' [mm]";
   Table table = renamed(

@@ -554,18 +554,22 @@ TEST(ResultTest, WhatRestsOnAGuessIsSaid) {
   Found found(rubbing_job());
   EXPECT_FALSE(found.json.at("parameters")[0].contains("rests_on"));
   found.run_result.first.parameters[0].rests_on = {{"K_f", 1.0}, {"F_s", -0.25}};
-  found.run_result.first.parameters[1].rests_on = {{"K_f", -1.0}};
+  found.run_result.first.parameters[1].rests_on = {{"K_f", -1.0}, {"F_s", 0.3}, {"T_s", -0.4}};
   EXPECT_EQ(result_json(found.run_result).at("parameters")[0].at("rests_on"),
             Json::parse(R"([{"name": "K_f", "elasticity": 1.0},
                             {"name": "F_s", "elasticity": -0.25}])"));
   EXPECT_NE(
       on_one_line(report_text(found.run_result))
-          .find("M: known only as a ratio to K_f, which is a guess. M: rests on F_s, which is "
-                "a guess: 1 % more of that makes -0.25 % here. B_a: known only as a product "
-                "with K_f, which is a guess."),
+          .find(
+              "M: known only as a ratio to K_f, which is a guess; rests on a guess: 1 % more of "
+              "F_s "
+              "makes -0.25 % here. B_a: known only as a product with K_f, which is a guess; rests "
+              "on guesses: 1 % more of F_s makes +0.3 % here, of T_s -0.4 %."),
       std::string::npos);
   EXPECT_NE(report_page(found.run_result, {})
-                .find("</span> <small>known only as a ratio to K_f, which is a guess</small>"),
+                .find("</span> <small>known only as a ratio to K_f, which is a guess; rests on a "
+                      "guess: 1 % more "
+                      "of F_s makes -0.25 % here</small>"),
             std::string::npos);
 }
 
