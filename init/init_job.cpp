@@ -1012,6 +1012,9 @@ class Initialiser {
                  "valleys: of several starts the best counts.",
                  2) +
              "  starts: 8\n  max_iterations: 150\n";
+    if (sources_.front().input->kind == Kind::position)
+      return "fit:\n  max_iterations: 150   # what a sampled controller rounds makes the valley "
+             "rough\n";
     if (!is_open || position == nullptr) return {};
     const std::vector<double> none;
     const double rate = suggested_observer_gain(
