@@ -42,6 +42,7 @@ const ResultName kResultFile{"result.json", "\"axisfit\": \""};
 const ResultName kAxisFile{"fitted.yaml", "# Fitted by axisfit "};
 const ResultName kResidualsFile{"residuals.csv", "recording,time_s,"};
 const ResultName kReportFile{"report.html", "<meta name=\"generator\" content=\"axisfit "};
+const ResultName kPredictionFile{"prediction.csv", "recording,time_s,"};
 const ResultName kMotionFile{"next-motion.yaml", "# Suggested by axisfit "};
 const ResultName kNextJobFile{"next-job.yaml", "# Goes on from axisfit "};
 
@@ -277,6 +278,8 @@ Files files_of(const Arguments& arguments, const JobFile& file, const RunResult&
                       arguments.output, kAxisFile.name,
                       fmt::format("Goes on from {}, with what was accepted there: the axis is {}.",
                                   origin, kAxisFile.name)));
+  if (!run_result.predictions.empty())
+    files.emplace_back(kPredictionFile.name, prediction_csv(run_result));
   const Vocabulary vocabulary = run_result.job().vocabulary();
   if (const Experiment* next = next_experiment(run_result)) {
     files.emplace_back(kMotionFile.name,
@@ -310,8 +313,8 @@ std::unique_ptr<OutputFolder> open_folder(const Arguments& arguments,
   if (!arguments.from.empty()) inputs.push_back(arguments.from);
   auto folder = std::make_unique<OutputFolder>(
       arguments.output,
-      std::vector<ResultName>{kResultFile, kAxisFile, kResidualsFile, kReportFile, kMotionFile,
-                              kNextJobFile},
+      std::vector<ResultName>{kResultFile, kAxisFile, kResidualsFile, kReportFile, kPredictionFile,
+                              kMotionFile, kNextJobFile},
       inputs);
   JournalFile& journal = folder->journal();
   const std::string found = fmt::format("{} solved least-squares problem{}", journal.recovered(),
@@ -520,6 +523,12 @@ int main(int argc, char** argv) {
           ->excludes(check)
           ->type_name("SECONDS");
 
+  auto* predict =
+      app.add_flag("--predict", arguments.options.predict,
+                   "predict the recordings to validate, with 95 % bands; written to prediction.csv "
+                   "in --output")
+          ->excludes(check);
+
   app.option_defaults()->group("Effect selection");
   auto* close = app.add_flag("--close-loop", arguments.options.select_effects,
                              "after the fit, add effects that the model lacks, each validated on "
@@ -540,7 +549,8 @@ int main(int argc, char** argv) {
                    ->excludes(profile)
                    ->excludes(time_limit)
                    ->excludes(close)
-                   ->excludes(experiment);
+                   ->excludes(experiment)
+                   ->excludes(predict);
   auto* axis = app.add_option("--axis", arguments.axis, "with --init: use this axis file")
                    ->needs(init)
                    ->check(kNotEmpty)

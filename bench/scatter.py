@@ -54,21 +54,44 @@ def simulate(rng, mass, viscous, coulomb, offset):
     return np.array(forces).T + 0.2 * rng.standard_normal((n, SAMPLES)), np.floor(np.array(places).T * 1e6) * 1e-6
 
 
+def draw(rng):
+    """A machine."""
+    return {"mass": 20.0 * rng.uniform(0.7, 1.3), "viscous": 50.0 * rng.uniform(0.7, 1.3),
+            "coulomb": 10.0 * rng.uniform(0.7, 1.3), "offset": rng.uniform(-5.0, 5.0)}
+
+
+def record(rng, machine, scatters, count):
+    """Recordings of it: measured forces and positions."""
+    gain = 1.0 + scatters * 0.01 * rng.standard_normal(count)
+    friction = 1.0 + scatters * 0.05 * rng.standard_normal(count)
+    offset = machine["offset"] + scatters * rng.standard_normal(count)
+    # What the drive's constant scales, everything that is measured by it has the inverse of.
+    forces, places = simulate(rng, np.full(count, machine["mass"]), machine["viscous"] * friction,
+                              machine["coulomb"] * friction, offset)
+    return forces / gain[:, None], places
+
+
+def write_job(folder, forces, places, roles=None):
+    """The name of a job for these recordings."""
+    (folder / "axis.yaml").write_text(AXIS)
+    job = "axis: axis.yaml\nrecordings:\n"
+    t = np.arange(SAMPLES) * SAMPLE
+    for i, (force, place) in enumerate(zip(forces, places)):
+        rows = "\n".join(f"{a:.4f},{b:.5g},{c:.6f}" for a, b, c in zip(t, force, place))
+        (folder / f"run-{i}.csv").write_text("t,force,position\n" + rows + "\n")
+        job += (f"  - {{file: run-{i}.csv, role: {roles[i] if roles else 'fit'}, time: {{column: t, unit: s}}, "
+                "initial_state: data, signals: {drive_force: {column: force, unit: N}, position: {column: position, "
+                "unit: m}}}\n")
+    job += "free: {M: {}, B_a: {}, coulomb_friction.F_c: {}, constant_force.F_0: {bounds: [-50 N, 50 N]}}\n"
+    (folder / "job.yaml").write_text(job + "fit: {observer: {fixed: 30 1/s}}\n")
+    return "job.yaml"
+
+
 def fit(forces, places):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        (folder / "axis.yaml").write_text(AXIS)
-        job = "axis: axis.yaml\nrecordings:\n"
-        t = np.arange(SAMPLES) * SAMPLE
-        for i, (force, place) in enumerate(zip(forces, places)):
-            rows = "\n".join(f"{a:.4f},{b:.5g},{c:.6f}" for a, b, c in zip(t, force, place))
-            (folder / f"run-{i}.csv").write_text("t,force,position\n" + rows + "\n")
-            job += (f"  - {{file: run-{i}.csv, time: {{column: t, unit: s}}, initial_state: data, signals: "
-                    "{drive_force: {column: force, unit: N}, position: {column: position, unit: m}}}\n")
-        job += "free: {M: {}, B_a: {}, coulomb_friction.F_c: {}, constant_force.F_0: {bounds: [-50 N, 50 N]}}\n"
-        (folder / "job.yaml").write_text(job + "fit: {observer: {fixed: 30 1/s}}\n")
-        done = subprocess.run([BUILD / "apps" / "fit-params", "job.yaml", "--json"], cwd=folder, capture_output=True,
-                              text=True, check=False)
+        done = subprocess.run([BUILD / "apps" / "fit-params", write_job(folder, forces, places), "--json"], cwd=folder,
+                              capture_output=True, text=True, check=False)
         return json.loads(done.stdout) if done.stdout else sys.exit(done.stderr)
 
 
@@ -81,16 +104,8 @@ def main():
             held = narrow = total = 0
             widths = []
             for _ in range(MACHINES):
-                machine = {"mass": 20.0 * rng.uniform(0.7, 1.3), "viscous": 50.0 * rng.uniform(0.7, 1.3),
-                           "coulomb": 10.0 * rng.uniform(0.7, 1.3), "offset": rng.uniform(-5.0, 5.0)}
-                each = lambda name, size: machine[name] * (1.0 + scatters * size * rng.standard_normal(count))
-                gain = 1.0 + scatters * 0.01 * rng.standard_normal(count)
-                friction = 1.0 + scatters * 0.05 * rng.standard_normal(count)
-                offset = machine["offset"] + scatters * rng.standard_normal(count)
-                # What the drive's constant scales, everything that is measured by it has the inverse of.
-                forces, places = simulate(rng, each("mass", 0.0), machine["viscous"] * friction,
-                                          machine["coulomb"] * friction, offset)
-                result = fit(forces / gain[:, None], places)
+                machine = draw(rng)
+                result = fit(*record(rng, machine, scatters, count))
                 within = {p["name"]: p["standard_error_within"] for p in result["scatter"]["parameters"]}
                 for p in result["parameters"]:
                     truth, error = machine[NAMES[p["name"]]], within[p["name"]]

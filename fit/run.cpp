@@ -8,6 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/parallel.h"
 #include "fit/estimation/gain_sensitivity.h"
 #include "fit/estimation/guesses.h"
 
@@ -105,6 +106,16 @@ void run_requested_analyses(RunResult& result, const RunContext& context) {
     result.suggestion = suggest_experiment(result.job(), result.fit(), context);
 }
 
+void predict(RunResult& result, const RunContext& context) {
+  const ThreadPool pool(result.job().options.threads);
+  try {
+    result.predictions =
+        predict_recordings(result.job(), result.fit(), *result.uncertainty, context);
+  } catch (const Interrupted&) {
+    result.interrupted = true;
+  }
+}
+
 void find_guess_influences(const Job& job, FitResult& fit) {
   if (job.guessed.empty() || !fit.usable) return;
   std::vector<std::vector<GuessInfluence>> found = guess_influences(job, fit);
@@ -155,8 +166,11 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   if (result.grade.grade == Grade::model_wrong)
     for (ParameterResult& p : last.parameters)
       p.uncertainty = {.of_wrong_model = true, .inflation = p.uncertainty.inflation};
-  if (result.grade.is_usable() && !result.interrupted)
+  if (result.grade.is_usable() && !result.interrupted) {
     result.scatter = allow_for_scatter(result.job(), last);
+    result.uncertainty = axis_uncertainty(result.job(), last, result.scatter);
+    if (options.predict) predict(result, context);
+  }
   result.second_opinion = second_opinion(result.job(), last);
   find_guess_influences(result.baseline, result.first);
   if (result.selection) {

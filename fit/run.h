@@ -13,6 +13,7 @@
 #include "fit/estimation/estimate.h"
 #include "fit/estimation/profile.h"
 #include "fit/estimation/scatter.h"
+#include "fit/prediction/prediction.h"
 #include "fit/selection/diagnosis.h"
 #include "fit/selection/grade.h"
 #include "fit/selection/second_opinion.h"
@@ -48,6 +49,7 @@ struct RunOptions {
   bool select_effects = false;          ///< add the effects that the model lacks
   std::vector<std::string> profiles{};  ///< of these parameters; "all": of all
   bool suggest_experiment = false;      ///< suggest the motion to record next
+  bool predict = false;                 ///< the recordings to validate, with bands
 };
 
 struct RunResult {
@@ -58,17 +60,19 @@ struct RunResult {
   std::vector<RecordingCheck> checks;                    ///< of each recording
   /// None unless it was asked for and the first fit is usable.
   std::optional<EffectSelection> selection;
-  std::vector<ModelScore> scores;               ///< of the loop's models
-  std::optional<Diagnosis> diagnosis;           ///< of the final model; none unless that is usable
-  FitGrade grade;                               ///< of the final model
-  std::optional<SecondOpinion> second_opinion;  ///< of the final model, where there can be one
-  std::optional<Scatter> scatter;               ///< of the final model, in its errors
-  std::vector<Profile> profiles;                ///< of the final model, those asked for
-  std::vector<Discrimination> discriminations;  ///< of the loop's undecided effects, pair by pair
-  std::optional<Suggestion> suggestion;         ///< of the next experiment, where it was asked for
-  bool interrupted = false;                     ///< not all that was asked for was finished
-  std::optional<double> time_limit{};           ///< s, if a time limit was what interrupted it
-  double wall_time = 0.0;                       ///< s
+  std::vector<ModelScore> scores;                ///< of the loop's models
+  std::optional<Diagnosis> diagnosis;            ///< of the final model; none unless that is usable
+  FitGrade grade;                                ///< of the final model
+  std::optional<SecondOpinion> second_opinion;   ///< of the final model, where there can be one
+  std::optional<Scatter> scatter;                ///< of the final model, in its errors
+  std::optional<AxisUncertainty> uncertainty;    ///< of the final model, where that is usable
+  std::vector<RecordingPrediction> predictions;  ///< by the final model, where asked for
+  std::vector<Profile> profiles;                 ///< of the final model, those asked for
+  std::vector<Discrimination> discriminations;   ///< of the loop's undecided effects, pair by pair
+  std::optional<Suggestion> suggestion;          ///< of the next experiment, where it was asked for
+  bool interrupted = false;                      ///< not all that was asked for was finished
+  std::optional<double> time_limit{};            ///< s, if a time limit was what interrupted it
+  double wall_time = 0.0;                        ///< s
 
   /// The final model's: the result of the loop, or else the declared one.
   const Job& job() const { return selection ? selection->result.job : baseline; }

@@ -223,6 +223,22 @@ Json scatter_json(const Scatter& scatter, const Job& job, const FitResult& fit) 
            })}};
 }
 
+Json prediction_json(const RecordingPrediction& prediction, const Job& job) {
+  const Recording& recording = job.recordings[prediction.recording];
+  return {{"recording", recording.name},
+          {"draws", prediction.draws},
+          {"signals", list(prediction.signals, [&](const SignalPrediction& p) {
+             const Measurement& measured = recording.measurements[p.measurement];
+             return Json{{"signal", info(measured.signal, job.vocabulary()).name},
+                         {"rmse", finite(p.rmse)},
+                         {"half_width_median", p.band.median()},
+                         {"half_width_largest", p.band.largest()},
+                         {"whole_curve_factor", p.band.whole},
+                         {"inside_percent", finite(p.inside_percent)},
+                         {"whole_curve_inside", p.is_whole_inside}};
+           })}};
+}
+
 Json profile_json(const Profile& profile, const FitResult& fit) {
   const auto end = [](const ProfileEnd& e) {
     return Json{{"value", optional(!e.open, e.value)}, {"open", e.open}};
@@ -510,6 +526,10 @@ Json result_json(const RunResult& run_result) {
   if (run_result.second_opinion)
     json["inverse_dynamics"] = inverse_dynamics_json(*run_result.second_opinion,
                                                      run_result.inverse_start, job.vocabulary());
+  if (run_result.options.predict)
+    json["prediction"] = list(run_result.predictions, [&](const RecordingPrediction& p) {
+      return prediction_json(p, job);
+    });
   if (run_result.scatter) json["scatter"] = scatter_json(*run_result.scatter, job, fit);
   if (!run_result.profiles.empty())
     json["profile"] =

@@ -11,4 +11,12 @@ namespace axisfit {
 /// Does nothing for what was not recorded.
 void initial_state_from_data(Recording& recording);
 
+/// Standard errors of an initial state that was taken from the samples, by their noise and by what
+/// the cubic leaves of them; zero where it was not.
+struct InitialErrors {
+  double position = 0.0;  ///< m
+  double velocity = 0.0;  ///< m/s
+};
+InitialErrors initial_errors(const Recording& recording);
+
 }  // namespace axisfit

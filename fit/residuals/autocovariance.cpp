@@ -5,23 +5,23 @@
 
 namespace axisfit {
 
-std::vector<double> modelled_autocovariance(std::span<const double> values) {
-  const std::size_t n = values.size();
-  // Few samples show a colour by chance too often.
-  constexpr std::size_t kMinSamples = 50;
-  const std::size_t most = n < kMinSamples ? 0 : std::min<std::size_t>(40, n / 10);
+std::vector<double> autocovariance(std::span<const double> values, std::size_t most) {
   std::vector<double> covariance(most + 1, 0.0);
   for (std::size_t lag = 0; lag <= most; ++lag) {
-    for (std::size_t i = lag; i < n; ++i) covariance[lag] += values[i] * values[i - lag];
-    covariance[lag] /= static_cast<double>(std::max<std::size_t>(1, n));
+    for (std::size_t i = lag; i < values.size(); ++i)
+      covariance[lag] += values[i] * values[i - lag];
+    covariance[lag] /= static_cast<double>(std::max<std::size_t>(1, values.size()));
   }
-  if (!(covariance[0] > 0.0)) return {0.0};
+  return covariance;
+}
 
-  std::vector<double> chosen, a;  // coefficients: x[t] = sum a[i] x[t - 1 - i] + innovation
+Autoregression fit_autoregression(std::span<const double> covariance, double samples) {
+  Autoregression best{{}, covariance[0]};
+  if (!(covariance[0] > 0.0)) return best;
+  std::vector<double> a;
   double innovation = covariance[0];
-  const double samples = static_cast<double>(n);
   double least = samples * std::log(innovation);
-  for (std::size_t order = 1; order <= most; ++order) {
+  for (std::size_t order = 1; order < covariance.size(); ++order) {
     double partial = covariance[order];
     for (std::size_t i = 0; i + 1 < order; ++i) partial -= a[i] * covariance[order - 1 - i];
     partial /= innovation;
@@ -35,9 +35,21 @@ std::vector<double> modelled_autocovariance(std::span<const double> values) {
         samples * std::log(innovation) + static_cast<double>(order) * std::log(samples);
     if (criterion < least) {
       least = criterion;
-      chosen = a;
+      best = {a, innovation};
     }
   }
+  return best;
+}
+
+std::vector<double> modelled_autocovariance(std::span<const double> values) {
+  const std::size_t n = values.size();
+  // Few samples show a colour by chance too often.
+  constexpr std::size_t kMinSamples = 50;
+  std::vector<double> covariance =
+      autocovariance(values, n < kMinSamples ? 0 : std::min<std::size_t>(40, n / 10));
+  if (!(covariance[0] > 0.0)) return {0.0};
+  const std::vector<double> chosen =
+      fit_autoregression(covariance, static_cast<double>(n)).coefficients;
 
   covariance.resize(chosen.size() + 1);
   if (chosen.empty()) return covariance;

@@ -53,6 +53,12 @@ std::string second_opinion_text(const RunResult& run_result);
 /// How the parameters differ between recordings; empty where that was not to be seen.
 std::string scatter_text(const RunResult& run_result);
 
+/// What was asked to be predicted, and how well it was; empty where nothing was.
+std::string prediction_text(const RunResult& run_result);
+/// Its curves: by recording and time, of every signal what was measured, what was predicted, and
+/// the half widths of the bands at any one time and for the whole curve.
+std::string prediction_csv(const RunResult& run_result);
+
 /// What is known of the parameters together: weak directions, and the combinations that are
 /// determined.
 std::string identifiability_text(const Identifiability& known);

@@ -1,0 +1,228 @@
+#include "fit/prediction/prediction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "fit/estimation/initial_state.h"
+#include "fit/estimation/residual.h"
+#include "fit/residuals/autocovariance.h"
+#include "fit/residuals/missing_force.h"
+#include "sim/sampling.h"
+
+namespace axisfit {
+namespace {
+
+/// A series of the missing force, every so many samples of its recording.
+struct ForceSeries {
+  double interval = 0.0;  ///< s
+  std::vector<double> values;
+};
+
+/// The fit with what a group says by itself of the parameters that scatter.
+FitResult with_estimates_of(const FitResult& fit, const Scatter& scatter, std::size_t group) {
+  FitResult of_group = fit;
+  for (const ParameterScatter& p : scatter.parameters)
+    if (p.deviation > 0.0 && p.groups[group].determined)
+      of_group.parameters[p.parameter].value = p.groups[group].value;
+  return of_group;
+}
+
+/// What a recording says of the missing force between two times; nothing where it is not more than
+/// the noise makes.
+std::optional<ForceSeries> force_series(const Job& job, const FitResult& fit, std::size_t recording,
+                                        double from, double to) {
+  constexpr double kClear = 1.5;
+  const MissingForce missing = missing_force(job, fit, recording);
+  if (!missing.found || missing.rms < kClear * missing.noise) return std::nullopt;
+  const Recording& r = job.recordings[recording];
+  const double sampling = mean_interval(r.times);
+  constexpr double kPerPeriod = 2.5;  // of the highest frequency
+  const auto every = static_cast<std::size_t>(
+      std::max(1.0, std::round(1.0 / (kPerPeriod * missing.cutoff * sampling))));
+  ForceSeries series{static_cast<double>(every) * sampling, {}};
+  for (std::size_t i = r.score_initial_samples ? 0 : r.initial_samples; i < missing.force.size();
+       i += every)
+    if (r.times[i] >= from && r.times[i] <= to) series.values.push_back(missing.force[i]);
+  return series;
+}
+
+std::vector<ForceSeries> all_force_series(const Job& job, const FitResult& fit,
+                                          const std::optional<Scatter>& scatter) {
+  std::vector<ForceSeries> all;
+  const auto add = [&](const FitResult& of_group, std::size_t recording, double from, double to) {
+    if (auto series = force_series(job, of_group, recording, from, to))
+      all.push_back(*std::move(series));
+  };
+  if (scatter) {
+    for (std::size_t g = 0; g < scatter->groups.size(); ++g)
+      if (const Scatter::Group& group = scatter->groups[g]; group.fitted)
+        add(with_estimates_of(fit, *scatter, g), group.recording, group.from, group.to);
+  } else {
+    for (std::size_t r = 0; r < job.recordings.size(); ++r)
+      if (const Samples& times = job.recordings[r].times; job.recordings[r].role == Role::fit)
+        add(fit, r, times.front(), times.back());
+  }
+  return all;
+}
+
+/// The process behind series that share an interval with the longest of them.
+std::optional<MissingForceProcess> process_of(const std::vector<ForceSeries>& all) {
+  constexpr std::size_t kMostLags = 40, kFewest = 50;
+  constexpr double kSame = 0.01;
+  const auto size = [](const ForceSeries& s) { return s.values.size(); };
+  const auto longest = std::ranges::max_element(all, {}, size);
+  if (longest == all.end()) return std::nullopt;
+  const std::size_t lags = std::min(kMostLags, longest->values.size() / 10);
+  std::vector<double> covariance(lags + 1, 0.0);
+  double samples = 0.0;
+  for (const ForceSeries& series : all) {
+    if (std::abs(series.interval / longest->interval - 1.0) > kSame) continue;
+    const auto n = static_cast<double>(series.values.size());
+    const std::vector<double> own = autocovariance(series.values, lags);
+    for (std::size_t lag = 0; lag <= lags; ++lag) covariance[lag] += n * own[lag];
+    samples += n;
+  }
+  if (samples < static_cast<double>(kFewest)) return std::nullopt;
+  for (double& c : covariance) c /= samples;
+  Autoregression found = fit_autoregression(covariance, samples);
+  return MissingForceProcess{longest->interval, std::sqrt(covariance[0]),
+                             std::sqrt(found.innovation), std::move(found.coefficients)};
+}
+
+/// Degrees of freedom of the scatter of a parameter: groups that tell it, but one.
+double freedom_of(const Scatter& scatter, const ParameterScatter& p) {
+  double weight = 0.0, square = 0.0;
+  for (std::size_t g = 0; g < scatter.groups.size(); ++g) {
+    if (!scatter.groups[g].fitted || !p.groups[g].determined) continue;
+    const double w = 1.0 / (std::pow(p.groups[g].standard_error, 2) + p.deviation * p.deviation);
+    weight += w;
+    square += w * w;
+  }
+  return square > 0.0 ? std::max(1.0, weight * weight / square - 1.0) : 1.0;
+}
+
+/// The model of a recording as the k-th axis of an ensemble, with an initial state as uncertain as
+/// the samples that it was taken from.
+Model<double> drawn_model(const AxisEnsemble& ensemble, const Model<double>& model,
+                          const Recording& recording, std::size_t k, std::mt19937_64& random) {
+  Model<double> drawn = ensemble.axis(model, k);
+  const std::vector<double*> values = members(drawn);
+  for (const auto& [quantity, value] : recording.overrides) *values[quantity] = value;
+  const InitialErrors errors = initial_errors(recording);
+  drawn.initial[0] += errors.position * normal(random);
+  drawn.initial[1] += errors.velocity * normal(random);
+  return drawn;
+}
+
+RecordingPrediction predict_recording(const Job& job, const FitResult& fit, std::size_t index,
+                                      const AxisUncertainty& uncertainty,
+                                      const RunContext& context) {
+  const Recording& recording = job.recordings[index];
+  const ParameterSpace space(job);
+  const Eigen::VectorXd u = space.internal(values_of(fit));
+  const Model<double> model = model_at(job, space, u.data(), index);
+  const AxisEnsemble ensemble(uncertainty, model.structure, job.options.seed);
+  constexpr std::size_t kDraws = RecordingPrediction::kDraws;
+  std::vector<std::vector<std::vector<double>>> drawn(kDraws);
+  parallel_for(kDraws, [&](std::size_t k) {
+    context.check_stop();
+    std::seed_seq sequence{static_cast<std::uint64_t>(k), static_cast<std::uint64_t>(index),
+                           job.options.seed};
+    std::mt19937_64 random(sequence);
+    const Model<double> axis = drawn_model(ensemble, model, recording, k, random);
+    Recording driven = recording;
+    if (ensemble.has_missing_force()) {
+      driven.channels.resize(axis.structure.channels->size() - 1,
+                             std::vector<double>(recording.times.size(), 0.0));
+      driven.channels.emplace_back(ensemble.missing_force(k, recording.times));
+    }
+    drawn[k] = simulate_readings(job, driven, axis);
+    for (std::size_t m = 0; m < drawn[k].size(); ++m)
+      for (double& x : drawn[k][m]) x += recording.measurements[m].sigma * normal(random);
+  });
+  std::erase_if(drawn, [](const auto& readings) { return readings.empty(); });
+  RecordingPrediction prediction{index, drawn.size(), {}};
+  const std::vector<std::vector<double>>& nominal = fit.recordings[index].free_running.simulated;
+  for (std::size_t m = 0; prediction.has_band() && m < nominal.size(); ++m) {
+    SignalPrediction signal{{index, m, false}, nominal[m], {}};
+    std::vector<std::vector<double>> curves;
+    for (auto& readings : drawn) curves.push_back(std::move(readings[m]));
+    signal.band = band_of(signal.values, curves);
+    const Measurement& measured = recording.measurements[m];
+    std::size_t counted = 0, inside = 0;
+    double squares = 0.0;
+    signal.is_whole_inside = true;
+    for (std::size_t i = 0; i < signal.values.size(); ++i) {
+      if (!measured.counts(i)) continue;
+      const double distance = std::abs(measured.values[i] - signal.values[i]);
+      ++counted;
+      squares += distance * distance;
+      inside += distance <= signal.band.half_width[i];
+      signal.is_whole_inside =
+          signal.is_whole_inside && distance <= signal.band.whole * signal.band.half_width[i];
+    }
+    if (counted > 0) {
+      signal.rmse = std::sqrt(squares / static_cast<double>(counted));
+      signal.inside_percent = 100.0 * static_cast<double>(inside) / static_cast<double>(counted);
+    }
+    prediction.signals.push_back(std::move(signal));
+  }
+  return prediction;
+}
+
+}  // namespace
+
+AxisUncertainty axis_uncertainty(const Job& job, const FitResult& fit,
+                                 const std::optional<Scatter>& scatter) {
+  AxisUncertainty found;
+  const ParameterSpace space(job);
+  const Eigen::VectorXd u = space.internal(values_of(fit));
+  std::vector<Eigen::Index> places;
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    const ParameterUncertainty& known = fit.parameters[i].uncertainty;
+    const FreeParameter& free = space[i];
+    if (free.recording || job.entry(free.quantity).group == "initial" ||
+        known.verdict() == ParameterVerdict::of_wrong_model || known.at_bound || !known.determined)
+      continue;
+    // On a logarithmic scale the errors are those of the logarithm.
+    const double per_unit = free.logarithmic ? 1.0 / fit.parameters[i].value : 1.0;
+    UncertainQuantity q{free.quantity, free.logarithmic, known.standard_error * per_unit, 0.0, 1.0};
+    if (scatter) {
+      const auto p = std::ranges::find(scatter->parameters, i, &ParameterScatter::parameter);
+      if (p != scatter->parameters.end() && p->deviation > 0.0) {
+        const double of_all =
+            std::pow(known.standard_error, 2) - p->within * p->within + p->deviation * p->deviation;
+        q.error = p->within * per_unit;
+        q.scatter = std::sqrt(std::max(0.0, of_all)) * per_unit;
+        q.freedom = freedom_of(*scatter, *p);
+      }
+    }
+    found.quantities.push_back(q);
+    places.push_back(static_cast<Eigen::Index>(i));
+  }
+  for (const Eigen::Index i : places)
+    for (const Eigen::Index j : places) {
+      const double c = i == j ? 1.0 : fit.correlation(i, j);
+      found.correlation.push_back(std::isfinite(c) ? c : 0.0);
+    }
+  found.missing_force = process_of(all_force_series(job, fit, scatter));
+  return found;
+}
+
+std::vector<RecordingPrediction> predict_recordings(const Job& job, const FitResult& fit,
+                                                    const AxisUncertainty& uncertainty,
+                                                    const RunContext& context) {
+  std::vector<RecordingPrediction> predictions;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    if (job.recordings[r].role != Role::validate || !fit.recordings[r].free_running.finished)
+      continue;
+    if (context.progress) context.progress({.phase = "predicting " + job.recordings[r].name});
+    predictions.push_back(predict_recording(job, fit, r, uncertainty, context));
+  }
+  return predictions;
+}
+
+}  // namespace axisfit

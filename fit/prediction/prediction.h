@@ -1,0 +1,50 @@
+// What a fitted model says of motions that it was not fitted to, and how far to believe it.
+//
+// Its parameters have errors, and scatter from recording to recording; a force that it lacks acts
+// besides, measured in the recordings that were fitted, each with what it says of the parameters by
+// itself. All three are drawn together and simulated (sim/ensemble.h): free running, for a
+// prediction has nothing to track.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "fit/estimation/estimate.h"
+#include "fit/estimation/run_context.h"
+#include "fit/estimation/scatter.h"
+#include "fit/residuals/series.h"
+#include "sim/axis_uncertainty.h"
+#include "sim/ensemble.h"
+
+namespace axisfit {
+
+/// What is not known of a fitted axis. Parameters of one recording, at a bound, or that the data
+/// leave open are taken as they are.
+AxisUncertainty axis_uncertainty(const Job& job, const FitResult& fit,
+                                 const std::optional<Scatter>& scatter);
+
+struct SignalPrediction : SeriesKey {
+  std::vector<double> values;  ///< of the fitted model, one per sample, in the signal's unit
+  Band band;                   ///< of readings, their noise included
+  double rmse = std::numeric_limits<double>::quiet_NaN();  ///< of the free run, in that unit
+  double inside_percent = std::numeric_limits<double>::quiet_NaN();  ///< of what was measured
+  bool is_whole_inside = false;  ///< in the wider band, from the first sample to the last
+};
+
+struct RecordingPrediction {
+  std::size_t recording = 0;
+  std::size_t draws = 0;  ///< that could be simulated to the end, of kDraws
+  std::vector<SignalPrediction> signals;
+
+  static constexpr std::size_t kDraws = 300;
+  /// Whether the draws make a band.
+  bool has_band() const { return 2 * draws > kDraws; }
+};
+
+/// Of the recordings to validate. Throws Interrupted.
+std::vector<RecordingPrediction> predict_recordings(const Job& job, const FitResult& fit,
+                                                    const AxisUncertainty& uncertainty,
+                                                    const RunContext& context = {});
+
+}  // namespace axisfit
