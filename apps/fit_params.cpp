@@ -257,6 +257,7 @@ Files files_of(const Arguments& arguments, const JobFile& file, const RunResult&
                const std::string& json) {
   Rig fitted = file.rig;
   fitted.model = fitted_model(run_result.job(), run_result.fit());
+  fitted.uncertainty = run_result.uncertainty;
   // What was estimated is no guess any more.
   std::erase_if(fitted.guessed, [&](std::size_t g) {
     return std::ranges::count(run_result.job().free, g, &FreeParameter::quantity) > 0;

@@ -11,6 +11,7 @@
 
 #include "apps/command_line.h"
 #include "apps/progress.h"
+#include "base/parallel.h"
 #include "base/terminal.h"
 #include "io/config/axis_file.h"
 #include "io/config/machine_file.h"
@@ -29,6 +30,7 @@ struct Arguments {
   RecordingOptions recording;
   bool signals_given = false;
   bool exact = false;
+  bool band = false;
 };
 
 constexpr const char* kShortHelp = R"(Usage: simulate-axis [OPTIONS] AXIS.yaml MOTION.yaml
@@ -118,6 +120,9 @@ std::runtime_error no_more_than_a_machine(const std::string& path) {
 
 void run_machine(Arguments arguments) {
   if (!arguments.changes.empty()) throw no_more_than_a_machine(arguments.axis);
+  if (arguments.band)
+    throw std::runtime_error(fmt::format(
+        "--band is for the axes of {} one by one: its axes act on each other", arguments.axis));
   if (arguments.output.empty())
     throw std::runtime_error("name a folder for the recordings of the axes: --output FOLDER");
   const MachineFile machine = read_machine_file(arguments.axis);
@@ -166,12 +171,18 @@ void run_command(Arguments arguments) {
   RecordingOptions& options = arguments.recording;
   set_duration(motion.duration, 1.0, arguments.motion, options);
   options.signals = signals_of(arguments, rig->model.structure);
-  std::string text;
+  std::vector<Column> columns;
   {
     ProgressLine line(is_terminal(STDERR_FILENO));
     line.update({"simulating"});
-    text = csv_of(record(*rig, motion.motion, options), arguments.exact);
+    if (arguments.band) {
+      const ThreadPool pool(0);
+      columns = record_with_bands(*rig, motion.motion, options);
+    } else {
+      columns = record(*rig, motion.motion, options);
+    }
   }
+  const std::string text = csv_of(columns, arguments.exact);
   if (arguments.output.empty())
     print(text);
   else
@@ -220,6 +231,10 @@ int main(int argc, char** argv) {
       ->transform(whole_number<std::uint64_t>(0))
       ->capture_default_str();
   app.add_flag("--exact", arguments.exact, "no noise, no encoder quantisation, all digits");
+  app.add_flag(
+      "--band", arguments.band,
+      "the fitted.yaml of fit-params, without noise, and for each signal the half widths of "
+      "its 95 % bands: at any one time, and for the whole curve");
   for (const int signal : {SIGINT, SIGTERM})
     if (std::signal(signal, end_by_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
   return run_program(app, kShortHelp, argc, argv, [&] {

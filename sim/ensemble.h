@@ -18,6 +18,10 @@ namespace axisfit {
 
 class AxisEnsemble {
  public:
+  /// How often to draw for a band, and whether so many that could be simulated make one.
+  static constexpr std::size_t kDraws = 300;
+  static constexpr bool are_enough(std::size_t draws) { return 2 * draws > kDraws; }
+
   /// Throws std::runtime_error where a force is missing and the model has no channel left for it.
   AxisEnsemble(const AxisUncertainty& uncertainty, const Structure& structure, std::uint64_t seed);
 

@@ -3,12 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/column.h"
+#include "sim/axis_uncertainty.h"
 #include "sim/model.h"
 #include "sim/motion.h"
 
@@ -20,6 +22,7 @@ struct Rig {
   Model<double> model;
   std::array<double, kSignals> noise{};  ///< standard deviation of white noise, signal's unit
   std::vector<std::size_t> guessed{};    ///< quantities whose values nobody knows, in the list
+  std::optional<AxisUncertainty> uncertainty{};  ///< of what was estimated
 };
 
 struct RecordingOptions {
@@ -45,6 +48,13 @@ struct ChannelsOverTime {
 /// cannot be simulated to its end.
 std::vector<Column> record(const Rig& rig, const Motion& motion, const RecordingOptions& options,
                            const ChannelsOverTime& channels = {});
+
+/// The same without noise, as far as the rig's uncertainty lets it be known: each signal is
+/// followed by the half widths of its 95 % bands, at any one instant and for the whole curve, of
+/// readings with their noise unless the options leave it out. Throws std::runtime_error, too, where
+/// the rig has no uncertainty, or one with which hardly any motion can be simulated.
+std::vector<Column> record_with_bands(const Rig& rig, const Motion& motion,
+                                      const RecordingOptions& options);
 
 /// A name and a unit in plain letters: "velocity_mps".
 std::string column_name(std::string_view name, std::string_view unit);

@@ -1,11 +1,13 @@
 #include "fit/prediction/prediction.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "fit/data/filter.h"
 #include "fit/estimation/initial_state.h"
 #include "fit/estimation/residual.h"
 #include "fit/residuals/autocovariance.h"
@@ -21,56 +23,80 @@ struct ForceSeries {
   std::vector<double> values;
 };
 
-/// The fit with what a group says by itself of the parameters that scatter.
-FitResult with_estimates_of(const FitResult& fit, const Scatter& scatter, std::size_t group) {
-  FitResult of_group = fit;
-  for (const ParameterScatter& p : scatter.parameters)
-    if (p.deviation > 0.0 && p.groups[group].determined)
-      of_group.parameters[p.parameter].value = p.groups[group].value;
-  return of_group;
+/// The part of a force that is in proportion to none of these, by least squares.
+std::vector<double> without(const std::vector<double>& force,
+                            const std::vector<std::vector<double>>& causes) {
+  const auto rows = static_cast<Eigen::Index>(force.size());
+  Eigen::MatrixXd columns(rows, static_cast<Eigen::Index>(causes.size()));
+  for (std::size_t c = 0; c < causes.size(); ++c)
+    columns.col(static_cast<Eigen::Index>(c)) =
+        Eigen::Map<const Eigen::VectorXd>(causes[c].data(), rows);
+  const Eigen::Map<const Eigen::VectorXd> whole(force.data(), rows);
+  const Eigen::VectorXd left = whole - columns * columns.colPivHouseholderQr().solve(whole);
+  return {left.data(), left.data() + left.size()};
 }
 
 /// What a recording says of the missing force between two times; nothing where it is not more than
-/// the noise makes.
+/// the noise makes. Without what other parameters would make there, for these have errors and a
+/// scatter of their own: viscous and dry friction, a constant force, and the drive's gain, which is
+/// a mass as well. (With the acceleration besides, it would be the balance of forces itself.)
 std::optional<ForceSeries> force_series(const Job& job, const FitResult& fit, std::size_t recording,
                                         double from, double to) {
   constexpr double kClear = 1.5;
   const MissingForce missing = missing_force(job, fit, recording);
-  if (!missing.found || missing.rms < kClear * missing.noise) return std::nullopt;
+  if (!missing.found) return std::nullopt;
   const Recording& r = job.recordings[recording];
   const double sampling = mean_interval(r.times);
+  std::vector<double> velocity, direction, drive;
+  for (const Sample& s : missing.samples) {
+    velocity.push_back(s.velocity);
+    direction.push_back(double(s.velocity > 0.0) - double(s.velocity < 0.0));
+    drive.push_back(s.drive_force);
+  }
+  std::vector<std::vector<double>> causes{std::vector<double>(velocity.size(), 1.0), velocity,
+                                          direction, drive};
+  std::vector<double> force;
+  for (std::vector<double>& cause : causes)
+    cause = low_pass(std::move(cause), sampling, missing.cutoff);
+  const std::size_t begin = r.score_initial_samples ? 0 : r.initial_samples;
+  std::vector<std::vector<double>> counted(causes.size());
+  for (std::size_t i = begin; i < missing.force.size(); ++i) {
+    if (r.times[i] < from || r.times[i] > to) continue;
+    force.push_back(missing.force[i]);
+    for (std::size_t c = 0; c < causes.size(); ++c) counted[c].push_back(causes[c][i]);
+  }
+  if (force.size() < 10 * causes.size()) return std::nullopt;
+  const std::vector<double> left = without(force, counted);
+  if (mean_square(left) < std::pow(kClear * missing.noise, 2)) return std::nullopt;
   constexpr double kPerPeriod = 2.5;  // of the highest frequency
   const auto every = static_cast<std::size_t>(
       std::max(1.0, std::round(1.0 / (kPerPeriod * missing.cutoff * sampling))));
   ForceSeries series{static_cast<double>(every) * sampling, {}};
-  for (std::size_t i = r.score_initial_samples ? 0 : r.initial_samples; i < missing.force.size();
-       i += every)
-    if (r.times[i] >= from && r.times[i] <= to) series.values.push_back(missing.force[i]);
+  for (std::size_t i = 0; i < left.size(); i += every) series.values.push_back(left[i]);
   return series;
 }
 
 std::vector<ForceSeries> all_force_series(const Job& job, const FitResult& fit,
                                           const std::optional<Scatter>& scatter) {
   std::vector<ForceSeries> all;
-  const auto add = [&](const FitResult& of_group, std::size_t recording, double from, double to) {
-    if (auto series = force_series(job, of_group, recording, from, to))
+  const auto add = [&](std::size_t recording, double from, double to) {
+    if (auto series = force_series(job, fit, recording, from, to))
       all.push_back(*std::move(series));
   };
   if (scatter) {
-    for (std::size_t g = 0; g < scatter->groups.size(); ++g)
-      if (const Scatter::Group& group = scatter->groups[g]; group.fitted)
-        add(with_estimates_of(fit, *scatter, g), group.recording, group.from, group.to);
+    for (const Scatter::Group& group : scatter->groups)
+      if (group.fitted) add(group.recording, group.from, group.to);
   } else {
     for (std::size_t r = 0; r < job.recordings.size(); ++r)
       if (const Samples& times = job.recordings[r].times; job.recordings[r].role == Role::fit)
-        add(fit, r, times.front(), times.back());
+        add(r, times.front(), times.back());
   }
   return all;
 }
 
 /// The process behind series that share an interval with the longest of them.
 std::optional<MissingForceProcess> process_of(const std::vector<ForceSeries>& all) {
-  constexpr std::size_t kMostLags = 40, kFewest = 50;
+  constexpr std::size_t kMostLags = 40, kFewest = 30;
   constexpr double kSame = 0.01;
   const auto size = [](const ForceSeries& s) { return s.values.size(); };
   const auto longest = std::ranges::max_element(all, {}, size);
@@ -125,9 +151,8 @@ RecordingPrediction predict_recording(const Job& job, const FitResult& fit, std:
   const Eigen::VectorXd u = space.internal(values_of(fit));
   const Model<double> model = model_at(job, space, u.data(), index);
   const AxisEnsemble ensemble(uncertainty, model.structure, job.options.seed);
-  constexpr std::size_t kDraws = RecordingPrediction::kDraws;
-  std::vector<std::vector<std::vector<double>>> drawn(kDraws);
-  parallel_for(kDraws, [&](std::size_t k) {
+  std::vector<std::vector<std::vector<double>>> drawn(AxisEnsemble::kDraws);
+  parallel_for(drawn.size(), [&](std::size_t k) {
     context.check_stop();
     std::seed_seq sequence{static_cast<std::uint64_t>(k), static_cast<std::uint64_t>(index),
                            job.options.seed};
@@ -146,7 +171,8 @@ RecordingPrediction predict_recording(const Job& job, const FitResult& fit, std:
   std::erase_if(drawn, [](const auto& readings) { return readings.empty(); });
   RecordingPrediction prediction{index, drawn.size(), {}};
   const std::vector<std::vector<double>>& nominal = fit.recordings[index].free_running.simulated;
-  for (std::size_t m = 0; prediction.has_band() && m < nominal.size(); ++m) {
+  if (!AxisEnsemble::are_enough(drawn.size())) return prediction;
+  for (std::size_t m = 0; m < nominal.size(); ++m) {
     SignalPrediction signal{{index, m, false}, nominal[m], {}};
     std::vector<std::vector<double>> curves;
     for (auto& readings : drawn) curves.push_back(std::move(readings[m]));

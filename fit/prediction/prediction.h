@@ -1,8 +1,8 @@
 // What a fitted model says of motions that it was not fitted to, and how far to believe it.
 //
 // Its parameters have errors, and scatter from recording to recording; a force that it lacks acts
-// besides, measured in the recordings that were fitted, each with what it says of the parameters by
-// itself. All three are drawn together and simulated (sim/ensemble.h): free running, for a
+// besides, measured in the recordings that were fitted, without what other parameters would make
+// of them. All three are drawn together and simulated (sim/ensemble.h): free running, for a
 // prediction has nothing to track.
 #pragma once
 
@@ -34,12 +34,8 @@ struct SignalPrediction : SeriesKey {
 
 struct RecordingPrediction {
   std::size_t recording = 0;
-  std::size_t draws = 0;  ///< that could be simulated to the end, of kDraws
-  std::vector<SignalPrediction> signals;
-
-  static constexpr std::size_t kDraws = 300;
-  /// Whether the draws make a band.
-  bool has_band() const { return 2 * draws > kDraws; }
+  std::size_t draws = 0;                  ///< of the ensemble, that were simulated to the end
+  std::vector<SignalPrediction> signals;  ///< none where the draws are too few for a band
 };
 
 /// Of the recordings to validate. Throws Interrupted.

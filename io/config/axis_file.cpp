@@ -10,6 +10,7 @@
 
 #include "base/suggest.h"
 #include "base/units.h"
+#include "io/config/axis_uncertainty.h"
 #include "io/config/channels.h"
 
 namespace axisfit {
@@ -214,7 +215,8 @@ Section make_axis_keys(Vocabulary vocabulary) {
       Key::optional("controller", Map{controller_keys(vocabulary)},
                     DefaultText{"those of its keys"},
                     "the position controller: limits, moves and the encoder; a fit uses it for "
-                    "recordings with a `position_reference`")};
+                    "recordings with a `position_reference`"),
+      axis_uncertainty_key(vocabulary)};
 }
 
 std::vector<std::string> choices_of(Vocabulary vocabulary, std::string_view key) {
@@ -371,10 +373,12 @@ std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
   if (const auto effects = map.optional("effects")) read_effects(*effects, rig.model);
   const auto initial = map.optional("initial");
   const auto guessed = map.optional("guessed");
+  const auto uncertainty = map.optional("uncertainty");
   if (drive && transmission) {  // what quantities an axis has depends on them
     if (parameters) read_parameters(*parameters, rig.model);
     if (initial) read_initial(*initial, rig.model);
     if (guessed) read_guessed(*guessed, rig);
+    if (uncertainty) rig.uncertainty = read_axis_uncertainty(*uncertainty, rig.model.structure);
   }
   normalize(rig.model);
   if (const auto instruments = map.optional("instruments")) read_instruments(*instruments, rig);
@@ -465,7 +469,9 @@ std::string format_axis_file(const Rig& rig, const std::string& comment) {
     out << YAML::Key << std::string(setting.symbol) << YAML::Value
         << with_unit(value, unit_on(vocabulary, setting.unit));
   });
-  out << YAML::EndMap << YAML::EndMap;
+  out << YAML::EndMap;
+  if (rig.uncertainty) write_axis_uncertainty(out, *rig.uncertainty, vocabulary);
+  out << YAML::EndMap;
   return with_comment(comment, out.c_str());
 }
 

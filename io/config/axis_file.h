@@ -36,8 +36,8 @@ const QuantityEntry* quantity_named(const ConfigNode& key, const Structure& stru
 /// Reads the value of a quantity within its natural range.
 std::optional<double> read_value(const ConfigNode& node, const Quantity& quantity);
 
-/// An axis file that reads back as the same rig, digit for digit. `comment` becomes its first
-/// lines.
+/// An axis file that reads back as the same rig, digit for digit; of its uncertainty six digits.
+/// `comment` becomes its first lines.
 std::string format_axis_file(const Rig& rig, const std::string& comment);
 
 }  // namespace axisfit

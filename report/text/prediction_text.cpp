@@ -50,10 +50,10 @@ std::string prediction_text(const RunResult& run_result) {
   std::string unfinished;
   for (const RecordingPrediction& prediction : run_result.predictions) {
     const Recording& recording = job.recordings[prediction.recording];
-    if (!prediction.has_band())
+    if (prediction.signals.empty())
       unfinished += paragraph(
           fmt::format("{}: no band, for only {} of {} draws could be simulated to the end.",
-                      recording.name, prediction.draws, RecordingPrediction::kDraws),
+                      recording.name, prediction.draws, AxisEnsemble::kDraws),
           2);
     for (const SignalPrediction& p : prediction.signals) {
       const Measurement& measured = recording.measurements[p.measurement];

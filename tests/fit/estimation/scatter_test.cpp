@@ -4,44 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
-#include "base/random.h"
-#include "tests/fit/example.h"
+#include "tests/fit/scattering.h"
 
 namespace axisfit {
 namespace {
-
-constexpr double kMass = 12.0, kDamping = 40.0;
-
-/// Recordings of a driven mass whose viscous friction has the relative scatter, in fits with a
-/// fixed observer.
-Job machine(int recordings, double scatter, std::uint64_t seed, double duration = 2.0) {
-  Job job;
-  job.model = driven_mass(kMass);
-  job.model.axis.B_a = kDamping;
-  std::mt19937_64 generator(seed);
-  for (int i = 0; i < recordings; ++i) {
-    Model<double> truth = job.model;
-    truth.axis.B_a *= 1.0 + scatter * normal(generator);
-    Recording recording = recorded(truth, SineMotion{60.0, 0.5, 6.0, 0.0}, duration,
-                                   100 * seed + std::uint64_t(i), {Signal::velocity});
-    recording.name = "run-" + std::to_string(i + 1);
-    job.recordings.push_back(std::move(recording));
-  }
-  job.free = {free_parameter("M", 10.0), free_parameter("B_a", 30.0)};
-  job.options.observer = ObserverMode::fixed;
-  job.options.observer_gain = 5.0;
-  job.options.step = 2e-3;
-  return job;
-}
 
 TEST(Scatter, IsEstimatedAndWidensWhatScatters) {
   constexpr int kMachines = 12;
   double sum = 0.0;
   int held = 0, held_deviation = 0;
   for (std::uint64_t seed = 1; seed <= kMachines; ++seed) {
-    const Job job = machine(8, 0.05, seed);
+    const Job job = scattering_machine(8, 0.05, seed);
     FitResult fit = estimate(job);
     const double mass_before = fit.parameters[0].uncertainty.standard_error,
                  damping_before = fit.parameters[1].uncertainty.standard_error;
@@ -55,17 +29,18 @@ TEST(Scatter, IsEstimatedAndWidensWhatScatters) {
     }
     const ParameterScatter& damping = scatter->parameters[1];
     sum += damping.deviation / kMachines;
-    held_deviation += damping.lower < 0.05 * kDamping && damping.upper > 0.05 * kDamping;
+    held_deviation +=
+        damping.lower < 0.05 * kScatteringDamping && damping.upper > 0.05 * kScatteringDamping;
     EXPECT_LE(damping.within, damping_before);
     // The mean of eight.
     const ParameterUncertainty& known = fit.parameters[1].uncertainty;
     EXPECT_NEAR(known.standard_error, damping.deviation / std::sqrt(8.0),
                 0.2 * known.standard_error);
-    held += known.lower < kDamping && known.upper > kDamping;
+    held += known.lower < kScatteringDamping && known.upper > kScatteringDamping;
     // 2.36 standard errors of seven degrees of freedom, not 1.96.
     EXPECT_GT(known.upper - known.lower, 2.0 * 2.2 * known.standard_error);
   }
-  EXPECT_NEAR(sum, 0.05 * kDamping, 0.2 * 0.05 * kDamping);
+  EXPECT_NEAR(sum, 0.05 * kScatteringDamping, 0.2 * 0.05 * kScatteringDamping);
   EXPECT_GE(held, 10);
   EXPECT_GE(held_deviation, 10);
 }
@@ -73,7 +48,7 @@ TEST(Scatter, IsEstimatedAndWidensWhatScatters) {
 TEST(Scatter, ChangesNothingWhereThereIsNone) {
   int changed = 0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const Job job = machine(4, 0.0, seed, 1.0);
+    const Job job = scattering_machine(4, 0.0, seed, 1.0);
     FitResult fit = estimate(job);
     const FitResult before = fit;
     const auto scatter = allow_for_scatter(job, fit);
@@ -88,7 +63,7 @@ TEST(Scatter, ChangesNothingWhereThereIsNone) {
 // The estimates of the recordings alone are those that fits of them alone find, but for the square
 // of how far they are apart: 5 %.
 TEST(Scatter, TellsWhatEachRecordingSays) {
-  const Job job = machine(3, 0.05, 4);
+  const Job job = scattering_machine(3, 0.05, 4);
   FitResult fit = estimate(job);
   const auto scatter = allow_for_scatter(job, fit);
   ASSERT_TRUE(scatter);
@@ -107,7 +82,7 @@ TEST(Scatter, TellsWhatEachRecordingSays) {
 }
 
 TEST(Scatter, OfRecordingsToValidateIsShownOnly) {
-  Job job = machine(3, 0.0, 5);
+  Job job = scattering_machine(3, 0.0, 5);
   job.recordings[2].role = Role::validate;
   FitResult fit = estimate(job);
   const auto scatter = allow_for_scatter(job, fit);
@@ -118,7 +93,7 @@ TEST(Scatter, OfRecordingsToValidateIsShownOnly) {
 }
 
 TEST(Scatter, OfOneRecordingIsThatOfItsStretches) {
-  Job job = machine(1, 0.0, 6, 6.0);
+  Job job = scattering_machine(1, 0.0, 6, 6.0);
   FitResult fit = estimate(job);
   const auto scatter = allow_for_scatter(job, fit);
   ASSERT_TRUE(scatter);

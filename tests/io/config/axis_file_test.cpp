@@ -299,6 +299,42 @@ TEST_F(AxisFileTest, GuessesSurviveWriting) {
   EXPECT_EQ(read(format_axis_file(rig, "")).guessed, rig.guessed);
 }
 
+TEST_F(AxisFileTest, UncertaintySurvivesWriting) {
+  Rig rig = read(kMass);
+  EXPECT_FALSE(rig.uncertainty);
+  AxisUncertainty& known = rig.uncertainty.emplace();
+  known.quantities = {{find_quantity("M")->index, true, 0.00125, 0.0625, 3.5},
+                      {find_quantity("B_a")->index, false, 2.5, 0.0, 1.0}};
+  known.correlation = {1.0, -0.75, -0.75, 1.0};
+  known.missing_force = MissingForceProcess{0.0125, 1.5, 0.5, {0.75, -0.125}};
+  const AxisUncertainty found = read(format_axis_file(rig, "")).uncertainty.value();
+  ASSERT_EQ(found.quantities.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const UncertainQuantity &a = found.quantities[i], &b = known.quantities[i];
+    EXPECT_EQ(std::tie(a.quantity, a.logarithmic, a.error, a.scatter, a.freedom),
+              std::tie(b.quantity, b.logarithmic, b.error, b.scatter, b.freedom));
+  }
+  EXPECT_EQ(found.correlation, known.correlation);
+  ASSERT_TRUE(found.missing_force);
+  EXPECT_EQ(found.missing_force->interval, 0.0125);
+  EXPECT_EQ(found.missing_force->deviation, 1.5);
+  EXPECT_EQ(found.missing_force->innovation, 0.5);
+  EXPECT_EQ(found.missing_force->coefficients, known.missing_force->coefficients);
+
+  EXPECT_EQ(errors(std::string(kMass) + R"(uncertainty:
+  parameters:
+    - {name: M, scale: logarithmic, error: 1 %}
+    - {name: Mass, scale: round, error: -1}
+  correlation: [[1, 0, 0], [0, 1]]
+)"),
+            "axis.yaml:10:14: unknown quantity 'Mass'; valid names are parameters of the axis, "
+            "EFFECT.PARAMETER, SIGNAL.gain, .bias, .lag, .delay and .drift, and initial.y0 ... "
+            "initial.y6\naxis.yaml:10:27: scale must be one of linear, logarithmic, not "
+            "'round'\naxis.yaml:10:41: error must lie between 0 and 1e+12, not "
+            "-1\naxis.yaml:11:16: correlation must have 2 rows of 2 numbers, one for each of the "
+            "parameters\n");
+}
+
 TEST_F(AxisFileTest, InstrumentsMayLagAndBeLate) {
   const Rig rig = read(std::string(kMass) +
                        "instruments: {velocity: {lag: 3 ms, delay: -200 us}, "
@@ -413,8 +449,7 @@ TEST_F(AxisFileTest, EveryMistakeIsNamedWithItsPlace) {
 }
 
 TEST_F(AxisFileTest, AllMistakesAreNamedAtOnce) {
-  EXPECT_EQ(
-      errors(R"(drive: force_source
+  EXPECT_EQ(errors(R"(drive: force_source
 transmission: rigid
 colour: red
 parameters:
@@ -427,16 +462,17 @@ instruments:
   position: {noise: 1 s}
 controller: {limit: 0 V}
 )"),
-      "axis.yaml:3:1: unknown key 'colour'; known keys: joint, name, channels, drive, "
-      "transmission, "
-      "parameters, effects, initial, guessed, instruments, controller\naxis.yaml:5:3: key 'B_a' is "
-      "missing in "
-      "parameters\naxis.yaml:5:8: K_f: 'N' cannot be converted to 'N/V'; use for example "
-      "'N/V'\naxis.yaml:6:6: M needs a unit, for example '95 kg'\naxis.yaml:7:8: r_g is not "
-      "used by an axis with drive force_source and transmission rigid: remove "
-      "it\naxis.yaml:9:25: F_0 must be a number with a unit, for example '1 N', not "
-      "'up'\naxis.yaml:11:21: noise: 's' cannot be converted to 'm'; use for example "
-      "'m'\naxis.yaml:12:21: limit must lie between 0.001 V and 10000 V, not 0 V\n");
+            "axis.yaml:3:1: unknown key 'colour'; known keys: joint, name, channels, drive, "
+            "transmission, "
+            "parameters, effects, initial, guessed, uncertainty, instruments, "
+            "controller\naxis.yaml:5:3: key 'B_a' is "
+            "missing in "
+            "parameters\naxis.yaml:5:8: K_f: 'N' cannot be converted to 'N/V'; use for example "
+            "'N/V'\naxis.yaml:6:6: M needs a unit, for example '95 kg'\naxis.yaml:7:8: r_g is not "
+            "used by an axis with drive force_source and transmission rigid: remove "
+            "it\naxis.yaml:9:25: F_0 must be a number with a unit, for example '1 N', not "
+            "'up'\naxis.yaml:11:21: noise: 's' cannot be converted to 'm'; use for example "
+            "'m'\naxis.yaml:12:21: limit must lie between 0.001 V and 10000 V, not 0 V\n");
 }
 
 TEST_F(AxisFileTest, FilesThatAreNoAxisAreRefused) {
