@@ -36,12 +36,12 @@ std::vector<double> without(const std::vector<double>& force,
   return {left.data(), left.data() + left.size()};
 }
 
-/// What a recording says of the missing force between two times; nothing where it is not more than
-/// the noise makes. Without what other parameters would make there, for these have errors and a
-/// scatter of their own: viscous and dry friction, a constant force, and the drive's gain, which is
-/// a mass as well. (With the acceleration besides, it would be the balance of forces itself.)
-std::optional<ForceSeries> force_series(const Job& job, const FitResult& fit, std::size_t recording,
-                                        double from, double to) {
+/// What a recording says of the missing force; nothing where it is not more than the noise makes.
+/// Without what other parameters would make there, for these have errors and a scatter of their
+/// own: viscous and dry friction, a constant force, and the drive's gain, which is a mass as well.
+/// (With the acceleration besides, it would be the balance of forces itself.)
+std::optional<ForceSeries> force_series(const Job& job, const FitResult& fit,
+                                        std::size_t recording) {
   constexpr double kClear = 1.5;
   const MissingForce missing = missing_force(job, fit, recording);
   if (!missing.found) return std::nullopt;
@@ -61,7 +61,6 @@ std::optional<ForceSeries> force_series(const Job& job, const FitResult& fit, st
   const std::size_t begin = r.score_initial_samples ? 0 : r.initial_samples;
   std::vector<std::vector<double>> counted(causes.size());
   for (std::size_t i = begin; i < missing.force.size(); ++i) {
-    if (r.times[i] < from || r.times[i] > to) continue;
     force.push_back(missing.force[i]);
     for (std::size_t c = 0; c < causes.size(); ++c) counted[c].push_back(causes[c][i]);
   }
@@ -76,21 +75,11 @@ std::optional<ForceSeries> force_series(const Job& job, const FitResult& fit, st
   return series;
 }
 
-std::vector<ForceSeries> all_force_series(const Job& job, const FitResult& fit,
-                                          const std::optional<Scatter>& scatter) {
+std::vector<ForceSeries> all_force_series(const Job& job, const FitResult& fit) {
   std::vector<ForceSeries> all;
-  const auto add = [&](std::size_t recording, double from, double to) {
-    if (auto series = force_series(job, fit, recording, from, to))
-      all.push_back(*std::move(series));
-  };
-  if (scatter) {
-    for (const Scatter::Group& group : scatter->groups)
-      if (group.fitted) add(group.recording, group.from, group.to);
-  } else {
-    for (std::size_t r = 0; r < job.recordings.size(); ++r)
-      if (const Samples& times = job.recordings[r].times; job.recordings[r].role == Role::fit)
-        add(r, times.front(), times.back());
-  }
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    if (job.recordings[r].role == Role::fit)
+      if (auto series = force_series(job, fit, r)) all.push_back(*std::move(series));
   return all;
 }
 
@@ -216,7 +205,9 @@ AxisUncertainty axis_uncertainty(const Job& job, const FitResult& fit,
     // On a logarithmic scale the errors are those of the logarithm.
     const double per_unit = free.logarithmic ? 1.0 / fit.parameters[i].value : 1.0;
     UncertainQuantity q{free.quantity, free.logarithmic, known.standard_error * per_unit, 0.0, 1.0};
-    if (scatter) {
+    // What changes from stretch to stretch changes during a prediction, too: it is part of the
+    // missing force, and its mean is as uncertain as the estimate.
+    if (scatter && !scatter->of_stretches) {
       const auto p = std::ranges::find(scatter->parameters, i, &ParameterScatter::parameter);
       if (p != scatter->parameters.end() && p->deviation > 0.0) {
         const double of_all =
@@ -234,7 +225,7 @@ AxisUncertainty axis_uncertainty(const Job& job, const FitResult& fit,
       const double c = i == j ? 1.0 : fit.correlation(i, j);
       found.correlation.push_back(std::isfinite(c) ? c : 0.0);
     }
-  found.missing_force = process_of(all_force_series(job, fit, scatter));
+  found.missing_force = process_of(all_force_series(job, fit));
   return found;
 }
 

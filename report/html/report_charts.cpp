@@ -456,6 +456,36 @@ Html ReportCharts::missing_force(std::size_t recording) {
   return all;
 }
 
+Html ReportCharts::prediction(const RecordingPrediction& prediction) {
+  const Recording& data = run_result_.job().recordings[prediction.recording];
+  const RecordingCharts& r = recordings_[prediction.recording];
+  const Vocabulary vocabulary = run_result_.job().vocabulary();
+  Html all;
+  for (const SignalPrediction& p : prediction.signals) {
+    const Measurement& measured = data.measurements[p.measurement];
+    const std::string name = signal_name(measured, vocabulary);
+    Chart chart =
+        over_time(prediction.recording, "prediction-" + name,
+                  fmt::format("Error of the predicted {} of {}, free running, in its 95 % "
+                              "bands",
+                              name, data.name),
+                  {"error", unit_of(measured, vocabulary)});
+    const auto edge = [&](const char* label, std::string_view role, double times) {
+      Values values = p.band.half_width;
+      for (double& w : values) w *= times;
+      chart.series.push_back({label, role, r.times, columns_.add_coarse(std::move(values))});
+    };
+    edge("at any one time, above", "force", 1.0);
+    edge("below", "force", -1.0);
+    edge("of the whole curve, above", "reference", p.band.whole);
+    edge("below", "reference", -p.band.whole);
+    chart.series.push_back({"measured - predicted", "residual", r.times, r.measured[p.measurement],
+                            LineStyle::line, r.simulated[p.measurement]});
+    all += add(std::move(chart));
+  }
+  return all;
+}
+
 Html ReportCharts::profile(const Profile& profile) {
   const ParameterResult& p = run_result_.fit().parameters[profile.parameter];
   const FreeParameter& free = run_result_.job().free[profile.parameter];

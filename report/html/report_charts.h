@@ -26,6 +26,8 @@ class ReportCharts {
   /// The missing force of a recording over time, velocity, position and wave number, and what the
   /// accepted effects supply of it. Empty where none was found.
   Html missing_force(std::size_t recording);
+  /// What was measured less what was predicted, with the bands of that, of every signal over time.
+  Html prediction(const RecordingPrediction& prediction);
   /// Deviance over the value, with the parabola that the standard error takes it for.
   Html profile(const Profile& profile);
   /// Cost and observer over the iterations, and where the starts ended.

@@ -290,6 +290,11 @@ class Page {
       all += html("<h3>Likelihood profiles</h3>{}",
                   figures(each(run_result_.profiles,
                                [&](const Profile& p) { return charts_.profile(p); })));
+    if (run_result_.options.predict)
+      all += html("<h3>Prediction</h3><pre>{}</pre>{}", prediction_text(run_result_),
+                  figures(each(run_result_.predictions, [&](const RecordingPrediction& p) {
+                    return charts_.prediction(p);
+                  })));
     if (run_result_.options.suggest_experiment)
       all += html("<h3>Next experiment</h3><pre>{}</pre>", suggestion_text(run_result_));
     return all;

@@ -20,7 +20,7 @@ std::string horizon_text(const SignalPrediction& p, const Recording& recording) 
   const auto [low, high] = std::ranges::minmax(p.values);
   const std::size_t reached = p.band.reach(kPart * (high - low));
   return reached == p.values.size()
-             ? "to the end"
+             ? "the end"
              : fmt::format("{:.3g} s", recording.times[reached] - recording.times.front());
 }
 
@@ -45,8 +45,8 @@ std::string prediction_text(const RunResult& run_result) {
   const Job& job = run_result.job();
   if (run_result.predictions.empty())
     return paragraph("Nothing to predict: give a recording the role 'validate'.") + "\n";
-  std::vector<std::vector<std::string>> rows{{"", "rmse", "band, median", "largest", "inside",
-                                              "whole curve", "1 % of range until", "unit"}};
+  std::vector<std::vector<std::string>> rows{
+      {"", "rmse", "band", "at most", "inside", "whole", "1 % until", "unit"}};
   std::string unfinished;
   for (const RecordingPrediction& prediction : run_result.predictions) {
     const Recording& recording = job.recordings[prediction.recording];
@@ -58,17 +58,22 @@ std::string prediction_text(const RunResult& run_result) {
     for (const SignalPrediction& p : prediction.signals) {
       const Measurement& measured = recording.measurements[p.measurement];
       const SignalInfo signal = info(measured.signal, job.vocabulary());
-      rows.push_back(
-          {fmt::format("{}: {}", recording.name, signal.name), fmt::format("{:.4g}", p.rmse),
-           fmt::format("+-{:.3g}", p.band.median()), fmt::format("+-{:.3g}", p.band.largest()),
-           fmt::format("{:.1f} %", p.inside_percent),
-           fmt::format("{} +-{:.2g} times", p.is_whole_inside ? "inside" : "outside", p.band.whole),
-           horizon_text(p, recording), std::string(signal.unit)});
+      rows.push_back({fmt::format("{}: {}", recording.name, signal.name),
+                      fmt::format("{:.4g}", p.rmse), fmt::format("+-{:.3g}", p.band.median()),
+                      fmt::format("+-{:.3g}", p.band.largest()),
+                      fmt::format("{:.1f} %", p.inside_percent),
+                      fmt::format("{} {:.2g}x", p.is_whole_inside ? "in" : "not in", p.band.whole),
+                      horizon_text(p, recording), std::string(signal.unit)});
     }
   }
   using enum Alignment;
   return "Prediction, free running, with 95 % bands\n" +
          format_table(rows, {left, right, right, right, right, right, right, left}) + unfinished +
+         paragraph(
+             "Of the band at any one time the median and largest half width, and how much of "
+             "what was measured it holds; whether all of that is in the band for whole curves, "
+             "so many times as wide; and until when the band is below 1 % of the range.",
+             2) +
          paragraph(allowance_text(run_result), 2) + "\n";
 }
 

@@ -998,6 +998,35 @@ TEST_F(CommandLineTest, SetChangesQuantities) {
   }
 }
 
+TEST_F(CommandLineTest, BandsComeFromWhatAFitLeavesOpen) {
+  const Outcome refused = simulate({kXAxis, motion(), "--band"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("bands are for the fitted.yaml that fit-params writes"),
+            std::string::npos)
+      << refused.err;
+  const std::string axis = folder_.write("fitted.yaml", R"(drive: force_source
+transmission: rigid
+parameters: {K_f: 35 N/V, M: 95 kg, B_a: 200 N s/m}
+uncertainty:
+  parameters: [{name: B_a, scale: logarithmic, error: 2 %}]
+)");
+  const std::string step = folder_.write("step.yaml", "type: step\nlevel: 4 V\nduration: 3 s\n");
+  const Outcome outcome =
+      simulate({axis, step, "--band", "--exact", "--rate", "100", "--signals", "velocity"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Table table = recorded(outcome.out);
+  ASSERT_EQ(table.columns.size(), 5u);
+  EXPECT_EQ(table.columns[3].name, "velocity_mps_half_width");
+  EXPECT_EQ(table.columns[4].name, "velocity_mps_half_width_of_whole");
+  // v = F / B (1 - e), e = exp(-t B / M): a relative error of B changes it so.
+  const double x = 3.0 * 200.0 / 95.0, e = std::exp(-x), v = 35.0 * 4.0 / 200.0;
+  EXPECT_NEAR(table.columns[2].values.back(), v * (1.0 - e), 1e-6);
+  const double half = 1.96 * 0.02 * v * (1.0 - e - x * e);
+  EXPECT_NEAR(table.columns[3].values.back(), half, 0.15 * half);
+  EXPECT_EQ(table.columns[3].values.front(), 0.0);
+  EXPECT_GE(table.columns[4].values.back(), table.columns[3].values.back());
+}
+
 TEST_F(CommandLineTest, AMachineIsRecordedAxisByAxis) {
   const std::string robot = AXISFIT_CONFIGS "/machines/robot.yaml", results = folder_.path("robot");
   const Outcome outcome = simulate({robot, "--output", results, "--rate", "100"});
