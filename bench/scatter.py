@@ -28,8 +28,9 @@ effects: {coulomb_friction: {F_c: 10 N}, constant_force: {F_0: 0 N}}
 """
 
 
-def simulate(rng, mass, viscous, coulomb, offset):
-    """All recordings at once: measured forces and positions by sample."""
+def simulate(rng, mass, viscous, coulomb, offset, friction_at=lambda time: 1.0):
+    """All recordings at once: measured forces and positions by sample. `friction_at` tells by what friction is
+    multiplied at a time."""
     n = len(mass)
     t = np.arange(SAMPLES) * SAMPLE
     f, phase = rng.uniform(0.2, 1.5, (n, 3)), rng.uniform(0, 2 * np.pi, (n, 3))
@@ -42,11 +43,12 @@ def simulate(rng, mass, viscous, coulomb, offset):
         forces.append(force.copy())
         places.append(y.copy())
         after = 20.0 * (900.0 * (path[:, k] - y) + 42.0 * (speed[:, k] - v))
+        worn = friction_at(t[k])
         for part in range(STEPS):
             push = force + (part + 0.5) / STEPS * (after - force) + offset
-            free = v + 0.5 * h * (push - viscous * v) / mass  # midpoint, without dry friction
-            stop = coulomb * h / mass
-            end = v + h * (push - viscous * free) / mass
+            free = v + 0.5 * h * (push - worn * viscous * v) / mass  # midpoint, without dry friction
+            stop = worn * coulomb * h / mass
+            end = v + h * (push - worn * viscous * free) / mass
             end = np.sign(end) * np.maximum(np.abs(end) - stop, 0.0)
             y = y + 0.5 * h * (v + end)
             v = end

@@ -11,4 +11,5 @@ complete -c simulate-axis -l signals -x -a $signals -d 'signals to record'
 complete -c simulate-axis -n 'contains -- --signals (commandline -opc)' -a $signals
 complete -c simulate-axis -l rate -x -d 'samples per second'
 complete -c simulate-axis -l seed -x -d 'seed of the noise'
+complete -c simulate-axis -l band -d '95 % bands of a fitted axis'
 complete -c simulate-axis -l exact -d 'no noise, no encoder quantisation, all digits'
