@@ -113,6 +113,8 @@ void predict(RunResult& result, const RunContext& context) {
         predict_recordings(result.job(), result.fit(), *result.uncertainty, context);
   } catch (const Interrupted&) {
     result.interrupted = true;
+  } catch (const std::runtime_error& problem) {
+    result.no_prediction = problem.what();
   }
 }
 

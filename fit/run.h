@@ -67,6 +67,7 @@ struct RunResult {
   std::optional<Scatter> scatter;                ///< of the final model, in its errors
   std::optional<AxisUncertainty> uncertainty;    ///< of the final model, where that is usable
   std::vector<RecordingPrediction> predictions;  ///< by the final model, where asked for
+  std::string no_prediction;                     ///< why there can be none
   std::vector<Profile> profiles;                 ///< of the final model, those asked for
   std::vector<Discrimination> discriminations;   ///< of the loop's undecided effects, pair by pair
   std::optional<Suggestion> suggestion;          ///< of the next experiment, where it was asked for

@@ -43,6 +43,8 @@ std::string allowance_text(const RunResult& run_result) {
 std::string prediction_text(const RunResult& run_result) {
   if (!run_result.options.predict || !run_result.uncertainty) return {};
   const Job& job = run_result.job();
+  if (!run_result.no_prediction.empty())
+    return paragraph("No prediction: " + run_result.no_prediction + ".") + "\n";
   if (run_result.predictions.empty())
     return paragraph("Nothing to predict: give a recording the role 'validate'.") + "\n";
   std::vector<std::vector<std::string>> rows{
