@@ -170,7 +170,10 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
       p.uncertainty = {.of_wrong_model = true, .inflation = p.uncertainty.inflation};
   if (result.grade.is_usable() && !result.interrupted) {
     result.scatter = allow_for_scatter(result.job(), last);
-    result.uncertainty = axis_uncertainty(result.job(), last, result.scatter);
+    result.uncertainty =
+        axis_uncertainty(result.job(), last, result.scatter,
+                         result.diagnosis ? std::span<const MissingForce>(result.diagnosis->forces)
+                                          : std::span<const MissingForce>());
     if (options.predict) predict(result, context);
   }
   result.second_opinion = second_opinion(result.job(), last);

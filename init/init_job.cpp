@@ -735,11 +735,13 @@ class Initialiser {
   bool take_out_open(double strength) {
     for (;;) {
       const Job job = read_job();
-      std::vector<double> values = draw_start(job, 0);
+      const std::vector<double> start = draw_start(job, 0);
+      std::vector<double> values = start;
       for (std::size_t i = 0; i < values.size(); ++i) {
         const QuantityEntry& entry = job.entry(job.free[i].quantity);
         if (entry.effect && entry.quantity.lower == 0.0) values[i] *= strength;
       }
+      if (strength != 1.0 && values == start) return true;  // looked at already
       const Forecast found = forecast(job, values);
       if (!found.finite) {
         guesses_.push_back(

@@ -81,10 +81,7 @@ class Together {
                                           const Relaxation& relaxation) {
     const double parts =
         4.0 * std::max(1.0, std::ceil(0.25 / (options.rate * relaxation.interval) - 1e-9));
-    RecordingOptions fine = options;
-    fine.rate *= parts;
-    fine.duration = std::round(options.duration * options.rate) / options.rate;
-    return sampling_times(fine);
+    return sampling_times(options, parts);
   }
 
   /// At the instants; of a second derivative the first.

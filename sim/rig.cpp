@@ -39,6 +39,13 @@ std::vector<double> sampling_times(const RecordingOptions& options) {
   return times;
 }
 
+std::vector<double> sampling_times(const RecordingOptions& options, double parts) {
+  RecordingOptions fine = options;
+  fine.rate *= parts;
+  fine.duration = std::round(options.duration * options.rate) / options.rate;
+  return sampling_times(fine);
+}
+
 Schedule run_rig(const Rig& rig, const Motion& motion, const RecordingOptions& options,
                  std::span<const double> instants, std::span<const ChannelSeries> channels,
                  const std::function<void(std::size_t, const Integrator<double>&)>& read) {

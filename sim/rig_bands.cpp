@@ -3,7 +3,6 @@
 
 #include "base/parallel.h"
 #include "sim/ensemble.h"
-#include "sim/recorder.h"
 #include "sim/rig.h"
 #include "sim/rig_run.h"
 
@@ -21,10 +20,8 @@ std::vector<Column> record_with_bands(const Rig& rig, const Motion& motion,
   std::vector<Column> columns = record(rig, motion, exact);
   const std::size_t first = columns.size() - options.signals.size();
 
-  RecordingOptions fine = options;
-  constexpr double kParts = 4.0;
-  fine.rate *= kParts;
-  const std::vector<double> instants = sampling_times(fine);
+  constexpr double kParts = 4.0;  // as instruments with lags divide the intervals
+  const std::vector<double> instants = sampling_times(options, kParts);
   std::vector<std::vector<Column>> drawn(AxisEnsemble::kDraws);
   parallel_for(drawn.size(), [&](std::size_t k) {
     Rig of_draw = rig;

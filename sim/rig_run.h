@@ -12,6 +12,8 @@ namespace axisfit {
 
 /// s, of all samples.
 std::vector<double> sampling_times(const RecordingOptions& options);
+/// The same with each interval between them divided into so many parts.
+std::vector<double> sampling_times(const RecordingOptions& options, double parts);
 
 /// Simulates a rig through a motion, with these channels at the instants (s, from zero on), and
 /// calls read(i, axis) at each; returns the commands. Throws std::runtime_error when it cannot be

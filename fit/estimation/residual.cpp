@@ -108,27 +108,16 @@ Observer observer_for(const Recording& recording, double rate) {
   return {};
 }
 
-std::vector<std::vector<double>> simulate_readings(const Job& job, const Recording& recording,
-                                                   const Model<double>& model) {
-  std::vector<Signal> signals;
-  for (const Measurement& m : recording.measurements) signals.push_back(m.signal);
-  Recorder<double> recorder(model.instruments, signals, recording.times);
-  const SimulationResult ran =
-      run(job, recording, model, Observer{}, recorder,
-          [&](std::size_t, const Integrator<double>& axis) { recorder.read(axis); });
-  std::vector<std::vector<double>> readings;
-  for (std::size_t m = 0; ran.finished && m < recording.measurements.size(); ++m)
-    readings.push_back(filtered(recording.measurements[m].filter, recorder.readings(m)));
-  return readings;
-}
-
 SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& space,
                                       std::size_t index, const double* u,
                                       const Observer& observer) {
-  const Recording& recording = job.recordings[index];
+  return simulate_recording(job, job.recordings[index], model_at(job, space, u, index), observer);
+}
+
+SimulatedRecording simulate_recording(const Job& job, const Recording& recording,
+                                      const Model<double>& model, const Observer& observer) {
   std::vector<Signal> signals;
   for (const Measurement& m : recording.measurements) signals.push_back(m.signal);
-  const Model<double> model = model_at(job, space, u, index);
   Recorder<double> recorder(model.instruments, signals, recording.times);
   SimulatedRecording simulation;
   const std::vector<double> velocity = target_values(recording, Signal::velocity),

@@ -20,10 +20,9 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
                                       std::size_t recording, const double* u,
                                       const Observer& observer);
 
-/// What its instruments show in a free run of that model: per measurement, in the recording's
-/// order, one value per sample. Empty where that does not finish.
-std::vector<std::vector<double>> simulate_readings(const Job& job, const Recording& recording,
-                                                   const Model<double>& model);
+/// The same of a model, with the job's options.
+SimulatedRecording simulate_recording(const Job& job, const Recording& recording,
+                                      const Model<double>& model, const Observer& observer);
 
 /// The observer of a recording at a rate: to its velocity, or else to its position, or none.
 Observer observer_for(const Recording& recording, double rate);

@@ -162,11 +162,6 @@ class Likelihood {
   std::vector<Alone> groups_;
 };
 
-/// Whether a free parameter is one of the machine and not of a run.
-bool is_of_machine(const Job& job, std::size_t i) {
-  return !job.free[i].recording && quantity_list()[job.free[i].quantity].group != "initial";
-}
-
 /// One part of so many of a series.
 SeriesRows part_of(const SeriesRows& rows, std::size_t part, std::size_t parts) {
   const auto at = [&](std::size_t p) {
@@ -209,6 +204,10 @@ std::vector<Rows> group(const Job& job, const Linearization& at, Scatter& scatte
 }
 
 }  // namespace
+
+bool is_of_machine(const Job& job, std::size_t i) {
+  return !job.free[i].recording && quantity_list()[job.free[i].quantity].group != "initial";
+}
 
 std::size_t Scatter::fitted_groups() const {
   return static_cast<std::size_t>(std::ranges::count(groups, true, &Group::fitted));
@@ -292,7 +291,8 @@ std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
         columns[static_cast<std::size_t>(of_machine[static_cast<std::size_t>(k)])]);
     ParameterUncertainty& known = fit.parameters[i].uncertainty;
     const double here = u[static_cast<Index>(i)], slope = std::abs(space.slope(i, here));
-    ParameterScatter found{i, std::sqrt(variances[k]) * slope, 0.0, 0.0, known.standard_error, {}};
+    ParameterScatter found{i, std::sqrt(variances[k]) * slope, 0.0, 0.0, known.standard_error, 1.0,
+                           {}};
     const auto [lower, upper] = likelihood.interval(variances, k);
     found.lower = lower * slope;
     found.upper = upper * slope;
@@ -315,8 +315,8 @@ std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
         weight += w;
         square += w * w;
       }
-      const double freedom = std::max(1.0, weight * weight / square - 1.0);
-      const double half = student_95(freedom) * std::sqrt(after);
+      found.freedom = std::max(1.0, weight * weight / square - 1.0);
+      const double half = student_95(found.freedom) * std::sqrt(after);
       known.inflation *= std::sqrt(after / before);
       known.standard_error = std::sqrt(after) * slope;
       known.lower = std::max(space[i].lower, space.value(i, here - half));

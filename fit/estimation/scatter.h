@@ -37,6 +37,7 @@ struct ParameterScatter {
   double deviation = 0.0;
   double lower = 0.0, upper = 0.0;  ///< its 95 % interval, by the profile of the likelihood
   double within = 0.0;              ///< standard error of the estimate without it
+  double freedom = 1.0;             ///< its degrees of freedom: groups that tell it, but one
   std::vector<EstimateOfGroup> groups;
 };
 
@@ -53,6 +54,10 @@ struct Scatter {
 
   std::size_t fitted_groups() const;
 };
+
+/// Whether a free parameter is one of the machine, and not of one recording or of how a motion
+/// begins.
+bool is_of_machine(const Job& job, std::size_t parameter);
 
 /// Of a usable fit, with a share in the standard errors and intervals of its parameters: they
 /// become those of the machine. Of two or more fitted recordings, or of stretches of one where the

@@ -1,17 +1,16 @@
 #include "fit/prediction/prediction.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "base/linear_algebra.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "fit/data/filter.h"
 #include "fit/estimation/initial_state.h"
 #include "fit/estimation/residual.h"
 #include "fit/residuals/autocovariance.h"
-#include "fit/residuals/missing_force.h"
 #include "sim/sampling.h"
 
 namespace axisfit {
@@ -32,7 +31,7 @@ std::vector<double> without(const std::vector<double>& force,
     columns.col(static_cast<Eigen::Index>(c)) =
         Eigen::Map<const Eigen::VectorXd>(causes[c].data(), rows);
   const Eigen::Map<const Eigen::VectorXd> whole(force.data(), rows);
-  const Eigen::VectorXd left = whole - columns * columns.colPivHouseholderQr().solve(whole);
+  const Eigen::VectorXd left = whole - columns * LeastSquaresSolver(columns).solve(whole);
   return {left.data(), left.data() + left.size()};
 }
 
@@ -40,12 +39,9 @@ std::vector<double> without(const std::vector<double>& force,
 /// Without what other parameters would make there, for these have errors and a scatter of their
 /// own: viscous and dry friction, a constant force, and the drive's gain, which is a mass as well.
 /// (With the acceleration besides, it would be the balance of forces itself.)
-std::optional<ForceSeries> force_series(const Job& job, const FitResult& fit,
-                                        std::size_t recording) {
+std::optional<ForceSeries> force_series(const Recording& r, const MissingForce& missing) {
   constexpr double kClear = 1.5;
-  const MissingForce missing = missing_force(job, fit, recording);
   if (!missing.found) return std::nullopt;
-  const Recording& r = job.recordings[recording];
   const double sampling = mean_interval(r.times);
   std::vector<double> velocity, direction, drive;
   for (const Sample& s : missing.samples) {
@@ -75,11 +71,12 @@ std::optional<ForceSeries> force_series(const Job& job, const FitResult& fit,
   return series;
 }
 
-std::vector<ForceSeries> all_force_series(const Job& job, const FitResult& fit) {
+std::vector<ForceSeries> all_force_series(const Job& job, std::span<const MissingForce> forces) {
   std::vector<ForceSeries> all;
-  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+  for (std::size_t r = 0; r < forces.size(); ++r)
     if (job.recordings[r].role == Role::fit)
-      if (auto series = force_series(job, fit, r)) all.push_back(*std::move(series));
+      if (auto series = force_series(job.recordings[r], forces[r]))
+        all.push_back(*std::move(series));
   return all;
 }
 
@@ -105,18 +102,6 @@ std::optional<MissingForceProcess> process_of(const std::vector<ForceSeries>& al
   Autoregression found = fit_autoregression(covariance, samples);
   return MissingForceProcess{longest->interval, std::sqrt(covariance[0]),
                              std::sqrt(found.innovation), std::move(found.coefficients)};
-}
-
-/// Degrees of freedom of the scatter of a parameter: groups that tell it, but one.
-double freedom_of(const Scatter& scatter, const ParameterScatter& p) {
-  double weight = 0.0, square = 0.0;
-  for (std::size_t g = 0; g < scatter.groups.size(); ++g) {
-    if (!scatter.groups[g].fitted || !p.groups[g].determined) continue;
-    const double w = 1.0 / (std::pow(p.groups[g].standard_error, 2) + p.deviation * p.deviation);
-    weight += w;
-    square += w * w;
-  }
-  return square > 0.0 ? std::max(1.0, weight * weight / square - 1.0) : 1.0;
 }
 
 /// The model of a recording as the k-th axis of an ensemble, with an initial state as uncertain as
@@ -153,7 +138,8 @@ RecordingPrediction predict_recording(const Job& job, const FitResult& fit, std:
                              std::vector<double>(recording.times.size(), 0.0));
       driven.channels.emplace_back(ensemble.missing_force(k, recording.times));
     }
-    drawn[k] = simulate_readings(job, driven, axis);
+    SimulatedRecording ran = simulate_recording(job, driven, axis, {});
+    if (ran.finished) drawn[k] = std::move(ran.simulated);
     for (std::size_t m = 0; m < drawn[k].size(); ++m)
       for (double& x : drawn[k][m]) x += recording.measurements[m].sigma * normal(random);
   });
@@ -191,7 +177,8 @@ RecordingPrediction predict_recording(const Job& job, const FitResult& fit, std:
 }  // namespace
 
 AxisUncertainty axis_uncertainty(const Job& job, const FitResult& fit,
-                                 const std::optional<Scatter>& scatter) {
+                                 const std::optional<Scatter>& scatter,
+                                 std::span<const MissingForce> forces) {
   AxisUncertainty found;
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values_of(fit));
@@ -199,8 +186,8 @@ AxisUncertainty axis_uncertainty(const Job& job, const FitResult& fit,
   for (std::size_t i = 0; i < space.size(); ++i) {
     const ParameterUncertainty& known = fit.parameters[i].uncertainty;
     const FreeParameter& free = space[i];
-    if (free.recording || job.entry(free.quantity).group == "initial" ||
-        known.verdict() == ParameterVerdict::of_wrong_model || known.at_bound || !known.determined)
+    if (!is_of_machine(job, i) || known.verdict() == ParameterVerdict::of_wrong_model ||
+        known.at_bound || !known.determined)
       continue;
     // On a logarithmic scale the errors are those of the logarithm.
     const double per_unit = free.logarithmic ? 1.0 / fit.parameters[i].value : 1.0;
@@ -214,7 +201,7 @@ AxisUncertainty axis_uncertainty(const Job& job, const FitResult& fit,
             std::pow(known.standard_error, 2) - p->within * p->within + p->deviation * p->deviation;
         q.error = p->within * per_unit;
         q.scatter = std::sqrt(std::max(0.0, of_all)) * per_unit;
-        q.freedom = freedom_of(*scatter, *p);
+        q.freedom = p->freedom;
       }
     }
     found.quantities.push_back(q);
@@ -225,7 +212,7 @@ AxisUncertainty axis_uncertainty(const Job& job, const FitResult& fit,
       const double c = i == j ? 1.0 : fit.correlation(i, j);
       found.correlation.push_back(std::isfinite(c) ? c : 0.0);
     }
-  found.missing_force = process_of(all_force_series(job, fit));
+  found.missing_force = process_of(all_force_series(job, forces));
   return found;
 }
 

@@ -8,21 +8,24 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "fit/estimation/estimate.h"
 #include "fit/estimation/run_context.h"
 #include "fit/estimation/scatter.h"
+#include "fit/residuals/missing_force.h"
 #include "fit/residuals/series.h"
 #include "sim/axis_uncertainty.h"
 #include "sim/ensemble.h"
 
 namespace axisfit {
 
-/// What is not known of a fitted axis. Parameters of one recording, at a bound, or that the data
-/// leave open are taken as they are.
+/// What is not known of a fitted axis, with the missing force of each of its recordings. Parameters
+/// of one recording, at a bound, or that the data leave open are taken as they are.
 AxisUncertainty axis_uncertainty(const Job& job, const FitResult& fit,
-                                 const std::optional<Scatter>& scatter);
+                                 const std::optional<Scatter>& scatter,
+                                 std::span<const MissingForce> forces);
 
 struct SignalPrediction : SeriesKey {
   std::vector<double> values;  ///< of the fitted model, one per sample, in the signal's unit

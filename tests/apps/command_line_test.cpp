@@ -1025,6 +1025,26 @@ uncertainty:
   EXPECT_NEAR(table.columns[3].values.back(), half, 0.15 * half);
   EXPECT_EQ(table.columns[3].values.front(), 0.0);
   EXPECT_GE(table.columns[4].values.back(), table.columns[3].values.back());
+
+  // A missing force of no size changes nothing, whatever the samples: the last is at 2.996 s.
+  const std::string forced = folder_.write("forced.yaml", R"(drive: force_source
+transmission: rigid
+parameters: {K_f: 35 N/V, M: 95 kg, B_a: 200 N s/m}
+uncertainty:
+  parameters: [{name: B_a, scale: logarithmic, error: 2 %}]
+  missing_force: {interval: 10 ms, deviation: 0 N, innovation: 0 N}
+)");
+  const std::string odd = folder_.write("odd.yaml", "type: step\nlevel: 4 V\nduration: 2.996 s\n");
+  const auto half_width = [&](const std::string& of) {
+    return recorded(
+               simulate({of, odd, "--band", "--exact", "--rate", "100", "--signals", "velocity"})
+                   .out)
+        .columns.at(3)
+        .values;
+  };
+  const std::vector<double> without = half_width(axis), with = half_width(forced);
+  ASSERT_EQ(without.size(), with.size());
+  for (std::size_t i = 0; i < with.size(); ++i) EXPECT_NEAR(with[i], without[i], 1e-6) << i;
 }
 
 TEST_F(CommandLineTest, AMachineIsRecordedAxisByAxis) {
