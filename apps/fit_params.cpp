@@ -14,16 +14,20 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
+#include <variant>
 
 #include "apps/command_line.h"
 #include "apps/progress.h"
+#include "apps/result_files.h"
 #include "base/terminal.h"
 #include "base/text_table.h"
+#include "base/units.h"
 #include "fit/design/run_time_estimate.h"
 #include "fit/run.h"
 #include "init/machine_choice.h"
 #include "init/starter_axis.h"
 #include "io/config/axis_file.h"
+#include "io/config/channels.h"
 #include "io/config/config.h"
 #include "io/config/job_file.h"
 #include "io/config/motion_file.h"
@@ -37,14 +41,6 @@
 namespace {
 
 using namespace axisfit;
-
-const ResultName kResultFile{"result.json", "\"axisfit\": \""};
-const ResultName kAxisFile{"fitted.yaml", "# Fitted by axisfit "};
-const ResultName kResidualsFile{"residuals.csv", "recording,time_s,"};
-const ResultName kReportFile{"report.html", "<meta name=\"generator\" content=\"axisfit "};
-const ResultName kPredictionFile{"prediction.csv", "recording,time_s,"};
-const ResultName kMotionFile{"next-motion.yaml", "# Suggested by axisfit "};
-const ResultName kNextJobFile{"next-job.yaml", "# Goes on from axisfit "};
 
 enum ExitCode {  // besides kBadInput
   kUsable = 0,
@@ -94,6 +90,9 @@ struct Arguments {
   std::string axis, machine;
   std::optional<double> gain;        ///< N/V
   std::vector<std::string> answers;  ///< what columns are
+  std::vector<std::string> others;   ///< axis files to compare with
+  std::string motion;                ///< motion file to predict; "-": none
+  std::vector<std::string> tolerances;
   bool init = false;
   bool check = false;
   RunOptions options;
@@ -148,6 +147,49 @@ void start_from(const std::string& axis_file, Job& job) {
   for (FreeParameter& p : job.free)
     if (!p.recording && is_used(quantity_list()[p.quantity], rig->model.structure))
       p.initial = std::clamp(*values[p.quantity], p.lower, p.upper);
+}
+
+/// The axes of files, as models of the job's recordings.
+std::vector<OtherModel> models_of(const std::vector<std::string>& axis_files, const Job& job) {
+  std::vector<OtherModel> models;
+  for (const std::string& file : axis_files) {
+    Diagnostics diagnostics;
+    auto rig = read_axis_file(file, diagnostics);
+    diagnostics.throw_if_any();
+    const Structure &own = job.model.structure, &other = rig->model.structure;
+    if (vocabulary_of(own) != vocabulary_of(other))
+      throw std::runtime_error(fmt::format(
+          "--compare {}: joint or unit of the command are not those of the job's axis", file));
+    const auto name = [](const Channel& channel) { return channel.name; };
+    const ChannelList &channels = channels_of(own), &others = channels_of(other);
+    if (others.size() > channels.size() ||
+        !std::ranges::equal(others, std::span(channels).first(others.size()), {}, name, name))
+      throw std::runtime_error(fmt::format(
+          "--compare {}: its channels are not those of the job, in the same order", file));
+    models.push_back({file, rig->model, rig->uncertainty});
+  }
+  return models;
+}
+
+/// An allowed error of a signal that the job has, such as "1 mm".
+Tolerance tolerance_of(const std::string& text, const Job& job) {
+  std::size_t end = 0;
+  double value = 0.0;
+  try {
+    value = std::stod(text, &end);
+  } catch (const std::exception&) {
+    end = 0;
+  }
+  const std::string unit = text.substr(std::min(text.find_first_not_of(' ', end), text.size()));
+  if (end == 0 || !(value > 0.0) || !std::isfinite(value) || unit.empty())
+    throw std::runtime_error(
+        fmt::format("--within '{}': write a number above zero and its unit, such as 1mm", text));
+  for (const Recording& r : job.recordings)
+    for (const Measurement& m : r.measurements)
+      if (std::holds_alternative<double>(unit_factor(unit, info(m.signal, job.vocabulary()).unit)))
+        return {value, unit};
+  throw std::runtime_error(
+      fmt::format("--within '{}': no signal of the job can be given in {}", text, unit));
 }
 
 /// Prints the text that `report` makes, which is told whether it may have colours.
@@ -247,51 +289,6 @@ std::string command_line_of(int argc, char** argv) {
   return line;
 }
 
-/// Whether effects were accepted, or constants found to be others.
-bool declares_too_little(const Job& declared, const Job& reached) {
-  return reached.free.size() != declared.free.size() ||
-         reached.model.structure.effects != declared.model.structure.effects;
-}
-
-Files files_of(const Arguments& arguments, const JobFile& file, const RunResult& run_result,
-               const std::string& json) {
-  Rig fitted = file.rig;
-  fitted.model = fitted_model(run_result.job(), run_result.fit());
-  fitted.uncertainty = run_result.uncertainty;
-  // What was estimated is no guess any more.
-  std::erase_if(fitted.guessed, [&](std::size_t g) {
-    return std::ranges::count(run_result.job().free, g, &FreeParameter::quantity) > 0;
-  });
-  const std::string origin = fmt::format("axisfit {} from {}, starting from {}", version(),
-                                         arguments.files.front(), file.axis_file);
-  Files files{
-      {kResultFile.name, json},
-      {kAxisFile.name, format_axis_file(fitted, fmt::format("Fitted by {}.\n{}", origin,
-                                                            overall_verdict(run_result)))},
-      {kResidualsFile.name,
-       residuals_csv(run_result.job(), run_result.fit(), run_result.diagnosis)},
-      {kReportFile.name, report_page(run_result, {arguments.command, arguments.files.front(),
-                                                  file.text, file.axis_file, file.axis_text})}};
-  if (!arguments.output.empty() && declares_too_little(file.job, run_result.job()))
-    files.emplace_back(
-        kNextJobFile.name,
-        next_job_text(file, run_result.job(), arguments.files.front(), arguments.data,
-                      arguments.output, kAxisFile.name,
-                      fmt::format("Goes on from {}, with what was accepted there: the axis is {}.",
-                                  origin, kAxisFile.name)));
-  if (!run_result.predictions.empty())
-    files.emplace_back(kPredictionFile.name, prediction_csv(run_result));
-  const Vocabulary vocabulary = run_result.job().vocabulary();
-  if (const Experiment* next = next_experiment(run_result)) {
-    files.emplace_back(kMotionFile.name,
-                       format_motion_file({next->motion, next->duration},
-                                          fmt::format("Suggested by {}:\n{}.", origin,
-                                                      motion_text(next->motion, vocabulary)),
-                                          vocabulary));
-  }
-  return files;
-}
-
 /// How to go on after Ctrl-C or the time limit.
 std::string how_to_continue(const Arguments& arguments) {
   if (arguments.output.empty())
@@ -312,11 +309,7 @@ std::unique_ptr<OutputFolder> open_folder(const Arguments& arguments,
                                           std::optional<ProgressLine>& line) {
   if (arguments.output.empty()) return nullptr;
   if (!arguments.from.empty()) inputs.push_back(arguments.from);
-  auto folder = std::make_unique<OutputFolder>(
-      arguments.output,
-      std::vector<ResultName>{kResultFile, kAxisFile, kResidualsFile, kReportFile, kPredictionFile,
-                              kMotionFile, kNextJobFile},
-      inputs);
+  auto folder = std::make_unique<OutputFolder>(arguments.output, result_names(), inputs);
   JournalFile& journal = folder->journal();
   const std::string found = fmt::format("{} solved least-squares problem{}", journal.recovered(),
                                         journal.recovered() == 1 ? "" : "s");
@@ -343,7 +336,7 @@ std::unique_ptr<OutputFolder> open_folder(const Arguments& arguments,
 
 /// Whether a folder holds the whole result of a usable fit.
 bool holds_complete_result(const std::string& folder) {
-  const std::filesystem::path path = std::filesystem::path(folder) / kResultFile.name;
+  const std::filesystem::path path = std::filesystem::path(folder) / kResultFile;
   if (!std::filesystem::is_regular_file(path)) return false;
   std::ifstream file(path);
   const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
@@ -365,7 +358,10 @@ void write(const Arguments& arguments, const JobFile& file, const RunResult& run
     if (complete) folder.discard_journal();
     return;
   }
-  folder.write(files_of(arguments, file, run_result, json), complete);
+  folder.write(
+      result_files(file, run_result, json,
+                   {arguments.command, arguments.files.front(), arguments.data, arguments.output}),
+      complete);
 }
 
 /// What a finished run is shown by, before it is written.
@@ -385,7 +381,15 @@ int run_job(const Arguments& arguments, std::optional<ProgressLine>& line, const
 
   const RunContext context{&stop_flag, folder ? &folder->journal() : nullptr,
                            [&](const Progress& progress) { line->update(progress); }};
-  RunResult& found = result.emplace(run(file.job, arguments.options, context));
+  RunOptions options_of_run = arguments.options;
+  options_of_run.others = models_of(arguments.others, file.job);
+  for (const std::string& text : arguments.tolerances)
+    options_of_run.tolerances.push_back(tolerance_of(text, file.job));
+  if (options_of_run.predict && arguments.motion != "-") {
+    const MotionFile motion = read_motion_file(arguments.motion, file.rig);
+    options_of_run.motion = {arguments.motion, motion.motion, motion.duration, file.rig};
+  }
+  RunResult& found = result.emplace(run(file.job, options_of_run, context));
   if (found.interrupted && time_limit_reached) found.time_limit = arguments.time_limit;
   const std::string json = result_json(found).dump(2) + "\n";
   line.reset();
@@ -525,9 +529,24 @@ int main(int argc, char** argv) {
           ->type_name("SECONDS");
 
   auto* predict =
-      app.add_flag("--predict", arguments.options.predict,
-                   "predict the recordings to validate, with 95 % bands; written to prediction.csv "
-                   "in --output")
+      app.add_flag("--predict{-}", arguments.motion,
+                   "predict the recordings to validate, with 95 % bands, and a motion that nobody "
+                   "recorded: --predict=MOTION.yaml; written to prediction.csv and "
+                   "predicted-motion.csv in --output")
+          ->excludes(check);
+  app.add_option("--within", arguments.tolerances,
+                 "with --predict: say until when the bands are within this error, such as 1mm; may "
+                 "be given for several units")
+      ->needs(predict)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->type_name("AMOUNT");
+
+  std::string others;
+  auto* compare =
+      app.add_flag("--compare{-}", others,
+                   "compare the models of --close-loop on the recordings to validate, and those of "
+                   "axis files: --compare=FITTED.yaml,FITTED.yaml")
           ->excludes(check);
 
   app.option_defaults()->group("Effect selection");
@@ -551,7 +570,8 @@ int main(int argc, char** argv) {
                    ->excludes(time_limit)
                    ->excludes(close)
                    ->excludes(experiment)
-                   ->excludes(predict);
+                   ->excludes(predict)
+                   ->excludes(compare);
   auto* axis = app.add_option("--axis", arguments.axis, "with --init: use this axis file")
                    ->needs(init)
                    ->check(kNotEmpty)
@@ -599,6 +619,11 @@ int main(int argc, char** argv) {
     arguments.command = command_line_of(argc, argv);
     for (std::istringstream names(profiles); std::getline(names, profiles, ',');)
       arguments.options.profiles.push_back(profiles);
+    arguments.options.predict = predict->count() > 0;
+    arguments.options.compare = compare->count() > 0;
+    if (others != "-")
+      for (std::istringstream names(others); std::getline(names, others, ',');)
+        arguments.others.push_back(others);
     stop_flag = arguments.init || arguments.check;  // there is nothing to keep
     stop_on_signals();
     if (arguments.time_limit) stop_after(*arguments.time_limit);

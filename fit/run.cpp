@@ -111,11 +111,48 @@ void predict(RunResult& result, const RunContext& context) {
   try {
     result.predictions =
         predict_recordings(result.job(), result.fit(), *result.uncertainty, context);
+    if (result.options.motion)
+      result.motion =
+          predict_motion(result.job(), result.fit(), *result.uncertainty, *result.options.motion);
   } catch (const Interrupted&) {
     result.interrupted = true;
   } catch (const std::runtime_error& problem) {
     result.no_prediction = problem.what();
   }
+}
+
+/// A model with what is not known of it, which its errors and scatter say.
+ModelEntry model_entry(std::string name, const Job& job, FitResult fit) {
+  std::vector<MissingForce> forces;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    forces.push_back(missing_force(job, fit, r));
+  std::optional<AxisUncertainty> uncertainty;
+  if (fit.usable) {
+    const std::optional<Scatter> scatter = allow_for_scatter(job, fit);
+    uncertainty = axis_uncertainty(job, fit, scatter, forces);
+  }
+  return {std::move(name), job, std::move(fit), std::move(uncertainty)};
+}
+
+/// The declared model and those of the loop, and the others.
+std::optional<Comparison> compare(const RunResult& result, const RunContext& context) {
+  const ThreadPool pool(result.baseline.options.threads);
+  std::vector<ModelEntry> models;
+  if (result.selection)
+    for (const SelectionStep& step : result.selection->models)
+      models.push_back(model_entry(step.added, step.job, step.fit));
+  else
+    models.push_back(model_entry("", result.baseline, result.first));
+  for (const OtherModel& other : result.options.others) {
+    ModelEntry entry{other.name, result.baseline, {}, other.uncertainty};
+    entry.job.model = other.model;
+    entry.job.model.structure.closed_loop = result.baseline.model.structure.closed_loop;
+    entry.job.model.structure.channels = result.baseline.model.structure.channels;
+    entry.job.free.clear();
+    entry.fit = evaluated(entry.job);
+    models.push_back(std::move(entry));
+  }
+  return compare_models(models, context);
 }
 
 void find_guess_influences(const Job& job, FitResult& fit) {
@@ -133,6 +170,10 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   result.baseline = std::move(job);
   result.options = options;
   parameters_to_profile(result.baseline, options.profiles);
+  if (result.baseline.options.choose_horizon) {
+    result.horizon = choose_horizon(result.baseline, context);
+    set_criterion(result.baseline.options, result.horizon->trials[result.horizon->chosen]);
+  }
   result.first = estimate_with_noise(result.baseline, context);
   result.interrupted = result.first.interrupted;
   result.checks = check_recordings(result.baseline);
@@ -175,6 +216,13 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
                          result.diagnosis ? std::span<const MissingForce>(result.diagnosis->forces)
                                           : std::span<const MissingForce>());
     if (options.predict) predict(result, context);
+  }
+  if (options.compare && !result.interrupted && !result.fit().recordings.empty()) {
+    try {
+      result.comparison = compare(result, context);
+    } catch (const Interrupted&) {
+      result.interrupted = true;
+    }
   }
   result.second_opinion = second_opinion(result.job(), last);
   find_guess_influences(result.baseline, result.first);

@@ -11,8 +11,10 @@
 #include "fit/design/discrimination.h"
 #include "fit/design/experiment.h"
 #include "fit/estimation/estimate.h"
+#include "fit/estimation/horizon.h"
 #include "fit/estimation/profile.h"
 #include "fit/estimation/scatter.h"
+#include "fit/prediction/comparison.h"
 #include "fit/prediction/prediction.h"
 #include "fit/selection/diagnosis.h"
 #include "fit/selection/grade.h"
@@ -44,17 +46,35 @@ struct ModelScore {
   std::vector<MissingForce> forces;  ///< of every recording
 };
 
+/// An error of a signal that is allowed, of those with such a unit.
+struct Tolerance {
+  double value = 0.0;
+  std::string unit;
+};
+
+/// A model of the machine that was fitted elsewhere.
+struct OtherModel {
+  std::string name;
+  Model<double> model;
+  std::optional<AxisUncertainty> uncertainty;
+};
+
 /// What to do beyond the fit.
 struct RunOptions {
-  bool select_effects = false;          ///< add the effects that the model lacks
-  std::vector<std::string> profiles{};  ///< of these parameters; "all": of all
-  bool suggest_experiment = false;      ///< suggest the motion to record next
-  bool predict = false;                 ///< the recordings to validate, with bands
+  bool select_effects = false;              ///< add the effects that the model lacks
+  std::vector<std::string> profiles{};      ///< of these parameters; "all": of all
+  bool suggest_experiment = false;          ///< suggest the motion to record next
+  bool predict = false;                     ///< the recordings to validate, with bands
+  std::optional<MotionToPredict> motion{};  ///< with `predict`: that as well
+  std::vector<Tolerance> tolerances{};      ///< for which the bands are judged
+  bool compare = false;                     ///< the models of the loop, and others
+  std::vector<OtherModel> others{};         ///< of the same machine, to be compared
 };
 
 struct RunResult {
   Job baseline;  ///< the job as given, with the noise if that was estimated
   RunOptions options;
+  std::optional<HorizonChoice> horizon;                  ///< where the job lets it be chosen
   FitResult first;                                       ///< fit of the baseline model
   InverseStart inverse_start = InverseStart::not_tried;  ///< what the first fit owes to it
   std::vector<RecordingCheck> checks;                    ///< of each recording
@@ -67,7 +87,9 @@ struct RunResult {
   std::optional<Scatter> scatter;                ///< of the final model, in its errors
   std::optional<AxisUncertainty> uncertainty;    ///< of the final model, where that is usable
   std::vector<RecordingPrediction> predictions;  ///< by the final model, where asked for
+  std::optional<MotionPrediction> motion;        ///< by the final model, where asked for
   std::string no_prediction;                     ///< why there can be none
+  std::optional<Comparison> comparison;          ///< of models, where it was asked for and can be
   std::vector<Profile> profiles;                 ///< of the final model, those asked for
   std::vector<Discrimination> discriminations;   ///< of the loop's undecided effects, pair by pair
   std::optional<Suggestion> suggestion;          ///< of the next experiment, where it was asked for

@@ -201,6 +201,40 @@ Json inverse_dynamics_json(const SecondOpinion& opinion, InverseStart start,
           {"parameters", std::move(parameters)}};
 }
 
+Json comparison_json(const Comparison& comparison) {
+  return {{"horizons_s", comparison.horizons},
+          {"judged_horizon_s", comparison.judged},
+          {"windows", comparison.windows},
+          {"preferred", comparison.preferred},
+          {"models", list(comparison.models, [](const ComparedModel& m) {
+             Json parameters = Json::object();
+             for (const ParameterResult& p : m.parameters) parameters[p.name] = p.value;
+             return Json{{"name", m.name},
+                         {"parameters", std::move(parameters)},
+                         {"missing_force", finite(m.missing_force)},
+                         {"free_running", list(m.free_running, [](double e) { return finite(e); })},
+                         {"inside_percent", finite(m.inside_percent)},
+                         {"curves", m.curves},
+                         {"whole_curves_inside", m.whole_inside},
+                         {"aic", finite(m.aic)},
+                         {"bic", finite(m.bic)},
+                         {"log_ratio", m.log_ratio},
+                         {"log_ratio_error", finite(m.log_ratio_error)},
+                         {"windows_lost", m.windows_lost}};
+           })}};
+}
+
+Json horizon_json(const HorizonChoice& choice) {
+  return {{"stretches", choice.stretches},
+          {"stretch_s", choice.longest},
+          {"chosen", choice.chosen},
+          {"trials", list(choice.trials, [](const HorizonTrial& t) {
+             return Json{{"observer_gain", t.observer_gain},
+                         {"horizon_s", t.horizon},
+                         {"error", finite(t.error)}};
+           })}};
+}
+
 Json scatter_json(const Scatter& scatter, const Job& job, const FitResult& fit) {
   return {{"of_stretches", scatter.of_stretches},
           {"groups", list(scatter.groups,
@@ -237,6 +271,18 @@ Json prediction_json(const RecordingPrediction& prediction, const Job& job) {
                          {"inside_percent", finite(p.inside_percent)},
                          {"whole_curve_inside", p.is_whole_inside}};
            })}};
+}
+
+Json motion_json(const MotionPrediction& motion, Vocabulary vocabulary) {
+  Json signals = Json::array();
+  for (std::size_t s = 0; s < motion.signals.size(); ++s) {
+    const std::size_t at = motion.columns.size() - 3 * (motion.signals.size() - s);
+    const Band band{motion.columns[at + 1].values};
+    signals.push_back({{"signal", info(motion.signals[s], vocabulary).name},
+                       {"half_width_median", band.median()},
+                       {"half_width_largest", band.largest()}});
+  }
+  return {{"motion", motion.name}, {"signals", std::move(signals)}};
 }
 
 Json profile_json(const Profile& profile, const FitResult& fit) {
@@ -530,6 +576,10 @@ Json result_json(const RunResult& run_result) {
     json["prediction"] = list(run_result.predictions, [&](const RecordingPrediction& p) {
       return prediction_json(p, job);
     });
+  if (run_result.motion)
+    json["predicted_motion"] = motion_json(*run_result.motion, job.vocabulary());
+  if (run_result.horizon) json["horizon"] = horizon_json(*run_result.horizon);
+  if (run_result.comparison) json["comparison"] = comparison_json(*run_result.comparison);
   if (run_result.scatter) json["scatter"] = scatter_json(*run_result.scatter, job, fit);
   if (!run_result.profiles.empty())
     json["profile"] =
@@ -540,6 +590,7 @@ Json result_json(const RunResult& run_result) {
                                   : Json(nullptr);
   if (run_result.selection) json.update(selection_json(run_result));
   json.update(Json{{"observer_gain", fit.observer_gain},
+                   {"horizon_s", job.options.horizon},
                    {"stages", list(fit.stages,
                                    [](const Stage& s) {
                                      return Json{{"observer_gain", s.observer_gain},

@@ -125,6 +125,19 @@ class Integrator {
     here_.reset();
   }
 
+  /// Puts the arm there, m and m/s, with all that moves along with it: the gear keeps its stretch,
+  /// and presliding friction its deflection.
+  void move_arm(const T& position, const T& velocity) {
+    const T along = position - y_[0], faster = velocity - y_[1];
+    y_[0] = position;
+    y_[1] = velocity;
+    y_[2] += along / equations_.radius();
+    y_[3] += faster / equations_.radius();
+    input_.memory.position += along;
+    copy_plain_input();
+    switch_mode(equations_.mode_at(y_, input_));
+  }
+
   /// Goes on to the instant `end` (s), not before the present time.
   /// Returns false when the motion chatters, swings too fast to be followed, or is not finite any
   /// more; the state is then useless.

@@ -45,6 +45,8 @@ class Recorder {
   }
   /// Whether an instant is a sample.
   bool is_sample(std::size_t instant) const { return instant % substeps_ == 0; }
+  /// The instant of a sample.
+  std::size_t instant_of(std::size_t sample) const { return sample * substeps_; }
 
   /// To be called at every instant.
   void read(const Integrator<T>& axis) {

@@ -149,6 +149,10 @@ struct FitOptions {
   /// 1/s (velocity recorded) or rad/s (position alone). Of the fixed observer gain, or where the
   /// continuation starts; zero: from the sampling interval, see continuation.h.
   double observer_gain = 0.0;
+  /// s, of the windows in which a fit without observer runs free, each from a state that is fitted,
+  /// see windows.h; zero: the whole recording is one.
+  double horizon = 0.0;
+  bool choose_horizon = false;  ///< the criterion is chosen first, see horizon.h
   Loss loss = Loss::squares;
   double huber_width = 3.0;  ///< residuals above this many sigma count linearly
   int max_iterations = 50;   ///< of each stage of the continuation

@@ -88,6 +88,8 @@ RecordingResult evaluate_recording(const Job& job, const ParameterSpace& space, 
   const Observer observer = observer_for(recording, observer_gain);
   if (observer.active())
     result.tracking = simulate_recording(job, space, index, u.data(), observer);
+  else
+    result.tracking = simulate_in_windows(job, space, index, u.data());
   const std::size_t first = recording.score_initial_samples ? 0 : recording.initial_samples;
   for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
     const Measurement& measurement = recording.measurements[m];
@@ -201,7 +203,8 @@ FitResult estimate(const Job& job, const RunContext& context, std::span<const do
   Linearization at_solution = linearize(job, space, solved.u, result.observer_gain);
   at_solution.input_noise = input_noise(job, space, solved.u, result.observer_gain, at_solution);
   const double degrees_of_freedom =
-      static_cast<double>(at_solution.residuals.size()) - static_cast<double>(space.size());
+      static_cast<double>(at_solution.residuals.size()) - static_cast<double>(space.size()) -
+      (result.observer_gain > 0.0 ? 0.0 : static_cast<double>(window_states(job)));
   if (at_solution.finite && degrees_of_freedom > 0.0)
     result.reduced_chi_square = at_solution.residuals.squaredNorm() / degrees_of_freedom;
   Uncertainty found = uncertainty(space, solved.u, at_solution);
@@ -221,6 +224,17 @@ FitResult estimate(const Job& job, const RunContext& context, std::span<const do
   result.at_solution = std::make_shared<const Linearization>(std::move(at_solution));
   result.verdict = verdict_of(job, result);
   result.usable = result.verdict.kind == FitVerdict::Kind::usable;
+  return result;
+}
+
+FitResult evaluated(const Job& job) {
+  const ParameterSpace space(job);
+  const Eigen::VectorXd none(0);
+  FitResult result;
+  result.status = Status::converged;
+  result.observer_gain = final_observer_gain(job);
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    result.recordings.push_back(evaluate_recording(job, space, r, none, result.observer_gain));
   return result;
 }
 

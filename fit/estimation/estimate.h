@@ -37,7 +37,8 @@ struct SignalError {
 
 struct RecordingResult {
   SimulatedRecording free_running;  ///< free running
-  /// With the observer at which the fit ended; only where that is not zero.
+  /// With the observer at which the fit ended, or in the windows of its horizon; only where there
+  /// are such.
   std::optional<SimulatedRecording> tracking;
   std::vector<SignalError> signals;
 
@@ -153,6 +154,10 @@ FitResult estimate(const Job& job, const RunContext& context = {},
 /// is to be estimated.
 FitResult estimate_with_noise(Job& job, const RunContext& context = {},
                               std::span<const double> from = {});
+
+/// The job's model as it is, judged on its recordings: a fit of nothing. Its free parameters must
+/// be none.
+FitResult evaluated(const Job& job);
 
 /// The model with the estimates in place of the free quantities that all recordings share.
 Model<double> fitted_model(const Job& job, const FitResult& result);

@@ -1,9 +1,25 @@
 // The initial state of a recording from its own first samples.
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "fit/data/job.h"
 
 namespace axisfit {
+
+/// Value and slope of a signal at a sample, and their standard errors.
+struct LocalCourse {
+  double value = 0.0, slope = 0.0;
+  double value_error = 0.0, slope_error = 0.0;
+};
+
+/// Of a cubic through `count` samples from `first` on, as far as there are any. What it leaves of
+/// them, or the stated noise where that is more, makes the errors. Of fewer than four: the sample
+/// itself.
+LocalCourse local_course(const std::vector<double>& times, const std::vector<double>& values,
+                         std::size_t first, std::size_t count, std::size_t sample,
+                         double noise = 0.0);
 
 /// Arm position and velocity at the first sample, from the recording's first `initial_samples`: the
 /// velocity is a recorded one's mean path, else the slope of the position, by cubic least squares.

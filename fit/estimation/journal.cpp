@@ -94,7 +94,7 @@ ProblemKey problem_key(const Job& job, const Eigen::VectorXd& u, double observer
   for (const Recording& r : job.recordings) add_recording(hash, r);
   hash << job.free.size();
   for (const FreeParameter& p : job.free) add_parameter(hash, p);
-  hash << job.options.loss << job.options.huber_width << job.options.step;
+  hash << job.options.loss << job.options.huber_width << job.options.step << job.options.horizon;
   hash << u << observer_gain << options.max_iterations << options.function_tolerance
        << options.parameter_tolerance << options.penalize_distance_from_start << options.fixed;
   return hash.key();

@@ -1,6 +1,7 @@
 #include "fit/estimation/residual.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -9,6 +10,8 @@
 
 namespace axisfit {
 namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The measured values that an observer tracks: without the delay of the filter that they went
 /// through, or a high gain would make the axis late. Empty where there are none.
@@ -114,11 +117,14 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
   return simulate_recording(job, job.recordings[index], model_at(job, space, u, index), observer);
 }
 
-SimulatedRecording simulate_recording(const Job& job, const Recording& recording,
-                                      const Model<double>& model, const Observer& observer) {
+namespace {
+
+SimulatedRecording simulated(const Job& job, const Recording& recording, const Model<double>& model,
+                             const Observer& observer, std::span<const WindowStart> starts) {
   std::vector<Signal> signals;
   for (const Measurement& m : recording.measurements) signals.push_back(m.signal);
   Recorder<double> recorder(model.instruments, signals, recording.times);
+  WindowRestarts<double> restarts(starts, recorder);
   SimulatedRecording simulation;
   const std::vector<double> velocity = target_values(recording, Signal::velocity),
                             position = target_values(recording, Signal::position);
@@ -127,7 +133,8 @@ SimulatedRecording simulate_recording(const Job& job, const Recording& recording
   const MeasuredSeries measured{velocity, position};
   const SimulationResult simulation_result = run(
       job, recording, model, observer, recorder,
-      [&](std::size_t i, const Integrator<double>& axis) {
+      [&](std::size_t i, Integrator<double>& axis) {
+        restarts.at(i, axis);
         recorder.read(axis);
         if (!recorder.is_sample(i)) return;
         const Equations<double>& equations = axis.equations();
@@ -151,17 +158,42 @@ SimulatedRecording simulate_recording(const Job& job, const Recording& recording
   return simulation;
 }
 
+}  // namespace
+
+SimulatedRecording simulate_recording(const Job& job, const Recording& recording,
+                                      const Model<double>& model, const Observer& observer) {
+  return simulated(job, recording, model, observer, {});
+}
+
+std::optional<SimulatedRecording> simulate_in_windows(const Job& job, const ParameterSpace& space,
+                                                      std::size_t index, const double* u) {
+  Job fitted = job;
+  fitted.recordings[index].role = Role::fit;
+  for (Measurement& m : fitted.recordings[index].measurements) m.fitted = true;
+  const RecordingCost cost(fitted, space, index, {});
+  const std::vector<WindowStart> starts = cost.starts(u);
+  if (starts.empty()) return std::nullopt;
+  return simulated(job, job.recordings[index], model_at(job, space, u, index), {}, starts);
+}
+
 RecordingCost::RecordingCost(const Job& job, const ParameterSpace& space, std::size_t recording,
                              const Observer& observer, const StopFlag* stop)
     : job_(job), space_(space), recording_(recording), observer_(observer), stop_(stop) {
   const Recording& r = job.recordings[recording];
+  if (!observer.active()) windows_ = window_starts(job, recording);
   int residuals = 0;
   for (std::size_t m = 0; m < r.measurements.size(); ++m) {
     const Measurement& measurement = r.measurements[m];
     if (!measurement.fitted) continue;
     fitted_.push_back(m);
     signals_.push_back(measurement.signal);
-    for (std::size_t i = 0; i < r.times.size(); ++i) residuals += r.fits(measurement, i);
+    std::size_t window = 0;
+    for (std::size_t i = 0; i < r.times.size(); ++i) {
+      while (window + 1 < windows_.size() && windows_[window + 1].sample <= i) ++window;
+      if (!r.fits(measurement, i)) continue;
+      ++residuals;
+      window_of_.push_back(window);
+    }
   }
   for (std::size_t i = 0; i < space.size(); ++i)
     if (space.applies(i, recording)) applicable_.push_back(i);
@@ -170,7 +202,8 @@ RecordingCost::RecordingCost(const Job& job, const ParameterSpace& space, std::s
 }
 
 template <class T>
-bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobian,
+bool RecordingCost::evaluate(const double* u, std::span<const WindowStart> starts,
+                             double* residuals, double* jacobian,
                              std::span<const std::size_t> columns) const {
   const Model<double> values = model_at(job_, space_, u, recording_);
   Model<T> model;
@@ -180,7 +213,11 @@ bool RecordingCost::evaluate(const double* u, double* residuals, double* jacobia
     model = with_derivatives<T>(values, space_, u, columns);
   const Recording& recording = job_.recordings[recording_];
   Recorder<T> recorder(model.instruments, signals_, recording.times);
-  const auto read = [&](std::size_t, const Integrator<T>& axis) { recorder.read(axis); };
+  WindowRestarts<T> restarts(starts, recorder);
+  const auto read = [&](std::size_t i, Integrator<T>& axis) {
+    restarts.at(i, axis);
+    recorder.read(axis);
+  };
   return run(job_, recording, model, observer_, recorder, read, nullptr, stop_).finished &&
          compare(recorder, residuals, {jacobian, space_.size(), columns});
 }
@@ -217,17 +254,49 @@ bool RecordingCost::compare(Recorder<T>& recorder, double* residuals,
 bool RecordingCost::Evaluate(double const* const* parameters, double* residuals,
                              double** jacobians) const {
   if (is_set(stop_)) return false;
+  const double* const u = parameters[0];
+  const std::optional<WindowStates> states = window_states(u);
+  if (!states) return false;
   if (jacobians == nullptr || jacobians[0] == nullptr)
-    return evaluate<double>(parameters[0], residuals, nullptr, {});
-  return evaluate_with_jacobian(parameters[0], residuals, jacobians[0]);
+    return evaluate<double>(u, states->starts(), residuals, nullptr, {});
+  double* const jacobian = jacobians[0];
+  std::fill_n(jacobian, static_cast<std::size_t>(num_residuals()) * space_.size(), 0.0);
+  if (!evaluate_columns(applicable_, [&]<class Jet>(std::span<const std::size_t> columns) {
+        return evaluate<Jet>(u, states->starts(), residuals, jacobian, columns);
+      }))
+    return false;
+  states->eliminate_from(
+      Eigen::Map<RowMajor>(jacobian, num_residuals(), static_cast<Eigen::Index>(space_.size())));
+  return true;
 }
 
-bool RecordingCost::evaluate_with_jacobian(const double* u, double* residuals,
-                                           double* jacobian) const {
-  std::fill_n(jacobian, static_cast<std::size_t>(num_residuals()) * space_.size(), 0.0);
-  return evaluate_columns(applicable_, [&]<class Jet>(std::span<const std::size_t> columns) {
-    return evaluate<Jet>(u, residuals, jacobian, columns);
-  });
+std::optional<WindowStates> RecordingCost::window_states(const double* u) const {
+  using T = ceres::Jet<double, WindowStates::kStates>;
+  WindowStates states(windows_, window_of_);
+  if (windows_.empty()) return states;
+  const Model<T> model = convert<T>(model_at(job_, space_, u, recording_));
+  Eigen::VectorXd residuals(num_residuals());
+  WindowStates::Columns derivatives(num_residuals(), WindowStates::kStates);
+  const std::array<std::size_t, WindowStates::kStates> columns{0, 1};
+  for (bool goes_on = true; goes_on;) {
+    Recorder<T> recorder(model.instruments, signals_, job_.recordings[recording_].times);
+    WindowRestarts<T> restarts(states.starts(), recorder, true);
+    const auto read = [&](std::size_t i, Integrator<T>& axis) {
+      restarts.at(i, axis);
+      recorder.read(axis);
+    };
+    if (!run(job_, job_.recordings[recording_], model, observer_, recorder, read, nullptr, stop_)
+             .finished ||
+        !compare(recorder, residuals.data(), {derivatives.data(), WindowStates::kStates, columns}))
+      return std::nullopt;
+    goes_on = states.improve(residuals, derivatives);
+  }
+  return states;
+}
+
+std::vector<WindowStart> RecordingCost::starts(const double* u) const {
+  const std::optional<WindowStates> states = window_states(u);
+  return states ? states->starts() : windows_;
 }
 
 std::vector<AxisInstant> RecordingCost::trajectory(const double* u) const {
@@ -235,7 +304,10 @@ std::vector<AxisInstant> RecordingCost::trajectory(const double* u) const {
   const Model<double> model = model_at(job_, space_, u, recording_);
   const Recorder<double> recorder(model.instruments, signals_, recording.times);
   std::vector<AxisInstant> instants;
-  const auto note = [&](std::size_t, const Integrator<double>& axis) {
+  const std::vector<WindowStart> begun = starts(u);
+  WindowRestarts<double> restarts(begun, recorder);
+  const auto note = [&](std::size_t i, Integrator<double>& axis) {
+    restarts.at(i, axis);
     instants.push_back({axis.mode(), axis.state(), axis.input()});
   };
   if (!run(job_, recording, model, observer_, recorder, note, nullptr, stop_).finished) return {};
@@ -256,7 +328,7 @@ struct RecordingCost::Transitions {
 
 template <class T>
 std::optional<RecordingCost::Transitions> RecordingCost::transitions(
-    const Model<double>& values) const {
+    const Model<double>& values, std::span<const WindowStart> starts) const {
   const Recording& recording = job_.recordings[recording_];
   const Model<T> model = convert<T>(values);
   const Recorder<T> recorder(model.instruments, signals_, recording.times);
@@ -273,7 +345,9 @@ std::optional<RecordingCost::Transitions> RecordingCost::transitions(
   unit.arm.v[n] = 1.0;
   unit.motor.v[n + 1] = 1.0;
   const std::vector<Disturbance<T>> disturbances(recorder.instants().size(), unit);
+  WindowRestarts<T> restarts(starts, recorder);
   const auto read = [&](std::size_t i, Integrator<T>& axis) {
+    restarts.at(i, axis);
     const auto at = static_cast<Eigen::Index>(i);
     axis.differentiate([&](State<T>& y, Input<T>& input, ControllerMemory<T>& memory) {
       Eigen::Index k = 0;
@@ -306,9 +380,11 @@ Eigen::MatrixXd RecordingCost::disturbance_response(const double* u,
       states_to_follow(Equations<double>(values).parts(), is_controlled() ? &values : nullptr) +
       Transitions::kDisturbances;
   if (width > kWidestJet) return {};
+  const std::optional<WindowStates> states = window_states(u);
+  if (!states) return {};
   const std::optional<Transitions> found =
-      width <= kNarrow ? transitions<ceres::Jet<double, kNarrow>>(values)
-                       : transitions<ceres::Jet<double, kWidestJet>>(values);
+      width <= kNarrow ? transitions<ceres::Jet<double, kNarrow>>(values, states->starts())
+                       : transitions<ceres::Jet<double, kWidestJet>>(values, states->starts());
   if (!found) return {};
   const Eigen::Index n = found->states, all = disturbances.arm.cols(),
                      signals = static_cast<Eigen::Index>(signals_.size());
@@ -319,8 +395,7 @@ Eigen::MatrixXd RecordingCost::disturbance_response(const double* u,
   std::vector<double> residuals(static_cast<std::size_t>(num_residuals()));
   std::vector<std::size_t> columns(kWidestJet);
   std::iota(columns.begin(), columns.end(), 0);
-  Eigen::Matrix<double, Eigen::Dynamic, kWidestJet, Eigen::RowMajor> block(num_residuals(),
-                                                                           kWidestJet);
+  RowMajor block(num_residuals(), kWidestJet);
   for (Eigen::Index first = 0; first < all; first += kWidestJet) {
     const Eigen::Index count = std::min<Eigen::Index>(kWidestJet, all - first);
     Recorder<T> recorder(model.instruments, signals_, job_.recordings[recording_].times);
@@ -349,6 +424,7 @@ Eigen::MatrixXd RecordingCost::disturbance_response(const double* u,
     }
     if (!compare<T>(recorder, residuals.data(), {block.data(), kWidestJet, std::span(columns)}))
       return {};
+    states->eliminate_from(block);
     response.middleCols(first, count) = block.leftCols(count);
   }
   return response;

@@ -10,6 +10,7 @@
 #include "base/interrupt.h"
 #include "fit/data/simulated_recording.h"
 #include "fit/estimation/parameters.h"
+#include "fit/estimation/windows.h"
 #include "sim/recorder.h"
 #include "sim/simulate.h"
 
@@ -23,6 +24,11 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
 /// The same of a model, with the job's options.
 SimulatedRecording simulate_recording(const Job& job, const Recording& recording,
                                       const Model<double>& model, const Observer& observer);
+
+/// The same without an observer, in the windows of the job's horizon, from the states that suit the
+/// recording best; none where it has no windows.
+std::optional<SimulatedRecording> simulate_in_windows(const Job& job, const ParameterSpace& space,
+                                                      std::size_t recording, const double* u);
 
 /// The observer of a recording at a rate: to its velocity, or else to its position, or none.
 Observer observer_for(const Recording& recording, double rate);
@@ -44,6 +50,10 @@ struct Disturbances {
 /// by measurement, without the samples that are left out. One parameter block: the whole vector u
 /// of the space.
 ///
+/// Without an observer the simulation runs free in the windows of the job's horizon. Their states
+/// are then those that suit the recording best at u, and the columns of the Jacobian lack what
+/// these could make, see windows.h: the gradient of the sum of squares is exact.
+///
 /// A point whose simulation does not finish makes Evaluate return false: for the solver a rejected
 /// step. With a Huber loss every residual r is replaced by sign(r) sqrt(rho(r^2)), so that the sum
 /// of squares is the robust cost.
@@ -61,6 +71,9 @@ class RecordingCost : public ceres::CostFunction {
   /// none where it does not finish.
   std::vector<AxisInstant> trajectory(const double* u) const;
 
+  /// With what states the windows begin at u.
+  std::vector<WindowStart> starts(const double* u) const;
+
   /// The derivatives of the residuals with respect to disturbances at those instants, residuals by
   /// columns. Exact but for the course of a disturbance between two instants, and much cheaper than
   /// effects that make such forces. Empty where the simulation does not finish.
@@ -74,15 +87,17 @@ class RecordingCost : public ceres::CostFunction {
     std::span<const std::size_t> columns;
   };
   template <class T>
-  bool evaluate(const double* u, double* residuals, double* jacobian,
-                std::span<const std::size_t> columns) const;
+  bool evaluate(const double* u, std::span<const WindowStart> starts, double* residuals,
+                double* jacobian, std::span<const std::size_t> columns) const;
+  /// The states of the windows that suit the recording best; none where no simulation finishes.
+  std::optional<WindowStates> window_states(const double* u) const;
   /// From what the recorder was shown.
   template <class T>
   bool compare(Recorder<T>& recorder, double* residuals, const Derivatives& derivatives) const;
   struct Transitions;
   template <class T>
-  std::optional<Transitions> transitions(const Model<double>& model) const;
-  bool evaluate_with_jacobian(const double* u, double* residuals, double* jacobian) const;
+  std::optional<Transitions> transitions(const Model<double>& model,
+                                         std::span<const WindowStart> starts) const;
   bool is_controlled() const {
     return job_.recordings[recording_].command.meaning == Meaning::reference;
   }
@@ -95,6 +110,8 @@ class RecordingCost : public ceres::CostFunction {
   std::vector<std::size_t> fitted_;      // indices of measurements
   std::vector<Signal> signals_;          // their signals
   std::vector<std::size_t> applicable_;  // indices of parameters
+  std::vector<WindowStart> windows_;     // none: it runs through
+  std::vector<std::size_t> window_of_;   // of each residual
 };
 
 }  // namespace axisfit

@@ -8,6 +8,7 @@
 #include "base/distributions.h"
 #include "fit/estimation/parameters.h"
 #include "fit/estimation/solve.h"
+#include "fit/estimation/windows.h"
 #include "fit/residuals/autocovariance.h"
 
 namespace axisfit {
@@ -170,14 +171,25 @@ SeriesRows part_of(const SeriesRows& rows, std::size_t part, std::size_t parts) 
   return {rows.recording, rows.measurement, rows.first + at(part), at(part + 1) - at(part)};
 }
 
+constexpr Index kMostStretches = 6;
+
 /// Into how many stretches the only recording is divided; one: it is too short.
 std::size_t stretches_of(const Linearization& at, std::size_t recording) {
   constexpr Index kRows = 400;
-  constexpr Index kMost = 6;
   Index rows = 0;
   for (const SeriesRows& s : at.series)
     if (s.recording == recording) rows = std::max(rows, s.count);
-  return static_cast<std::size_t>(std::clamp<Index>(rows / kRows, 1, kMost));
+  return static_cast<std::size_t>(std::clamp<Index>(rows / kRows, 1, kMostStretches));
+}
+
+/// Whether what happens in a stretch of the only fitted recording has little to do with those
+/// before.
+bool forgets_within_stretches(const Job& job) {
+  if (job.options.observer == ObserverMode::fixed) return true;
+  const auto fitted = std::ranges::find(job.recordings, Role::fit, &Recording::role);
+  const std::size_t windows =
+      window_starts(job, static_cast<std::size_t>(fitted - job.recordings.begin())).size();
+  return windows >= static_cast<std::size_t>(kMostStretches);
 }
 
 /// The groups with their rows.
@@ -217,7 +229,7 @@ std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
   if (!fit.usable || !fit.at_solution) return std::nullopt;
   Scatter scatter;
   scatter.of_stretches = std::ranges::count(job.recordings, Role::fit, &Recording::role) == 1;
-  if (scatter.of_stretches && job.options.observer != ObserverMode::fixed) return std::nullopt;
+  if (scatter.of_stretches && !forgets_within_stretches(job)) return std::nullopt;
   Job all = job;
   for (Recording& r : all.recordings) r.role = Role::fit;
   const ParameterSpace space(all);

@@ -61,10 +61,10 @@ bool is_of_machine(const Job& job, std::size_t parameter);
 
 /// Of a usable fit, with a share in the standard errors and intervals of its parameters: they
 /// become those of the machine. Of two or more fitted recordings, or of stretches of one where the
-/// fit tracks it with a fixed observer (elsewhere what happens in a stretch depends on those
-/// before). Recordings to validate are shown, too, and have no share. None where there is nothing
-/// to compare. Parameters at a bound, of one recording alone and of the initial state have no
-/// scatter. Costs one residual with its Jacobian.
+/// fit tracks it with a fixed observer or begins anew in short windows (elsewhere what happens in a
+/// stretch depends on those before). Recordings to validate are shown, too, and have no share. None
+/// where there is nothing to compare. Parameters at a bound, of one recording alone and of the
+/// initial state have no scatter. Costs one residual with its Jacobian.
 std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit);
 
 }  // namespace axisfit

@@ -216,6 +216,26 @@ AxisUncertainty axis_uncertainty(const Job& job, const FitResult& fit,
   return found;
 }
 
+MotionPrediction predict_motion(const Job& job, const FitResult& fit,
+                                const AxisUncertainty& uncertainty, MotionToPredict motion) {
+  MotionPrediction prediction{motion.name, {}, {}};
+  Rig& rig = motion.rig;
+  rig.model = fitted_model(job, fit);
+  rig.uncertainty = uncertainty;
+  for (const Measurement& m : job.recordings.front().measurements) {
+    if (!has_signal(m.signal, rig.model.structure)) continue;
+    prediction.signals.push_back(m.signal);
+    rig.noise[index_of(m.signal)] = m.sigma;
+  }
+  RecordingOptions options;
+  options.duration = motion.duration;
+  options.rate = 1.0 / mean_interval(job.recordings.front().times);
+  options.signals = prediction.signals;
+  options.step = job.options.step;
+  prediction.columns = record_with_bands(rig, motion.motion, options);
+  return prediction;
+}
+
 std::vector<RecordingPrediction> predict_recordings(const Job& job, const FitResult& fit,
                                                     const AxisUncertainty& uncertainty,
                                                     const RunContext& context) {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "fit/estimation/estimate.h"
@@ -18,6 +19,7 @@
 #include "fit/residuals/series.h"
 #include "sim/axis_uncertainty.h"
 #include "sim/ensemble.h"
+#include "sim/rig.h"
 
 namespace axisfit {
 
@@ -45,5 +47,24 @@ struct RecordingPrediction {
 std::vector<RecordingPrediction> predict_recordings(const Job& job, const FitResult& fit,
                                                     const AxisUncertainty& uncertainty,
                                                     const RunContext& context = {});
+
+/// A motion that nobody has recorded, of a rig: its controller, noise and names are the machine's.
+struct MotionToPredict {
+  std::string name;
+  Motion motion;
+  double duration = 0.0;  ///< s
+  Rig rig;
+};
+
+struct MotionPrediction {
+  std::string name;
+  std::vector<Signal> signals;
+  std::vector<Column> columns;  ///< those of record_with_bands()
+};
+
+/// By the fitted model, of the signals that were recorded, at the rate of the first recording.
+/// Throws std::runtime_error where the motion cannot be simulated or has no band.
+MotionPrediction predict_motion(const Job& job, const FitResult& fit,
+                                const AxisUncertainty& uncertainty, MotionToPredict motion);
 
 }  // namespace axisfit

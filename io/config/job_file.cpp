@@ -18,7 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kContinuation = "continuation", kNone = "none";
+constexpr std::string_view kContinuation = "continuation", kNone = "none", kWhole = "whole",
+                           kAuto = "auto";
+
+const NumberWithUnit kHorizon{"s", 1e-4, 1e6};
 
 Section fit_keys() {
   const FitOptions defaults;
@@ -37,6 +40,16 @@ Section fit_keys() {
           DefaultText{
               "1 / sampling interval; 0.3 / sampling interval if only the position is recorded"},
           "observer gain at which a continuation starts"),
+      Key::optional(
+          "horizon",
+          AnyOf{{Choice{{{std::string(kWhole), "all of each recording"},
+                         {std::string(kAuto),
+                          "what predicts best stretches of the fitted recordings that are left "
+                          "out, one step ahead among them"}}},
+                 kHorizon}},
+          DefaultText{"`whole`"},
+          "how long the simulation runs free before it begins anew, from a state that is fitted; "
+          "needs `observer: continuation` or `none`, but for `auto`"),
       Key::optional(
           "loss",
           Choice{{{"squares", "the sum of squared residuals"},
@@ -77,8 +90,8 @@ Section limit_keys(Vocabulary vocabulary) {
 
 class JobReader {
  public:
-  JobReader(const std::string& path, const std::string& data_directory, const Files& drafts = {})
-      : path_(path), data_directory_(data_directory), drafts_(drafts) {}
+  JobReader(std::string path, RecordingSources sources, Files drafts = {})
+      : path_(std::move(path)), sources_(std::move(sources)), drafts_(std::move(drafts)) {}
 
   JobFile read() {
     result_.files.push_back(path_);
@@ -177,6 +190,7 @@ class JobReader {
       else
         rate->error("initial_observer_gain needs observer: continuation");
     }
+    if (const auto horizon = map.optional("horizon")) read_horizon(*horizon, options);
     map.read("loss", options.loss);
     if (const auto width = map.read("huber_width", options.huber_width);
         width && options.loss != Loss::huber)
@@ -205,6 +219,41 @@ class JobReader {
     }
   }
 
+  void read_horizon(const ConfigNode& node, FitOptions& options) {
+    horizon_ = node;
+    options.choose_horizon = node.text() == kAuto;
+    if (options.choose_horizon || node.text() == kWhole) return;
+    const std::string text = node.text();
+    if (text.find_first_of("0123456789") == std::string::npos) {
+      node.error("horizon must be whole, auto, or a time with its unit, such as 2 s");
+      return;
+    }
+    options.horizon = node.as_number_with_unit(kHorizon).value_or(0.0);
+    if (options.observer == ObserverMode::fixed)
+      node.error(
+          "with a fixed observer nothing runs free: remove 'horizon', or let it be chosen with "
+          "'horizon: auto'");
+  }
+
+  /// Windows need to be begun by a recorded motion, and an axis that can leave it.
+  void check_horizon() const {
+    const FitOptions& options = result_.job.options;
+    if (!horizon_ || !(options.choose_horizon || options.horizon > 0.0)) return;
+    for (const Recording& r : result_.job.recordings) {
+      if (r.role != Role::fit) continue;
+      if (r.command.meaning == Meaning::reference)
+        horizon_->error(
+            fmt::format("the axis is under its controller in '{}', which brings it back by itself: "
+                        "remove 'horizon', or give the recorded command as input",
+                        r.name));
+      else if (r.find(Signal::position) == nullptr && r.find(Signal::velocity) == nullptr)
+        horizon_->error(fmt::format(
+            "'{}' has neither position nor velocity, from which a window could begin: remove "
+            "'horizon'",
+            r.name));
+    }
+  }
+
   void read_limits(const ConfigNode& node) {
     MachineLimits& limits = result_.job.limits;
     const Vocabulary vocabulary = result_.job.vocabulary();
@@ -230,9 +279,10 @@ class JobReader {
     std::set<std::string> names;
     for (const ConfigNode& entry : *entries) {
       result_.job.recordings.push_back(
-          read_recording(entry, result_.rig, result_.job.options.observer, data_directory_));
+          read_recording(entry, result_.rig, result_.job.options.observer, sources_));
       const Recording& recording = result_.job.recordings.back();
-      result_.files.push_back(resolved(entry, recording.file, data_directory_));
+      if (!sources_.tables.contains(recording.file))
+        result_.files.push_back(resolved(entry, recording.file, sources_.folder));
       any_fit = any_fit || recording.role == Role::fit;
       check_length(entry, recording);
     }
@@ -247,6 +297,7 @@ class JobReader {
     if (diagnostics_.empty()) check_repeats(*entries);
     if (!any_fit && diagnostics_.empty())
       node.error("no recording has the role fit: at least one must");
+    check_horizon();
   }
 
   void check_repeats(const std::vector<ConfigNode>& entries) const {
@@ -299,9 +350,10 @@ class JobReader {
   }
 
   std::string path_;
-  std::string data_directory_;
+  RecordingSources sources_;
   Files drafts_;  ///< paths and contents
   Diagnostics diagnostics_;
+  std::optional<ConfigNode> horizon_;
   JobFile result_;
 };
 
@@ -323,13 +375,14 @@ const Section& job_keys() {
 }
 
 JobFile read_job_file(const std::string& path, const std::string& data_directory) {
-  return JobReader(path, data_directory).read();
+  return JobReader(path, {data_directory, {}}).read();
 }
 
-JobFile read_job_draft(const Files& files, const std::string& folder) {
+JobFile read_job_draft(const Files& files, const std::string& folder, Tables tables) {
   Files drafts = files;
   for (auto& [name, contents] : drafts) name = (fs::path(folder) / name).lexically_normal();
-  return JobReader(drafts.back().first, {}, drafts).read();
+  const std::string path = drafts.back().first;
+  return JobReader(path, {{}, std::move(tables)}, std::move(drafts)).read();
 }
 
 const Section& axes_job_keys() {

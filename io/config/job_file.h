@@ -9,6 +9,7 @@
 
 #include "fit/design/experiment.h"
 #include "io/config/key.h"
+#include "io/recording/table.h"
 #include "io/results/output_folder.h"
 #include "sim/rig.h"
 
@@ -32,8 +33,8 @@ const Section& job_keys();
 JobFile read_job_file(const std::string& path, const std::string& data_directory = {});
 
 /// The same for a job that is yet to be written: as if `files`, the last of which is the job, were
-/// in `folder`, which need not exist.
-JobFile read_job_draft(const Files& files, const std::string& folder);
+/// in `folder`, which need not exist. `tables` stand for recordings of these names.
+JobFile read_job_draft(const Files& files, const std::string& folder, Tables tables = {});
 
 /// A file that names a job for each of several axes of one machine.
 struct AxesJob {

@@ -193,8 +193,8 @@ const Map& keys_of_channels() {
 
 class RecordingReader {
  public:
-  RecordingReader(const Rig& rig, ObserverMode observer, const std::string& data_directory)
-      : rig_(rig), observer_(observer), data_directory_(data_directory) {}
+  RecordingReader(const Rig& rig, ObserverMode observer, const RecordingSources& sources)
+      : rig_(rig), observer_(observer), sources_(sources) {}
 
   Recording read(const ConfigNode& node) {
     Recording recording;
@@ -281,8 +281,12 @@ class RecordingReader {
 
   /// Null, with a diagnostic at `node`, where it cannot be read.
   const RecordingFile* open(const ConfigNode& node, const std::string& path) {
-    const std::string found = resolved(node, path, data_directory_);
+    const auto table = sources_.tables.find(path);
+    const std::string found =
+        table != sources_.tables.end() ? path : resolved(node, path, sources_.folder);
     if (const auto open = files_.find(found); open != files_.end()) return &open->second;
+    if (table != sources_.tables.end())
+      return &files_.emplace(found, RecordingFile(table->second)).first->second;
     try {
       return &files_.emplace(found, RecordingFile(found)).first->second;
     } catch (const RecordingError& error) {
@@ -843,7 +847,7 @@ class RecordingReader {
 
   const Rig& rig_;
   const ObserverMode observer_;
-  const std::string& data_directory_;
+  const RecordingSources& sources_;
   std::map<std::string, RecordingFile> files_;  ///< read already, by path
   const RecordingFile* data_ = nullptr;         ///< of the recording
   std::optional<ConfigNode> time_node_;
@@ -898,8 +902,8 @@ const Section& recording_keys() {
 }
 
 Recording read_recording(const ConfigNode& node, const Rig& rig, ObserverMode observer,
-                         const std::string& data_directory) {
-  return RecordingReader(rig, observer, data_directory).read(node);
+                         const RecordingSources& sources) {
+  return RecordingReader(rig, observer, sources).read(node);
 }
 
 std::string ignored_by_observer(const QuantityEntry& entry, ObserverMode observer,

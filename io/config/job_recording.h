@@ -5,6 +5,7 @@
 
 #include "fit/data/job.h"
 #include "io/config/config.h"
+#include "io/recording/table.h"
 #include "sim/rig.h"
 
 namespace axisfit {
@@ -12,11 +13,16 @@ namespace axisfit {
 /// The keys of a recording.
 const Section& recording_keys();
 
+/// Where recordings come from.
+struct RecordingSources {
+  std::string folder{};  ///< below which relative paths are; empty: that of the job file
+  Tables tables{};       ///< instead of files of these names
+};
+
 /// Reads a recording and its file, for an axis and the observer of the fit. With diagnostics where
-/// anything is wrong; what is returned then is not to be used. Files with relative paths are looked
-/// for below `data_directory`, or next to the job file where that is empty.
+/// anything is wrong; what is returned then is not to be used.
 Recording read_recording(const ConfigNode& node, const Rig& rig, ObserverMode observer,
-                         const std::string& data_directory);
+                         const RecordingSources& sources);
 
 /// Why a quantity has no influence on a recording under a fixed observer gain: it is the lag or the
 /// delay of the signal that the simulation tracks. Empty where it has influence.

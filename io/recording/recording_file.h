@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/config/config.h"
@@ -16,6 +17,8 @@ class RecordingFile {
   /// Reads `path` as what its name ends in: .mat, .xlsx, .mcap, or anything else as text. Throws
   /// RecordingError.
   explicit RecordingFile(const std::string& path);
+  /// What another program holds in memory.
+  explicit RecordingFile(Table table) : table_(std::move(table)) {}
 
   /// The column of this name, or with this number from 1; null with a diagnostic at `name` that
   /// says what is wrong with it or lists what there is.

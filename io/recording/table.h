@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -41,5 +42,8 @@ struct Table {
   /// the source has no lines.
   std::string where(std::size_t row) const;
 };
+
+/// Tables by the names by which jobs call them.
+using Tables = std::map<std::string, Table>;
 
 }  // namespace axisfit

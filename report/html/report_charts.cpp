@@ -10,6 +10,7 @@
 
 #include "fit/data/standstill.h"
 #include "fit/residuals/spectrum.h"
+#include "report/text/words.h"
 #include "sim/sampling.h"
 
 namespace axisfit {
@@ -233,10 +234,11 @@ Html ReportCharts::overview() {
                           resolution(m));
     };
     const bool tracking = run_result_.fit().recordings[worst.recording].tracking.has_value();
-    Chart chart = over_time(worst.recording, "before-after",
-                            fmt::format("Residual of the {} of {}, before and after{}", y.label,
-                                        recording.name, tracking ? ", tracking simulation" : ""),
-                            {"residual", y.unit});
+    Chart chart = over_time(
+        worst.recording, "before-after",
+        fmt::format("Residual of the {} of {}, before and after{}", y.label, recording.name,
+                    tracking ? ", " + simulation_name(run_result_.job().options, true) : ""),
+        {"residual", y.unit});
     chart.series = {
         {"before", "reference", r.times, measured, LineStyle::line,
          judged(run_result_.selection->models.front().fit)},
@@ -274,7 +276,9 @@ Html ReportCharts::traces(std::size_t recording) {
     };
     residual("residual-", "Residual of the " + of, r.simulated[m]);
     if (result.tracking)
-      residual("held-", fmt::format("Residual of the {}, tracking simulation", of),
+      residual("held-",
+               fmt::format("Residual of the {}, {}", of,
+                           simulation_name(run_result_.job().options, true)),
                columns_.add(result.tracking->simulated[m], resolution(measurement)));
   }
   return all + hysteresis(recording);

@@ -285,6 +285,7 @@ class Page {
                      rows) +
                paragraph_of(uncertainty_text(job_, fit_) + second_opinion_text(run_result_)) +
                correlation();
+    if (run_result_.horizon) all += html("<pre>{}</pre>", horizon_text(run_result_));
     if (run_result_.scatter) all += html("<pre>{}</pre>", scatter_text(run_result_));
     if (!run_result_.profiles.empty())
       all += html("<h3>Likelihood profiles</h3>{}",
@@ -295,6 +296,8 @@ class Page {
                   figures(each(run_result_.predictions, [&](const RecordingPrediction& p) {
                     return charts_.prediction(p);
                   })));
+    if (run_result_.options.compare)
+      all += html("<h3>Models compared</h3><pre>{}</pre>", comparison_text(run_result_));
     if (run_result_.options.suggest_experiment)
       all += html("<h3>Next experiment</h3><pre>{}</pre>", suggestion_text(run_result_));
     return all;

@@ -1,11 +1,16 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
 #include <sstream>
+#include <variant>
 
 #include "base/text_table.h"
+#include "base/units.h"
 #include "io/recording/csv.h"
 #include "report/text/report_text.h"
 
@@ -14,14 +19,67 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Until when a half width stays below a hundredth of the range of the prediction.
-std::string horizon_text(const SignalPrediction& p, const Recording& recording) {
+/// The allowed error of a signal, in its unit; none where the user names none.
+std::optional<double> tolerance_for(const RunOptions& options, std::string_view unit) {
+  for (const Tolerance& tolerance : options.tolerances)
+    if (const auto factor = unit_factor(tolerance.unit, unit);
+        std::holds_alternative<double>(factor))
+      return tolerance.value * std::get<double>(factor);
+  return std::nullopt;
+}
+
+/// Until when a half width stays below the tolerance, or else a hundredth of the range of the
+/// prediction.
+std::string reach_text(const Band& band, std::span<const double> values,
+                       std::span<const double> times, std::optional<double> tolerance) {
   constexpr double kPart = 0.01;
-  const auto [low, high] = std::ranges::minmax(p.values);
-  const std::size_t reached = p.band.reach(kPart * (high - low));
-  return reached == p.values.size()
-             ? "the end"
-             : fmt::format("{:.3g} s", recording.times[reached] - recording.times.front());
+  const auto [low, high] = std::ranges::minmax(values);
+  const std::size_t reached = band.reach(tolerance.value_or(kPart * (high - low)));
+  return reached == values.size() ? "the end"
+                                  : fmt::format("{:.3g} s", times[reached] - times.front());
+}
+
+std::string tolerances_text(const RunOptions& options) {
+  std::vector<std::string> parts;
+  for (const Tolerance& t : options.tolerances)
+    parts.push_back(fmt::format("{:g} {}", t.value, t.unit));
+  return fmt::format(
+      "{}1 % of the range",
+      parts.empty() ? "" : fmt::format("{}, elsewhere below ", fmt::join(parts, " or ")));
+}
+
+/// The motion that nobody recorded, where one was asked for.
+std::string motion_text(const RunResult& run_result) {
+  if (!run_result.motion)
+    return run_result.no_prediction.empty()
+               ? ""
+               : paragraph("No further prediction: " + run_result.no_prediction + ".") + "\n";
+  const MotionPrediction& motion = *run_result.motion;
+  const Vocabulary vocabulary = run_result.job().vocabulary();
+  std::vector<std::vector<std::string>> rows{
+      {"", "lowest", "highest", "band", "at most", "until", "unit"}};
+  for (std::size_t s = 0; s < motion.signals.size(); ++s) {
+    // Each signal is followed by its two half widths.
+    const std::vector<Column>& columns = motion.columns;
+    const std::size_t at = columns.size() - 3 * (motion.signals.size() - s);
+    const Band band{columns[at + 1].values};
+    const SignalInfo signal = info(motion.signals[s], vocabulary);
+    const auto [low, high] = std::ranges::minmax(columns[at].values);
+    rows.push_back({std::string(signal.name), fmt::format("{:.4g}", low),
+                    fmt::format("{:.4g}", high), fmt::format("+-{:.3g}", band.median()),
+                    fmt::format("+-{:.3g}", band.largest()),
+                    reach_text(band, columns[at].values, columns.front().values,
+                               tolerance_for(run_result.options, signal.unit)),
+                    std::string(signal.unit)});
+  }
+  using enum Alignment;
+  return fmt::format("Prediction of {}, with 95 % bands\n", motion.name) +
+         format_table(rows, {left, right, right, right, right, right, left}) +
+         paragraph(fmt::format("The band at any one time, its median and largest half width, and "
+                               "until when it is below {}.",
+                               tolerances_text(run_result.options)),
+                   2) +
+         "\n";
 }
 
 /// What the bands allow for.
@@ -43,12 +101,14 @@ std::string allowance_text(const RunResult& run_result) {
 std::string prediction_text(const RunResult& run_result) {
   if (!run_result.options.predict || !run_result.uncertainty) return {};
   const Job& job = run_result.job();
-  if (!run_result.no_prediction.empty())
+  if (!run_result.no_prediction.empty() && run_result.predictions.empty())
     return paragraph("No prediction: " + run_result.no_prediction + ".") + "\n";
+  if (run_result.predictions.empty() && run_result.motion) return motion_text(run_result);
   if (run_result.predictions.empty())
     return paragraph("Nothing to predict: give a recording the role 'validate'.") + "\n";
   std::vector<std::vector<std::string>> rows{
-      {"", "rmse", "band", "at most", "inside", "whole", "1 % until", "unit"}};
+      {"", "rmse", "band", "at most", "inside", "whole",
+       run_result.options.tolerances.empty() ? "1 % until" : "until", "unit"}};
   std::string unfinished;
   for (const RecordingPrediction& prediction : run_result.predictions) {
     const Recording& recording = job.recordings[prediction.recording];
@@ -65,18 +125,28 @@ std::string prediction_text(const RunResult& run_result) {
                       fmt::format("+-{:.3g}", p.band.largest()),
                       fmt::format("{:.1f} %", p.inside_percent),
                       fmt::format("{} {:.2g}x", p.is_whole_inside ? "in" : "not in", p.band.whole),
-                      horizon_text(p, recording), std::string(signal.unit)});
+                      reach_text(p.band, p.values, recording.times,
+                                 tolerance_for(run_result.options, signal.unit)),
+                      std::string(signal.unit)});
     }
   }
   using enum Alignment;
   return "Prediction, free running, with 95 % bands\n" +
          format_table(rows, {left, right, right, right, right, right, right, left}) + unfinished +
          paragraph(
-             "Of the band at any one time the median and largest half width, and how much of "
-             "what was measured it holds; whether all of that is in the band for whole curves, "
-             "so many times as wide; and until when the band is below 1 % of the range.",
+             fmt::format("Of the band at any one time the median and largest half width, and how "
+                         "much of what was measured it holds; whether all of that is in the band "
+                         "for whole curves, so many times as wide; and until when the band is "
+                         "below {}.",
+                         tolerances_text(run_result.options)),
              2) +
-         paragraph(allowance_text(run_result), 2) + "\n";
+         paragraph(allowance_text(run_result), 2) + "\n" + motion_text(run_result);
+}
+
+std::string motion_csv(const RunResult& run_result) {
+  std::ostringstream out;
+  write_csv(out, run_result.motion->columns, 9);
+  return out.str();
 }
 
 std::string prediction_csv(const RunResult& run_result) {

@@ -182,7 +182,8 @@ std::string report_text(const RunResult& run_result, bool colour) {
       uncertainty_text(job, result) + second_opinion_text(run_result) + starts_text(run_result),
       legend_text(job, result, colour),
       run_result.selection ? selection_text(run_result, colour) : errors_text(job, result));
-  text += scatter_text(run_result) + prediction_text(run_result);
+  text += horizon_text(run_result) + scatter_text(run_result) + prediction_text(run_result) +
+          comparison_text(run_result);
   if (const std::string profiles = profiles_text(run_result); !profiles.empty())
     text += profiles + "\n";
   if (run_result.diagnosis && !run_result.diagnosis->explained) {

@@ -50,6 +50,11 @@ std::string uncertainty_text(const Job& job, const FitResult& result);
 /// it; empty where there is nothing to say.
 std::string second_opinion_text(const RunResult& run_result);
 
+/// "windows of 2 s"
+std::string horizon_name(const HorizonTrial& criterion);
+/// By what horizon the fit was made, and why; empty where that was not chosen.
+std::string horizon_text(const RunResult& run_result);
+
 /// How the parameters differ between recordings; empty where that was not to be seen.
 std::string scatter_text(const RunResult& run_result);
 
@@ -58,6 +63,11 @@ std::string prediction_text(const RunResult& run_result);
 /// Its curves: by recording and time, of every signal what was measured, what was predicted, and
 /// the half widths of the bands at any one time and for the whole curve.
 std::string prediction_csv(const RunResult& run_result);
+/// That of the motion that nobody recorded.
+std::string motion_csv(const RunResult& run_result);
+
+/// Models side by side, and the reason to prefer one; empty where that was not asked for.
+std::string comparison_text(const RunResult& run_result);
 
 /// What is known of the parameters together: weak directions, and the combinations that are
 /// determined.

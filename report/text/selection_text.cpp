@@ -99,8 +99,8 @@ std::string errors_text(const RunResult& run_result) {
       rows.push_back(std::move(row));
     }
   }
-  return fmt::format("Errors of the {}simulation, before and after\n",
-                     tracking ? "tracking " : "free-running ") +
+  return fmt::format("Errors of the {}, before and after\n",
+                     simulation_name(run_result.job().options, tracking)) +
          format_table(rows, {Alignment::left, Alignment::right, Alignment::right, Alignment::right,
                              Alignment::right});
 }

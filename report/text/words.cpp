@@ -351,6 +351,13 @@ std::string motion_text(const Motion& motion, Vocabulary vocabulary) {
   return std::visit([vocabulary](const auto& m) { return text_of(m, vocabulary); }, motion);
 }
 
+std::string simulation_name(const FitOptions& options, bool tracks) {
+  if (!tracks) return "free-running simulation";
+  if (options.horizon > 0.0)
+    return fmt::format("simulation in windows of {:.3g} s", options.horizon);
+  return "tracking simulation";
+}
+
 std::string gain_shift_text(const GainShift& shift, std::string_view unit) {
   return fmt::format("{} at an observer gain of {:.3g} 1/s, which its error allows for",
                      with_unit(fmt::format("{:.4g}", shift.value), unit), shift.observer_gain);

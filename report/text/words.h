@@ -37,6 +37,10 @@ std::string motion_text(const Motion& motion, Vocabulary vocabulary = {});
 /// "known only as a ratio to K_f, which is a guess"
 std::string guesses_text(const std::vector<GuessInfluence>& guesses);
 
+/// How a fit simulates that `tracks`, as a result has it, or does not: "tracking simulation",
+/// "simulation in windows of 2 s" or "free-running simulation".
+std::string simulation_name(const FitOptions& options, bool tracks);
+
 /// "157 N s/m at an observer gain of 100 1/s, which its error allows for".
 std::string gain_shift_text(const GainShift& shift, std::string_view unit);
 /// What to do where another observer gain predicts better; empty where none does.

@@ -446,6 +446,48 @@ TEST_F(CommandLineTest, OutputThatCannotBeWrittenIsFoundBeforeTheFit) {
       "move it, or choose another folder\n");
 }
 
+TEST_F(CommandLineTest, ModelsAreComparedOnDemand) {
+  write_rubbing_mass(folder_);
+  const std::string results = folder_.path("results");
+  const Outcome first = fit({job(rubbing_job()), "--close-loop", "--compare", "--output", results});
+  EXPECT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_NE(first.out.find("Preferred: + coulomb_friction."), std::string::npos) << first.out;
+  // What was found there is no better than what is found here.
+  const Json found =
+      Json::parse(fit({job(rubbing_job()), "--compare=" + results + "/fitted.yaml", "--json"}).out)
+          .at("comparison");
+  ASSERT_EQ(found.at("models").size(), 2u);
+  EXPECT_EQ(found.at("preferred"), 1);
+  EXPECT_GT(found.at("models")[0].at("log_ratio"), 0.5);
+  EXPECT_GT(found.at("models")[1].at("inside_percent"), 80.0);
+  const std::string other = folder_.write("other.yaml",
+                                          "drive: current_source\ntransmission: "
+                                          "rigid\nparameters: {M: 2 kg, K_m: 1 N "
+                                          "m/A, J_m: 1 kg m^2, r_g: 1 m}\n");
+  const Outcome refused = fit({job(rubbing_job()), "--compare=" + other});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("other.yaml"), std::string::npos) << refused.err;
+}
+
+TEST_F(CommandLineTest, AMotionIsPredictedOnDemand) {
+  write_rubbing_mass(folder_);
+  const std::string results = folder_.path("results");
+  const Outcome outcome = fit({job(rubbing_job()), "--predict=" + motion(), "--within", "1 mm/s",
+                               "--within=3mm", "--output", results});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("--within '3mm': no signal of the job can be given in mm"),
+            std::string::npos)
+      << outcome.err;
+  const Outcome predicted =
+      fit({job(rubbing_job()), "--predict=" + motion(), "--within", "1 mm/s", "--output", results});
+  EXPECT_NE(predicted.out.find("motion.yaml, with 95 % bands"), std::string::npos) << predicted.out;
+  EXPECT_NE(predicted.out.find("below 1 mm/s"), std::string::npos);
+  const Table table = read_csv(results + "/predicted-motion.csv");
+  EXPECT_EQ(table.columns.back().name.substr(table.columns.back().name.size() - 9), "_of_whole");
+  for (const char* wrong : {"much", "-1 mm/s", "3", "nan m/s"})
+    EXPECT_EQ(fit({job(rubbing_job()), "--predict", "--within", wrong}).exit_code, 2) << wrong;
+}
+
 TEST_F(CommandLineTest, TheLoopIsClosedOnDemand) {
   write_rubbing_mass(folder_);
   const std::string results = folder_.path("results");

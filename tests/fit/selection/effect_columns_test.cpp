@@ -72,6 +72,17 @@ TEST_P(EffectColumnsOf, AreThoseOfASimulationWithEachEffect) {
   }
 }
 
+TEST_P(EffectColumnsOf, LackWhatTheStatesOfWindowsCouldMake) {
+  job_.options.horizon = 0.3;
+  for (Recording& r : job_.recordings) r.initial_state = InitialState::data;
+  const EffectColumns columns(job_, 0.0, {});
+  std::vector<EffectSetting> settings;
+  for (const Candidate& c : candidates_)
+    if (c.probes.empty()) settings.push_back({&c, c.neutral, c.settings.front()});
+  const std::vector<Eigen::MatrixXd> found = columns.derivatives(settings);
+  for (std::size_t i = 0; i < settings.size(); ++i) expect_alike(settings[i], found[i], 0.0, 0.1);
+}
+
 TEST_P(EffectColumnsOf, TellWhatTheShapesDo) {
   const EffectColumns columns(job_, 30.0, {});
   std::vector<EffectSetting> settings;

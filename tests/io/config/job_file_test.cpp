@@ -704,6 +704,10 @@ TEST_F(JobFileTest, ReadsEveryOptionOfTheFit) {
   EXPECT_DOUBLE_EQ(options.step, 1e-3);
   EXPECT_EQ(read(std::string(kJob) + "fit: {observer: none}\n").job.options.observer,
             ObserverMode::none);
+  EXPECT_EQ(read(kJob).job.options.horizon, 0.0);
+  EXPECT_EQ(read(std::string(kJob) + "fit: {horizon: whole}\n").job.options.horizon, 0.0);
+  EXPECT_DOUBLE_EQ(read(std::string(kJob) + "fit: {horizon: 200 ms}\n").job.options.horizon, 0.2);
+  EXPECT_TRUE(read(std::string(kJob) + "fit: {horizon: auto}\n").job.options.choose_horizon);
   const JobFile first = read(std::string(kJob) + "fit: {initial_observer_gain: 20 1/s}\n");
   EXPECT_EQ(first.job.options.observer, ObserverMode::continuation);
   EXPECT_DOUBLE_EQ(first.job.options.observer_gain, 20.0);
@@ -898,7 +902,8 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
             "9:22: per_recording must be true or false, not 'each'"},
            // How to fit.
            {"free:\n", "fit: {threads: 2}\nfree:\n",
-            "8:7: unknown key 'threads'; known keys: observer, initial_observer_gain, loss, "
+            "8:7: unknown key 'threads'; known keys: observer, initial_observer_gain, horizon, "
+            "loss, "
             "huber_width, max_iterations, starts, seed, spread, step"},
            {"free:\n", "fit: {observer: loose}\nfree:\n",
             "8:17: observer must be continuation, none, or a fixed gain such as {fixed: 300 1/s}"},
@@ -906,6 +911,13 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
             "8:7: observer must be continuation, none, or a fixed gain such as {fixed: 300 1/s}"},
            {"free:\n", "fit: {observer: none, initial_observer_gain: 3 1/s}\nfree:\n",
             "8:46: initial_observer_gain needs observer: continuation"},
+           {"free:\n", "fit: {horizon: long}\nfree:\n",
+            "8:16: horizon must be whole, auto, or a time with its unit, such as 2 s"},
+           {"free:\n", "fit: {horizon: 2 m}\nfree:\n",
+            "8:16: horizon: 'm' cannot be converted to 's'; use for example 's'"},
+           {"free:\n", "fit: {horizon: 1 s, observer: {fixed: 3 1/s}}\nfree:\n",
+            "8:16: with a fixed observer nothing runs free: remove 'horizon', or let it be chosen "
+            "with 'horizon: auto'"},
            {"free:\n", "fit: {observer: {fixd: 3 1/s}}\nfree:\n",
             "8:18: unknown key 'fixd'; did you mean 'fixed'?"},
            {"free:\n", "fit: {observer: {fixed: 3}}\nfree:\n",

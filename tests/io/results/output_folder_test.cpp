@@ -30,7 +30,8 @@ void report(const std::string& call) {
 }  // namespace
 }  // namespace axisfit
 
-// In place of the C library's.
+// In place of the C library's, for other libraries, too.
+#pragma GCC visibility push(default)
 extern "C" {
 int fsync(int file) {
   axisfit::report(
@@ -48,6 +49,7 @@ int renameat2(int from_folder, const char* from, int to_folder, const char* to,
   return static_cast<int>(::syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
 }
 }
+#pragma GCC visibility pop
 
 namespace axisfit {
 namespace {

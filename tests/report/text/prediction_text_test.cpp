@@ -30,6 +30,8 @@ TEST(PredictionText, TellsOfBandsAndTheirCurves) {
             1 + static_cast<int>(result.job().recordings.back().times.size()));
   RunResult without = result;
   without.no_prediction = "the reason";
+  EXPECT_TRUE(prediction_text(without).ends_with("\nNo further prediction: the reason.\n\n"));
+  without.predictions.clear();
   EXPECT_EQ(prediction_text(without), "No prediction: the reason.\n\n");
   Job job = scattering_machine(2, 0.0, 1);
   EXPECT_NE(report_text(run(std::move(job), {.predict = true})).find("Nothing to predict"),
