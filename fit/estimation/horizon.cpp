@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "fit/estimation/continuation.h"
 #include "fit/estimation/estimate.h"
+#include "fit/estimation/initial_state.h"
 #include "fit/estimation/quick_fit.h"
 #include "fit/estimation/windows.h"
 #include "fit/residuals/free_run.h"
@@ -48,12 +49,50 @@ std::vector<Stretch> stretches_of(const Job& job) {
   return stretches;
 }
 
-/// The job without a stretch.
+template <class Vector>
+void cut(Vector& values, std::size_t first, std::size_t end) {
+  if (values.empty()) return;
+  values = Vector(std::vector(values.begin() + static_cast<std::ptrdiff_t>(first),
+                              values.begin() + static_cast<std::ptrdiff_t>(end)));
+}
+
+/// Some samples of a recording. Commands from before them go on acting.
+Recording piece_of(Recording recording, std::size_t first, std::size_t end) {
+  cut(recording.times, first, end);
+  for (Samples& channel : recording.channels) cut(channel, first, end);
+  for (Measurement& m : recording.measurements) {
+    cut(m.values, first, end);
+    cut(m.excluded, first, end);
+    cut(m.uninformative, first, end);
+  }
+  if (first > 0) {
+    std::erase_if(recording.overrides, [](const auto& value) {
+      return quantity_list()[value.first].group == "initial";
+    });
+    recording.initial_state = InitialState::data;
+    initial_state_from_data(recording);
+  }
+  return recording;
+}
+
+/// The job without a stretch: what is before and behind it are recordings of their own, for a run
+/// through it would be told by its end what happened there.
 Job without(Job job, const Stretch& stretch) {
-  std::vector<bool>& held_out = job.recordings[stretch.recording].held_out;
-  held_out.resize(job.recordings[stretch.recording].times.size());
-  std::fill(held_out.begin() + static_cast<std::ptrdiff_t>(stretch.first),
-            held_out.begin() + static_cast<std::ptrdiff_t>(stretch.end), true);
+  constexpr std::size_t kFewest = 40;
+  const Recording whole = job.recordings[stretch.recording];
+  const std::size_t behind = whole.times.size() - stretch.end;
+  Recording& before = job.recordings[stretch.recording];
+  if (stretch.first >= kFewest) {
+    before = piece_of(whole, 0, stretch.first);
+    if (behind >= kFewest) {
+      job.recordings.push_back(piece_of(whole, stretch.end, whole.times.size()));
+      job.recordings.back().name += " (2)";
+    }
+  } else if (behind >= kFewest) {
+    before = piece_of(whole, stretch.end, whole.times.size());
+  } else {
+    before.role = Role::validate;  // other recordings are fitted
+  }
   return job;
 }
 
@@ -128,7 +167,11 @@ HorizonChoice choose_horizon(const Job& job, const RunContext& context) {
     Job rest = without(job, stretch);
     rest.options = quick_fit(rest.options);
     set_criterion(rest.options, trial);
-    if (!(trial.observer_gain > 0.0)) rest.options.observer = ObserverMode::none;
+    if (!(trial.observer_gain > 0.0)) {
+      rest.options.observer = ObserverMode::none;
+      // The whole of each piece.
+      if (trial.horizon == 0.0) rest.options.horizon = std::numeric_limits<double>::max();
+    }
     rest.options.threads = 1;
     set_initial_values(rest, from);
     const ParameterSpace space(rest);

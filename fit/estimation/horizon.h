@@ -17,8 +17,8 @@ struct HorizonTrial {
   double observer_gain = 0.0;  ///< 1/s; above zero the simulation tracks to the end: one step ahead
   double horizon = 0.0;        ///< s, of the windows; zero without observer: the whole recording
   /// Root of the mean square over the stretches left out and the fitted signals, of the free run
-  /// from the state that suits the stretch best, per standard deviation of the signal. Infinite
-  /// where a fit or a run failed.
+  /// from how the stretch begins, per standard deviation of the signal. Infinite where a fit or a
+  /// run failed.
   double error = 0.0;
 };
 

@@ -166,10 +166,24 @@ SimulatedRecording simulate_recording(const Job& job, const Recording& recording
 }
 
 std::optional<SimulatedRecording> simulate_in_windows(const Job& job, const ParameterSpace& space,
-                                                      std::size_t index, const double* u) {
+                                                      std::size_t index, const double* u,
+                                                      double share) {
   Job fitted = job;
-  fitted.recordings[index].role = Role::fit;
-  for (Measurement& m : fitted.recordings[index].measurements) m.fitted = true;
+  Recording& recording = fitted.recordings[index];
+  recording.role = Role::fit;
+  for (Measurement& m : recording.measurements) m.fitted = true;
+  recording.held_out.clear();
+  if (share < 1.0) {
+    constexpr double kFewest = 20.0;
+    std::vector<std::size_t> bounds = first_samples(recording, job.options.horizon);
+    bounds.push_back(recording.times.size());
+    for (std::size_t k = 0; k + 1 < bounds.size(); ++k) {
+      const auto samples = static_cast<double>(bounds[k + 1] - bounds[k]);
+      const double known = std::min(samples, std::max(kFewest, share * samples));
+      recording.held_out.resize(bounds[k] + static_cast<std::size_t>(known), false);
+      recording.held_out.resize(bounds[k + 1], true);
+    }
+  }
   const RecordingCost cost(fitted, space, index, {});
   const std::vector<WindowStart> starts = cost.starts(u);
   if (starts.empty()) return std::nullopt;

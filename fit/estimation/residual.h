@@ -26,9 +26,11 @@ SimulatedRecording simulate_recording(const Job& job, const Recording& recording
                                       const Model<double>& model, const Observer& observer);
 
 /// The same without an observer, in the windows of the job's horizon, from the states that suit the
-/// recording best; none where it has no windows.
+/// recording best: all of it, or this share at the beginning of each window, 20 samples at least.
+/// None where it has no windows.
 std::optional<SimulatedRecording> simulate_in_windows(const Job& job, const ParameterSpace& space,
-                                                      std::size_t recording, const double* u);
+                                                      std::size_t recording, const double* u,
+                                                      double share = 1.0);
 
 /// The observer of a recording at a rate: to its velocity, or else to its position, or none.
 Observer observer_for(const Recording& recording, double rate);

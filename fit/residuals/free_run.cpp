@@ -13,7 +13,8 @@ std::vector<double> free_run_errors(Job job, std::span<const double> values, std
   job.options.horizon = horizon;
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values);
-  auto run = simulate_in_windows(job, space, index, u.data());
+  constexpr double kKnown = 0.1;
+  auto run = simulate_in_windows(job, space, index, u.data(), kKnown);
   if (!run) run = simulate_recording(job, space, index, u.data(), {});
   if (!run->finished) return {};
   const Recording& recording = job.recordings[index];

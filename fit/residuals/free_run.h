@@ -9,10 +9,11 @@
 namespace axisfit {
 
 /// Of every window of about `horizon` seconds: the mean over the fitted signals of the squared
-/// error of a free run from the state that suits the window best, per variance of the signal.
-/// (Where window_starts() has none, all windows are of one run.) A window without samples that
-/// count has not a number, and the list is empty where the run does not finish. With these values
-/// of the job's free parameters.
+/// error of a free run, per variance of the signal. The run begins with the state that suits the
+/// first tenth of the window best: who predicts knows how a motion begins, and no more. (Where
+/// window_starts() has none, all windows are of one run.) A window without samples that count has
+/// not a number, and the list is empty where the run does not finish. With these values of the
+/// job's free parameters.
 std::vector<double> free_run_errors(Job job, std::span<const double> values, std::size_t recording,
                                     double horizon);
 

@@ -35,7 +35,7 @@ Job wandering_slide(double amplitude) {
   for (int i = 0; i <= static_cast<int>(kDuration / kStep); ++i) {
     const double t = i * kStep;
     if (i % kEvery == 0) {
-      times.push_back(kInterval * (i / kEvery));
+      times.push_back(kInterval * static_cast<double>(times.size()));
       commands.push_back(command_at(t + 1e-9));
       positions.push_back(position + usual_noise(Signal::position) * noise());
     }
@@ -183,7 +183,7 @@ TEST(ChooseHorizon, IsShortWhereAForceWandersAndLongElsewhere) {
   const HorizonChoice other = choose_horizon(wandering_slide(0.0));
   std::cout << "one step ahead, error per that of the whole run: "
             << other.trials.front().error / other.trials.back().error << "\n";
-  EXPECT_LT(other.trials.back().error, 1.01 * other.trials[other.chosen].error);
+  EXPECT_LT(other.trials.back().error, 1.05 * other.trials[other.chosen].error);
   EXPECT_GT(other.trials.front().error, 2.0 * other.trials.back().error);
 }
 
