@@ -14,23 +14,20 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
-#include <variant>
 
 #include "apps/command_line.h"
 #include "apps/progress.h"
 #include "apps/result_files.h"
+#include "apps/run_options.h"
 #include "base/terminal.h"
 #include "base/text_table.h"
-#include "base/units.h"
 #include "fit/design/run_time_estimate.h"
 #include "fit/run.h"
 #include "init/machine_choice.h"
 #include "init/starter_axis.h"
 #include "io/config/axis_file.h"
-#include "io/config/channels.h"
 #include "io/config/config.h"
 #include "io/config/job_file.h"
-#include "io/config/motion_file.h"
 #include "io/config/next_job.h"
 #include "io/results/output_folder.h"
 #include "report/html/report_page.h"
@@ -147,49 +144,6 @@ void start_from(const std::string& axis_file, Job& job) {
   for (FreeParameter& p : job.free)
     if (!p.recording && is_used(quantity_list()[p.quantity], rig->model.structure))
       p.initial = std::clamp(*values[p.quantity], p.lower, p.upper);
-}
-
-/// The axes of files, as models of the job's recordings.
-std::vector<OtherModel> models_of(const std::vector<std::string>& axis_files, const Job& job) {
-  std::vector<OtherModel> models;
-  for (const std::string& file : axis_files) {
-    Diagnostics diagnostics;
-    auto rig = read_axis_file(file, diagnostics);
-    diagnostics.throw_if_any();
-    const Structure &own = job.model.structure, &other = rig->model.structure;
-    if (vocabulary_of(own) != vocabulary_of(other))
-      throw std::runtime_error(fmt::format(
-          "--compare {}: joint or unit of the command are not those of the job's axis", file));
-    const auto name = [](const Channel& channel) { return channel.name; };
-    const ChannelList &channels = channels_of(own), &others = channels_of(other);
-    if (others.size() > channels.size() ||
-        !std::ranges::equal(others, std::span(channels).first(others.size()), {}, name, name))
-      throw std::runtime_error(fmt::format(
-          "--compare {}: its channels are not those of the job, in the same order", file));
-    models.push_back({file, rig->model, rig->uncertainty});
-  }
-  return models;
-}
-
-/// An allowed error of a signal that the job has, such as "1 mm".
-Tolerance tolerance_of(const std::string& text, const Job& job) {
-  std::size_t end = 0;
-  double value = 0.0;
-  try {
-    value = std::stod(text, &end);
-  } catch (const std::exception&) {
-    end = 0;
-  }
-  const std::string unit = text.substr(std::min(text.find_first_not_of(' ', end), text.size()));
-  if (end == 0 || !(value > 0.0) || !std::isfinite(value) || unit.empty())
-    throw std::runtime_error(
-        fmt::format("--within '{}': write a number above zero and its unit, such as 1mm", text));
-  for (const Recording& r : job.recordings)
-    for (const Measurement& m : r.measurements)
-      if (std::holds_alternative<double>(unit_factor(unit, info(m.signal, job.vocabulary()).unit)))
-        return {value, unit};
-  throw std::runtime_error(
-      fmt::format("--within '{}': no signal of the job can be given in {}", text, unit));
 }
 
 /// Prints the text that `report` makes, which is told whether it may have colours.
@@ -385,10 +339,8 @@ int run_job(const Arguments& arguments, std::optional<ProgressLine>& line, const
   options_of_run.others = models_of(arguments.others, file.job);
   for (const std::string& text : arguments.tolerances)
     options_of_run.tolerances.push_back(tolerance_of(text, file.job));
-  if (options_of_run.predict && arguments.motion != "-") {
-    const MotionFile motion = read_motion_file(arguments.motion, file.rig);
-    options_of_run.motion = {arguments.motion, motion.motion, motion.duration, file.rig};
-  }
+  if (options_of_run.predict && arguments.motion != "-")
+    options_of_run.motion = motion_of(arguments.motion, file.rig);
   RunResult& found = result.emplace(run(file.job, options_of_run, context));
   if (found.interrupted && time_limit_reached) found.time_limit = arguments.time_limit;
   const std::string json = result_json(found).dump(2) + "\n";

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "apps/result_files.h"
+#include "apps/run_options.h"
 #include "base/parallel.h"
 #include "base/version.h"
 #include "fit/run.h"
@@ -235,17 +236,18 @@ std::unique_ptr<PyResult> fit(const PyJob& job, const RunOptions& options,
 
 RunOptions options_of(const PyJob& job, bool close_loop, std::vector<std::string> profiles,
                       bool suggest_experiment, bool predict, const std::string& motion,
-                      bool compare) {
+                      const std::vector<std::string>& within, bool compare,
+                      const std::vector<std::string>& others) {
   RunOptions options;
   options.select_effects = close_loop;
   options.profiles = std::move(profiles);
   options.suggest_experiment = suggest_experiment;
   options.predict = predict || !motion.empty();
   options.compare = compare;
-  if (!motion.empty()) {
-    const MotionFile file = read_motion_file(motion, job.file.rig);
-    options.motion = MotionToPredict{motion, file.motion, file.duration, job.file.rig};
-  }
+  options.others = models_of(others, job.file.job);
+  for (const std::string& text : within)
+    options.tolerances.push_back(tolerance_of(text, job.file.job));
+  if (!motion.empty()) options.motion = motion_of(motion, job.file.rig);
   return options;
 }
 
@@ -365,16 +367,19 @@ PYBIND11_MODULE(_core, module) {
   module.def(
       "fit",
       [](const PyJob& job, bool close_loop, std::vector<std::string> profiles,
-         bool suggest_experiment, bool predict, const std::string& motion, bool compare,
-         std::optional<int> threads, std::optional<int> starts, std::optional<std::uint64_t> seed,
+         bool suggest_experiment, bool predict, const std::string& motion,
+         const std::vector<std::string>& within, bool compare,
+         const std::vector<std::string>& others, std::optional<int> threads,
+         std::optional<int> starts, std::optional<std::uint64_t> seed,
          std::optional<double> time_limit, const py::object& progress) {
         return fit(job,
                    options_of(job, close_loop, std::move(profiles), suggest_experiment, predict,
-                              motion, compare),
+                              motion, within, compare, others),
                    threads, starts, seed, time_limit, progress);
       },
       "job"_a, "close_loop"_a, "profiles"_a, "suggest_experiment"_a, "predict"_a, "motion"_a,
-      "compare"_a, "threads"_a, "starts"_a, "seed"_a, "time_limit"_a, "progress"_a);
+      "within"_a, "compare"_a, "others"_a, "threads"_a, "starts"_a, "seed"_a, "time_limit"_a,
+      "progress"_a);
   module.def("simulate", &simulate, "axis"_a, "name"_a, "motion"_a, "signals"_a, "rate"_a, "seed"_a,
              "exact"_a, "band"_a);
   module.def("init", &init, "recordings"_a, "folder"_a, "axis"_a, "machine"_a, "gain"_a,

@@ -281,13 +281,15 @@ def _progress(wanted):
     return show
 
 
-def fit(job, *, close_loop=False, profile=(), suggest_experiment=False, predict=False, compare=False, threads=None,
-        starts=None, seed=None, time_limit=None, progress=None):
+def fit(job, *, close_loop=False, profile=(), suggest_experiment=False, predict=False, within=(), compare=False,
+        threads=None, starts=None, seed=None, time_limit=None, progress=None):
     """Fits a job, as `fit-params` does with the options of the same names.
 
     job: a Job, or the path of a job file. profile: names of parameters, or "all". predict: True, or the path of a
-    motion file. time_limit: s, after which what is finished is returned; TimeoutError where that is nothing. progress:
-    True, False, or a function of (phase, done, of, chi_square); by default it is shown where someone looks.
+    motion file; within: errors for which to judge the bands, such as "1 mm". compare: True, or paths of axis files whose
+    models are compared, too. time_limit: s, after which what is finished is returned; TimeoutError where that is
+    nothing. progress: True, False, or a function of (phase, done, of, chi_square); by default it is shown where someone
+    looks.
     Ctrl-C raises KeyboardInterrupt, whose attribute `result` is what was finished.
     """
     if not isinstance(job, Job):
@@ -295,7 +297,9 @@ def fit(job, *, close_loop=False, profile=(), suggest_experiment=False, predict=
     names = [profile] if isinstance(profile, str) else list(profile)
     motion = _os.fspath(predict) if not isinstance(predict, bool) else ""
     try:
-        core = _core.fit(job._core, close_loop, names, suggest_experiment, bool(predict), motion, compare, threads,
+        core = _core.fit(job._core, close_loop, names, suggest_experiment, bool(predict), motion,
+                         [within] if isinstance(within, str) else list(within), bool(compare),
+                         [_os.fspath(path) for path in compare] if not isinstance(compare, bool) else [], threads,
                          starts, seed, time_limit, _progress(progress))
     except KeyboardInterrupt as stopped:
         partial = getattr(stopped, "result", None)

@@ -488,6 +488,32 @@ TEST_F(CommandLineTest, AMotionIsPredictedOnDemand) {
     EXPECT_EQ(fit({job(rubbing_job()), "--predict", "--within", wrong}).exit_code, 2) << wrong;
 }
 
+TEST_F(CommandLineTest, AnAxisIsExportedWithWhatIsLost) {
+  write_rubbing_mass(folder_);
+  const std::string results = folder_.path("results");
+  const std::string declared = job(rubbing_job());
+  ASSERT_EQ(fit({declared, "--close-loop", "--quiet", "--output", results}).exit_code, 0);
+  const std::string fitted = results + "/fitted.yaml", robot = folder_.path("robot");
+  const Outcome whole =
+      run("axisfit-export", {fitted, "--to", "mjcf", "--job", declared, "--output", robot});
+  EXPECT_EQ(whole.exit_code, 0) << whole.err;
+  EXPECT_NE(whole.out.find("All of the axis is in it."), std::string::npos) << whole.out;
+  EXPECT_NE(folder_.read("robot/fitted.xml").find("frictionloss"), std::string::npos);
+  const Outcome urdf =
+      run("axisfit-export", {fitted, "--to", "urdf", "--job", declared, "--output", robot});
+  EXPECT_EQ(urdf.exit_code, 0) << urdf.err;
+  EXPECT_NE(urdf.out.find("What that does to the job's recordings"), std::string::npos) << urdf.out;
+  EXPECT_EQ(run("axisfit-export", {fitted, "--to", "matlab", "--output", robot}).exit_code, 0);
+  EXPECT_NE(folder_.read("robot/fitted.m").find("axis.fitted.covariance = ["), std::string::npos);
+
+  const Outcome refused = run("axisfit-export", {kXAxis, "--to", "mjcf", "--output", robot});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("MJCF cannot express this axis"), std::string::npos) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(robot + "/x.xml"));
+  EXPECT_EQ(run("axisfit-export", {fitted, "--to", "fmu"}).exit_code, 2);
+  EXPECT_EQ(run("axisfit-export", {fitted}).exit_code, 2);
+}
+
 TEST_F(CommandLineTest, TheLoopIsClosedOnDemand) {
   write_rubbing_mass(folder_);
   const std::string results = folder_.path("results");

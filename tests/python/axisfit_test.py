@@ -134,6 +134,13 @@ class Fit(unittest.TestCase):
         result = axisfit.profile(PAPER, "V_L")
         self.assertEqual([p["name"] for p in result.json["profile"]], ["V_L"])
         self.assertEqual(axisfit.fit(PAPER, starts=3, seed=5, threads=1).json["seed"], 5)
+        with tempfile.TemporaryDirectory() as folder:
+            axisfit.fit(PAPER).save(folder)
+            compared = axisfit.fit(PROJECT / "configs" / "jobs" / "close-loop.yaml", within="1 mm/s", predict=True,
+                                   compare=[os.path.join(folder, "fitted.yaml")])
+        self.assertEqual(len(compared.json["comparison"]["models"]), 2)
+        self.assertIn("below 1 mm/s", compared.report())
+        self.assertIn("velocity_half_width", list(compared.prediction))
         told = []
         axisfit.fit(PAPER, starts=2, progress=lambda *what: told.append(what))
         self.assertTrue(all(len(what) == 4 for what in told))

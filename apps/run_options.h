@@ -1,0 +1,22 @@
+// Options of a run that name files or amounts, as users write them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fit/run.h"
+
+namespace axisfit {
+
+// All throw std::runtime_error or ConfigError with what the user is to know.
+
+/// The axes of files, as models of the job's recordings.
+std::vector<OtherModel> models_of(const std::vector<std::string>& axis_files, const Job& job);
+
+/// An allowed error of a signal that the job has, such as "1 mm".
+Tolerance tolerance_of(const std::string& text, const Job& job);
+
+/// A motion file, for the rig of the job.
+MotionToPredict motion_of(const std::string& path, const Rig& rig);
+
+}  // namespace axisfit
