@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -310,7 +311,15 @@ std::string mat_file(const Rig& rig) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-Export matlab(const Rig& rig, const std::string& name, const std::string& origin) {
+/// What MATLAB takes for the name of a function, and with it of its file.
+std::string identifier(std::string name) {
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  return std::isalpha(static_cast<unsigned char>(name.front())) != 0 ? name : "axis_" + name;
+}
+
+Export matlab(const Rig& rig, const std::string& of_file, const std::string& origin) {
+  const std::string name = identifier(of_file);
   return {
       {{name + ".m", matlab_function(rig, name, origin)}, {name + ".mat", mat_file(rig)}}, rig, {}};
 }

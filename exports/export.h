@@ -24,9 +24,10 @@ struct Export {
   std::vector<std::string> lost;  ///< of the axis, that the target cannot express: a sentence each
 };
 
-/// The files of a target, called `name` with their endings; `origin` is said in a comment. Throws
-/// std::runtime_error, naming what is in the way, for an axis that the target cannot express at
-/// all: a velocity loop or a preamplifier between the command and the motor.
+/// The files of a target, called `name` with their endings, or what MATLAB can take for it;
+/// `origin` is said in a comment. Throws std::runtime_error, naming what is in the way, for an axis
+/// that the target cannot express at all: a velocity loop or a preamplifier between the command and
+/// the motor.
 Export export_axis(const Rig& rig, ExportTarget target, const std::string& name,
                    const std::string& origin);
 

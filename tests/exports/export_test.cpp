@@ -112,6 +112,15 @@ TEST(Export, MatlabHasTheCovariance) {
       << text;
 }
 
+TEST(Export, MatlabFunctionsHaveNamesThatItTakes) {
+  const auto name = [](const char* file) {
+    return export_axis(slide(), ExportTarget::matlab, file, "").files[0].first;
+  };
+  EXPECT_EQ(name("fitted"), "fitted.m");
+  EXPECT_EQ(name("x-axis 2"), "x_axis_2.m");
+  EXPECT_EQ(name("2nd"), "axis_2nd.m");
+}
+
 TEST(Export, UrdfIsWhatTheCheckerTakes) {
   TempFolder folder;
   for (const bool turns : {false, true}) {
