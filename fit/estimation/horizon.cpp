@@ -9,10 +9,10 @@
 #include "base/parallel.h"
 #include "fit/estimation/continuation.h"
 #include "fit/estimation/estimate.h"
+#include "fit/estimation/free_run.h"
 #include "fit/estimation/initial_state.h"
 #include "fit/estimation/quick_fit.h"
 #include "fit/estimation/windows.h"
-#include "fit/residuals/free_run.h"
 #include "sim/sampling.h"
 
 namespace axisfit {

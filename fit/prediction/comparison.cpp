@@ -6,9 +6,9 @@
 #include <numeric>
 #include <tuple>
 
+#include "fit/estimation/free_run.h"
 #include "fit/prediction/prediction.h"
 #include "fit/residuals/autocovariance.h"
-#include "fit/residuals/free_run.h"
 
 namespace axisfit {
 namespace {

@@ -1,4 +1,4 @@
-#include "fit/residuals/free_run.h"
+#include "fit/estimation/free_run.h"
 
 #include <cmath>
 #include <optional>
