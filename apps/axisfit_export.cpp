@@ -1,17 +1,19 @@
 // axisfit-export FITTED.yaml --to TARGET: a fitted axis in the files of other tools.
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 
 #include "apps/command_line.h"
-#include "apps/progress.h"
+#include "apps/run_options.h"
 #include "base/text_table.h"
 #include "exports/export.h"
 #include "fit/estimation/estimate.h"
+#include "fit/prediction/comparison.h"
+#include "fit/residuals/series.h"
 #include "io/config/axis_file.h"
 #include "io/config/job_file.h"
 
@@ -43,26 +45,18 @@ Exit codes: 0 exported, 2 bad input or an axis that the target cannot express.)"
 
 /// Root of the mean square of the differences of two series.
 double rms_between(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, a.size())));
-}
-
-/// The job's recordings, simulated by an axis.
-FitResult simulated(Job job, const Rig& rig) {
-  const Structure own = job.model.structure;
-  job.model = rig.model;
-  job.model.structure.closed_loop = own.closed_loop;
-  if (rig.model.structure.channels) job.model.structure.channels = own.channels;
-  job.free.clear();
-  return evaluated(job);
+  std::vector<double> differences(a.size());
+  std::ranges::transform(a, b, differences.begin(), std::minus());
+  return std::sqrt(mean_square(differences));
 }
 
 /// What the loss does to the job's recordings: by how much the simulation of them changes, and the
 /// errors of both.
 std::string losses_text(const Arguments& arguments, const Rig& rig, const Rig& carried) {
   const Job job = read_job_file(arguments.job, arguments.data).job;
-  const FitResult whole = simulated(job, rig), rest = simulated(job, carried);
+  check_is_of_machine(rig, job, "--job " + arguments.job);
+  const FitResult whole = evaluated(with_model(job, rig.model)),
+                  rest = evaluated(with_model(job, carried.model));
   std::vector<std::vector<std::string>> rows{
       {"", "by what is lost", "error before", "after", "unit"}};
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {

@@ -15,22 +15,26 @@
 
 namespace axisfit {
 
+void check_is_of_machine(const Rig& rig, const Job& job, const std::string& where) {
+  const Structure &own = job.model.structure, &other = rig.model.structure;
+  if (vocabulary_of(own) != vocabulary_of(other))
+    throw std::runtime_error(
+        fmt::format("{}: joint or unit of the command are not those of the job's axis", where));
+  const auto name = [](const Channel& channel) { return channel.name; };
+  const ChannelList &channels = channels_of(own), &others = channels_of(other);
+  if (others.size() > channels.size() ||
+      !std::ranges::equal(others, std::span(channels).first(others.size()), {}, name, name))
+    throw std::runtime_error(
+        fmt::format("{}: its channels are not those of the job, in the same order", where));
+}
+
 std::vector<OtherModel> models_of(const std::vector<std::string>& axis_files, const Job& job) {
   std::vector<OtherModel> models;
   for (const std::string& file : axis_files) {
     Diagnostics diagnostics;
     auto rig = read_axis_file(file, diagnostics);
     diagnostics.throw_if_any();
-    const Structure &own = job.model.structure, &other = rig->model.structure;
-    if (vocabulary_of(own) != vocabulary_of(other))
-      throw std::runtime_error(fmt::format(
-          "--compare {}: joint or unit of the command are not those of the job's axis", file));
-    const auto name = [](const Channel& channel) { return channel.name; };
-    const ChannelList &channels = channels_of(own), &others = channels_of(other);
-    if (others.size() > channels.size() ||
-        !std::ranges::equal(others, std::span(channels).first(others.size()), {}, name, name))
-      throw std::runtime_error(fmt::format(
-          "--compare {}: its channels are not those of the job, in the same order", file));
+    check_is_of_machine(*rig, job, "--compare " + file);
     models.push_back({file, rig->model, rig->uncertainty});
   }
   return models;

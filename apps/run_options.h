@@ -10,6 +10,10 @@ namespace axisfit {
 
 // All throw std::runtime_error or ConfigError with what the user is to know.
 
+/// That an axis can stand in for the job's: with the same joint, command and channels. `where`
+/// begins the message.
+void check_is_of_machine(const Rig& rig, const Job& job, const std::string& where);
+
 /// The axes of files, as models of the job's recordings.
 std::vector<OtherModel> models_of(const std::vector<std::string>& axis_files, const Job& job);
 

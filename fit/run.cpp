@@ -121,35 +121,35 @@ void predict(RunResult& result, const RunContext& context) {
   }
 }
 
-/// A model with what is not known of it, which its errors and scatter say.
-ModelEntry model_entry(std::string name, const Job& job, FitResult fit) {
+std::vector<MissingForce> missing_forces(const Job& job, const FitResult& fit) {
   std::vector<MissingForce> forces;
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     forces.push_back(missing_force(job, fit, r));
-  std::optional<AxisUncertainty> uncertainty;
-  if (fit.usable) {
-    const std::optional<Scatter> scatter = allow_for_scatter(job, fit);
-    uncertainty = axis_uncertainty(job, fit, scatter, forces);
-  }
-  return {std::move(name), job, std::move(fit), std::move(uncertainty)};
+  return forces;
 }
 
-/// The declared model and those of the loop, and the others.
+/// The declared model and those of the loop, and the others. Of the last of them the result has
+/// what is not known.
 std::optional<Comparison> compare(const RunResult& result, const RunContext& context) {
   const ThreadPool pool(result.baseline.options.threads);
   std::vector<ModelEntry> models;
   if (result.selection)
-    for (const SelectionStep& step : result.selection->models)
-      models.push_back(model_entry(step.added, step.job, step.fit));
-  else
-    models.push_back(model_entry("", result.baseline, result.first));
+    for (std::size_t i = 0; i + 1 < result.selection->models.size(); ++i) {
+      const auto& [added, job, fit] = result.selection->models[i];
+      ModelEntry& entry = models.emplace_back(added, job, fit);
+      entry.forces = result.scores[i].forces;
+      if (!fit.usable) continue;
+      const std::optional<Scatter> scatter = allow_for_scatter(job, entry.fit);
+      entry.uncertainty = axis_uncertainty(job, entry.fit, scatter, entry.forces);
+    }
+  models.push_back(
+      {result.selection ? result.selection->models.back().added : "", result.job(), result.fit(),
+       result.uncertainty,
+       result.diagnosis ? result.diagnosis->forces : missing_forces(result.job(), result.fit())});
   for (const OtherModel& other : result.options.others) {
-    ModelEntry entry{other.name, result.baseline, {}, other.uncertainty};
-    entry.job.model = other.model;
-    entry.job.model.structure.closed_loop = result.baseline.model.structure.closed_loop;
-    entry.job.model.structure.channels = result.baseline.model.structure.channels;
-    entry.job.free.clear();
+    ModelEntry entry{other.name, with_model(result.baseline, other.model), {}, other.uncertainty};
     entry.fit = evaluated(entry.job);
+    entry.forces = missing_forces(entry.job, entry.fit);
     models.push_back(std::move(entry));
   }
   return compare_models(models, context);
@@ -186,12 +186,9 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
     result.interrupted = true;
   }
   if (result.selection)
-    for (const SelectionStep& model : result.selection->models) {
-      ModelScore score{score_signals(model.job, model.fit), {}};
-      for (std::size_t r = 0; r < model.job.recordings.size(); ++r)
-        score.forces.push_back(missing_force(model.job, model.fit, r));
-      result.scores.push_back(std::move(score));
-    }
+    for (const SelectionStep& model : result.selection->models)
+      result.scores.push_back(
+          {score_signals(model.job, model.fit), missing_forces(model.job, model.fit)});
   FitResult& last = result.selection ? result.selection->result.fit : result.first;
   if (!result.interrupted) {
     if (context.progress) context.progress({.phase = "does the observer gain matter?"});

@@ -20,13 +20,15 @@ std::vector<double> free_run_errors(Job job, std::span<const double> values, std
   const Recording& recording = job.recordings[index];
   std::vector<std::size_t> bounds = first_samples(recording, horizon);
   bounds.push_back(recording.times.size());
-  std::vector<double> errors;
+  std::vector<double> scales, errors;
+  for (const Measurement& m : recording.measurements)
+    scales.push_back(standard_deviation(m.values));
   for (std::size_t k = 0; k + 1 < bounds.size(); ++k) {
     double sum = 0.0;
     int signals = 0;
     for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
       const Measurement& measured = recording.measurements[m];
-      const double scale = standard_deviation(measured.values);
+      const double scale = scales[m];
       if (!measured.fitted || !(scale > 0.0)) continue;
       double squares = 0.0;
       int samples = 0;

@@ -22,12 +22,14 @@ std::vector<double> target_values(const Recording& recording, Signal signal) {
   return delay > 0.0 ? advanced(m->values, delay) : std::vector<double>(m->values);
 }
 
-/// Runs a recording through a model and calls read(i, axis) at every instant of a recorder.
+/// Runs a recording through a model, in windows where there are any, and calls read(i, axis) at
+/// every instant of a recorder. `seeded` as in WindowRestarts.
 template <class T, class Read>
 SimulationResult run(const Job& job, const Recording& recording, const Model<T>& model,
-                     const Observer& observer, const Recorder<T>& recorder, Read&& read,
+                     const Observer& observer, const Recorder<T>& recorder,
+                     std::span<const WindowStart> starts, Read&& read,
                      std::vector<ModeChange>* modes = nullptr, const StopFlag* stop = nullptr,
-                     std::span<const Disturbance<T>> disturbances = {}) {
+                     std::span<const Disturbance<T>> disturbances = {}, bool seeded = false) {
   // A controller switches the command at each of its samples.
   const double step = recording.command.meaning == Meaning::reference
                           ? std::min(job.options.step, model.controller.timing.command_period())
@@ -51,7 +53,12 @@ SimulationResult run(const Job& job, const Recording& recording, const Model<T>&
   std::vector<ChannelSeries> channels;
   for (const Samples& values : recording.channels)
     channels.push_back({recorder.refined(std::vector<double>(values))});
-  return simulate<T>(model, recording.command, recorder.instants(), read, observer,
+  WindowRestarts<T> restarts(starts, recorder, seeded);
+  const auto begin_and_read = [&](std::size_t i, Integrator<T>& axis) {
+    restarts.at(i, axis);
+    read(i, axis);
+  };
+  return simulate<T>(model, recording.command, recorder.instants(), begin_and_read, observer,
                      {velocity, position, channels}, options, disturbances);
 }
 
@@ -124,7 +131,6 @@ SimulatedRecording simulated(const Job& job, const Recording& recording, const M
   std::vector<Signal> signals;
   for (const Measurement& m : recording.measurements) signals.push_back(m.signal);
   Recorder<double> recorder(model.instruments, signals, recording.times);
-  WindowRestarts<double> restarts(starts, recorder);
   SimulatedRecording simulation;
   const std::vector<double> velocity = target_values(recording, Signal::velocity),
                             position = target_values(recording, Signal::position);
@@ -132,9 +138,8 @@ SimulatedRecording simulated(const Job& job, const Recording& recording, const M
   // them.
   const MeasuredSeries measured{velocity, position};
   const SimulationResult simulation_result = run(
-      job, recording, model, observer, recorder,
-      [&](std::size_t i, Integrator<double>& axis) {
-        restarts.at(i, axis);
+      job, recording, model, observer, recorder, starts,
+      [&](std::size_t i, const Integrator<double>& axis) {
         recorder.read(axis);
         if (!recorder.is_sample(i)) return;
         const Equations<double>& equations = axis.equations();
@@ -168,6 +173,7 @@ SimulatedRecording simulate_recording(const Job& job, const Recording& recording
 std::optional<SimulatedRecording> simulate_in_windows(const Job& job, const ParameterSpace& space,
                                                       std::size_t index, const double* u,
                                                       double share) {
+  if (!(job.options.horizon > 0.0)) return std::nullopt;
   Job fitted = job;
   Recording& recording = fitted.recordings[index];
   recording.role = Role::fit;
@@ -206,7 +212,7 @@ RecordingCost::RecordingCost(const Job& job, const ParameterSpace& space, std::s
       while (window + 1 < windows_.size() && windows_[window + 1].sample <= i) ++window;
       if (!r.fits(measurement, i)) continue;
       ++residuals;
-      window_of_.push_back(window);
+      if (!windows_.empty()) window_of_.push_back(window);
     }
   }
   for (std::size_t i = 0; i < space.size(); ++i)
@@ -227,12 +233,8 @@ bool RecordingCost::evaluate(const double* u, std::span<const WindowStart> start
     model = with_derivatives<T>(values, space_, u, columns);
   const Recording& recording = job_.recordings[recording_];
   Recorder<T> recorder(model.instruments, signals_, recording.times);
-  WindowRestarts<T> restarts(starts, recorder);
-  const auto read = [&](std::size_t i, Integrator<T>& axis) {
-    restarts.at(i, axis);
-    recorder.read(axis);
-  };
-  return run(job_, recording, model, observer_, recorder, read, nullptr, stop_).finished &&
+  const auto read = [&](std::size_t, const Integrator<T>& axis) { recorder.read(axis); };
+  return run(job_, recording, model, observer_, recorder, starts, read, nullptr, stop_).finished &&
          compare(recorder, residuals, {jacobian, space_.size(), columns});
 }
 
@@ -294,12 +296,9 @@ std::optional<WindowStates> RecordingCost::window_states(const double* u) const 
   const std::array<std::size_t, WindowStates::kStates> columns{0, 1};
   for (bool goes_on = true; goes_on;) {
     Recorder<T> recorder(model.instruments, signals_, job_.recordings[recording_].times);
-    WindowRestarts<T> restarts(states.starts(), recorder, true);
-    const auto read = [&](std::size_t i, Integrator<T>& axis) {
-      restarts.at(i, axis);
-      recorder.read(axis);
-    };
-    if (!run(job_, job_.recordings[recording_], model, observer_, recorder, read, nullptr, stop_)
+    const auto read = [&](std::size_t, const Integrator<T>& axis) { recorder.read(axis); };
+    if (!run(job_, job_.recordings[recording_], model, observer_, recorder, states.starts(), read,
+             nullptr, stop_, {}, true)
              .finished ||
         !compare(recorder, residuals.data(), {derivatives.data(), WindowStates::kStates, columns}))
       return std::nullopt;
@@ -318,13 +317,11 @@ std::vector<AxisInstant> RecordingCost::trajectory(const double* u) const {
   const Model<double> model = model_at(job_, space_, u, recording_);
   const Recorder<double> recorder(model.instruments, signals_, recording.times);
   std::vector<AxisInstant> instants;
-  const std::vector<WindowStart> begun = starts(u);
-  WindowRestarts<double> restarts(begun, recorder);
-  const auto note = [&](std::size_t i, Integrator<double>& axis) {
-    restarts.at(i, axis);
+  const auto note = [&](std::size_t, const Integrator<double>& axis) {
     instants.push_back({axis.mode(), axis.state(), axis.input()});
   };
-  if (!run(job_, recording, model, observer_, recorder, note, nullptr, stop_).finished) return {};
+  if (!run(job_, recording, model, observer_, recorder, starts(u), note, nullptr, stop_).finished)
+    return {};
   return instants;
 }
 
@@ -359,9 +356,7 @@ std::optional<RecordingCost::Transitions> RecordingCost::transitions(
   unit.arm.v[n] = 1.0;
   unit.motor.v[n + 1] = 1.0;
   const std::vector<Disturbance<T>> disturbances(recorder.instants().size(), unit);
-  WindowRestarts<T> restarts(starts, recorder);
   const auto read = [&](std::size_t i, Integrator<T>& axis) {
-    restarts.at(i, axis);
     const auto at = static_cast<Eigen::Index>(i);
     axis.differentiate([&](State<T>& y, Input<T>& input, ControllerMemory<T>& memory) {
       Eigen::Index k = 0;
@@ -379,7 +374,7 @@ std::optional<RecordingCost::Transitions> RecordingCost::transitions(
       result.readings_to.row(at * signals + s) = shown.v.head(wide);
     }
   };
-  if (!run(job_, recording, model, observer_, recorder, read, nullptr, stop_,
+  if (!run(job_, recording, model, observer_, recorder, starts, read, nullptr, stop_,
            std::span<const Disturbance<T>>(disturbances))
            .finished)
     return std::nullopt;

@@ -43,8 +43,7 @@ double root_mean(const std::vector<double>& squares) {
 double missing_force_of(const ModelEntry& model, const std::vector<std::size_t>& recordings) {
   std::vector<double> squares;
   for (const std::size_t r : recordings)
-    if (const MissingForce force = missing_force(model.job, model.fit, r); force.found)
-      squares.push_back(force.rms * force.rms);
+    if (model.forces[r].found) squares.push_back(model.forces[r].rms * model.forces[r].rms);
   return root_mean(squares);
 }
 
@@ -94,6 +93,16 @@ std::pair<double, double> log_ratio(const std::vector<double>& a, const std::vec
 }
 
 }  // namespace
+
+Job with_model(Job job, const Model<double>& model) {
+  Structure structure = model.structure;
+  structure.closed_loop = job.model.structure.closed_loop;
+  structure.channels = job.model.structure.channels;
+  job.model = model;
+  job.model.structure = structure;
+  job.free.clear();
+  return job;
+}
 
 std::optional<Comparison> compare_models(const std::vector<ModelEntry>& models,
                                          const RunContext& context) {

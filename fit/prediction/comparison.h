@@ -8,6 +8,7 @@
 
 #include "fit/estimation/estimate.h"
 #include "fit/estimation/run_context.h"
+#include "fit/residuals/missing_force.h"
 #include "sim/axis_uncertainty.h"
 
 namespace axisfit {
@@ -18,7 +19,11 @@ struct ModelEntry {
   Job job;
   FitResult fit;  ///< of no parameters, see evaluated(), where it is taken as it is
   std::optional<AxisUncertainty> uncertainty{};
+  std::vector<MissingForce> forces{};  ///< of every recording
 };
+
+/// A job with another model of its machine, which is taken as it is.
+Job with_model(Job job, const Model<double>& model);
 
 /// How a model does on the recordings to validate. Not a number, or none: not to be had.
 struct ComparedModel {

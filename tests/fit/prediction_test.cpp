@@ -94,7 +94,10 @@ ModelEntry entry(const std::string& name, Job job, const std::vector<const char*
         free, [&](const std::string& n) { return n == job.entry(p.quantity).name; });
   });
   FitResult fit = estimate(job);
-  return {name, std::move(job), std::move(fit), {}};
+  std::vector<MissingForce> forces;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    forces.push_back(missing_force(job, fit, r));
+  return {name, std::move(job), std::move(fit), {}, std::move(forces)};
 }
 
 TEST(Comparison, PrefersWhatPredictsAndElseWhatIsSimple) {
@@ -126,6 +129,18 @@ TEST(Comparison, PrefersWhatPredictsAndElseWhatIsSimple) {
   EXPECT_GT(found->models[0].bic, found->models[1].bic + 100.0);
   EXPECT_LT(found->models[1].bic, found->models[2].bic);
   EXPECT_GT(found->models[0].missing_force, 3.0 * found->models[1].missing_force);
+}
+
+TEST(Comparison, KnowsOfTheFinalModelWhatItsBandsKnow) {
+  Job job = scattering_machine(6, 0.05, 3);
+  job.recordings.back().role = Role::validate;
+  RunOptions options{.predict = true};
+  options.compare = true;
+  const RunResult result = run(std::move(job), options);
+  ASSERT_TRUE(result.comparison);
+  const double inside = result.predictions.front().signals.front().inside_percent;
+  ASSERT_LT(inside, 100.0);  // or there is nothing to compare
+  EXPECT_DOUBLE_EQ(result.comparison->models.front().inside_percent, inside);
 }
 
 TEST(Comparison, NeedsARecordingToValidate) {
