@@ -29,16 +29,16 @@ struct Arguments {
 constexpr const char* kShortHelp = R"(Usage: axisfit-export FITTED.yaml --to TARGET
 
 Examples:
+  axisfit-export fitted.yaml --to fmu2     a unit for co-simulation (or fmu3)
+  axisfit-export fitted.yaml --to c        source in C, and for Simulink
   axisfit-export fitted.yaml --to mjcf     a model for MuJoCo
-  axisfit-export fitted.yaml --to matlab   parameters and their covariance
-  axisfit-export fitted.yaml --to mjcf --job job.yaml
 
 All options: axisfit-export --help
 )";
 
 constexpr const char* kExamples = R"(Examples:
-  axisfit-export fitted.yaml --to mjcf
-  axisfit-export fitted.yaml --to urdf --output robot
+  axisfit-export fitted.yaml --to fmu2
+  axisfit-export fitted.yaml --to c --output controller
   axisfit-export fitted.yaml --to mjcf --job job.yaml
 
 Exit codes: 0 exported, 2 bad input or an axis that the target cannot express.)";
@@ -118,8 +118,10 @@ int main(int argc, char** argv) {
       ->required();
   const std::vector<std::string> targets(std::begin(kExportTargets), std::end(kExportTargets));
   app.add_option("--to", arguments.target,
-                 "mjcf: a model of MuJoCo; urdf: a joint and a link; matlab: parameters and their "
-                 "covariance, as a function and a MAT-file")
+                 "fmu2, fmu3: a unit for co-simulation by FMI 2.0 or 3.0; c: source in C, as an "
+                 "S-function and a MEX function as well; mjcf: a model of MuJoCo; urdf: a joint "
+                 "and a link; matlab: parameters and their covariance, as a function and a "
+                 "MAT-file")
       ->required()
       ->check(CLI::IsMember(targets))
       ->type_name("TARGET");

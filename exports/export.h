@@ -11,11 +11,15 @@
 namespace axisfit {
 
 enum class ExportTarget {
+  fmu2,    ///< a unit for co-simulation by FMI 2.0
+  fmu3,    ///< the same by FMI 3.0
+  c,       ///< source in C, and that of an S-function and a MEX function
   mjcf,    ///< a model of MuJoCo, with the attributes that make its dry friction hold
   urdf,    ///< a joint and its link
   matlab,  ///< parameters and their covariance: a function, and a MAT-file
 };
-inline constexpr std::string_view kExportTargets[] = {"mjcf", "urdf", "matlab"};
+inline constexpr std::string_view kExportTargets[] = {"fmu2", "fmu3", "c",
+                                                      "mjcf", "urdf", "matlab"};
 
 /// What a target was given.
 struct Export {
@@ -24,7 +28,7 @@ struct Export {
   std::vector<std::string> lost;  ///< of the axis, that the target cannot express: a sentence each
 };
 
-/// The files of a target, called `name` with their endings, or what MATLAB can take for it;
+/// The files of a target, called `name` with their endings, or what C and MATLAB can take for it;
 /// `origin` is said in a comment. Throws std::runtime_error, naming what is in the way, for an axis
 /// that the target cannot express at all: a velocity loop or a preamplifier between the command and
 /// the motor.

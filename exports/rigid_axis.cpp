@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "exports/targets.h"
 #include "sim/model.h"
 
 namespace axisfit {
@@ -40,6 +41,7 @@ Reduced reduced_to(const Rig& rig, const std::vector<std::string_view>& effects,
   if (a.T_d != 0.0) lose("The dead time of the command (T_d) is left out.");
   a.F_s = a.T_d = 0.0;
   structure.channels = nullptr;
+  if (rig.uncertainty) lose(kUncertaintyIsLost);
 
   const std::vector<double*> values = members(model);
   const auto value = [&](std::string_view effect, std::string_view symbol) {

@@ -158,6 +158,31 @@ class Integrator {
     change(y_, input_, controller_memory_);
   }
 
+  /// What the future depends on besides the model, the options and the disturbance.
+  struct Snapshot {
+    State<T> state;
+    Mode mode;
+    Input<T> input;
+    Target target_slope;
+    double command_slope;
+    ControllerMemory<T> controller;
+    double switched;
+    int level;
+  };
+  Snapshot snapshot() const {
+    return {y_, mode_, input_, slope_, command_slope_, controller_memory_, switched_, level_};
+  }
+  /// Goes on from there, within rounding.
+  void restore(const Snapshot& snapshot) {
+    resume(snapshot, snapshot.mode);
+    switched_ = snapshot.switched;
+    level_ = snapshot.level;
+  }
+  /// Goes on from there with a model of the same structure but other numbers.
+  void resume(const Snapshot& snapshot) {
+    resume(snapshot, equations_.mode_at(snapshot.state, snapshot.input));
+  }
+
   const T& time() const { return input_.time; }
   const State<T>& state() const { return y_; }
   const Mode& mode() const { return mode_; }
@@ -263,6 +288,15 @@ class Integrator {
     return affine() ? std::max(0, check_level() - kMaxStretches) : check_level();
   }
 
+  void resume(const Snapshot& snapshot, const Mode& mode) {
+    y_ = snapshot.state;
+    input_ = snapshot.input;
+    slope_ = snapshot.target_slope;
+    command_slope_ = snapshot.command_slope;
+    controller_memory_ = snapshot.controller;
+    copy_plain_input();
+    switch_mode(mode);
+  }
   void switch_mode(const Mode& mode);
   /// With B, exact and plain.
   System& system_of(const Mode& mode, const PerInput<State<T>>& exact_b,

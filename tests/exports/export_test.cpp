@@ -45,7 +45,7 @@ TEST(Export, OfASlideHasItsNumbers) {
   add_effect<ConstantForce>(rig.model).F_0 = 3.0;
   add_effect<DriveLag>(rig.model).T_l = 0.01;
   const Export made = export_axis(rig, ExportTarget::mjcf, "slide", "Exported -- by a test");
-  EXPECT_TRUE(made.lost.empty());
+  ASSERT_EQ(made.lost.size(), 1u);  // stops are not located
   EXPECT_EQ(made.files.front().first, "slide.xml");
   pugi::xml_document document;
   ASSERT_TRUE(document.load_string(only_file(made).c_str()));
@@ -65,12 +65,15 @@ TEST(Export, SaysWhatIsLost) {
   rig.model.axis.T_d = 1e-3;
   add_effect<QuadraticDrag>(rig.model).c = 5.0;
   const Export mjcf = export_axis(rig, ExportTarget::mjcf, "a", "");
-  ASSERT_EQ(mjcf.lost.size(), 2u);
+  ASSERT_EQ(mjcf.lost.size(), 3u);
   EXPECT_EQ(mjcf.lost[0].substr(0, 27), "quadratic_drag is left out:");
   EXPECT_EQ(mjcf.carried.model.axis.T_d, 0.0);
   EXPECT_NE(mjcf.files[0].second.find(mjcf.lost[1]), std::string::npos);
   add_effect<ConstantForce>(rig.model).F_0 = 3.0;
   EXPECT_EQ(export_axis(rig, ExportTarget::urdf, "a", "").lost.size(), 3u);
+  rig.uncertainty.emplace();
+  EXPECT_EQ(export_axis(rig, ExportTarget::urdf, "a", "").lost.back().substr(0, 19),
+            "The standard errors");
   EXPECT_TRUE(export_axis(rig, ExportTarget::matlab, "a", "").lost.empty());
 }
 
