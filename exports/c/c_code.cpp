@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "base/linear_algebra.h"
+#include "base/plain_text.h"
 #include "exports/embedded.h"
 #include "exports/targets.h"
 #include "sim/affine.h"
@@ -35,6 +36,15 @@ std::string real(double value) {
   std::string text = fmt::format("{}", value);
   if (text.find_first_of(".en") == std::string::npos) text += ".0";
   return text;
+}
+
+/// A text from elsewhere inside a comment: it must not end it, nor begin one.
+std::string in_comment(std::string_view text) {
+  std::string line = sanitized(text);
+  for (const std::string_view mark : {"*/", "/*"})
+    for (std::size_t at = 0; (at = line.find(mark, at)) != std::string::npos;)
+      line.insert(at + 1, " ");
+  return line;
 }
 
 data list() { return data{data::type::list}; }
@@ -117,7 +127,7 @@ class Filling {
   void add_names(const Rig& rig, const std::string& name) {
     all_.set("name", name);
     all_.set("NAME", upper(name));
-    all_.set("title", rig.name.empty() ? "a fitted axis" : rig.name);
+    all_.set("title", rig.name.empty() ? "a fitted axis" : in_comment(rig.name));
     all_.set("two_pi", real(2.0 * std::numbers::pi));
     const std::string_view unit = unit_on(vocabulary(), kCommandUnit);
     all_.set("command_unit", std::string(unit == "1" ? "share of the rating" : unit));
@@ -188,8 +198,8 @@ class Filling {
       names[entry.index] = identifier(entry.name);
       data& item = parameters.emplace_back(object());
       item.set("member", names[entry.index]);
-      item.set("unit", std::string(entry.quantity.unit));
-      item.set("meaning", std::string(entry.quantity.meaning));
+      item.set("unit", in_comment(entry.quantity.unit));
+      item.set("meaning", in_comment(entry.quantity.meaning));
       item.set("value", real(*values_[entry.index]));
     }
     all_.set("parameters", with_commas(std::move(parameters)));
@@ -330,7 +340,7 @@ class Filling {
     for (std::size_t j = 0; j < channels.size(); ++j) {
       data& item = items.emplace_back(object());
       item.set("label", channels[j].name);
-      item.set("unit", channels[j].unit);
+      item.set("unit", in_comment(channels[j].unit));
       item.set("zero", real(channels[j].zero));
       item.set("j", std::to_string(j));
     }
@@ -373,7 +383,7 @@ Export c_code(const Rig& rig, const std::string& of_file, const std::string& ori
   Filling filling(made.carried, name);
   data lost = list();
   for (const std::string& sentence : made.lost) lost.push_back(sentence);
-  filling.all().set("origin", origin);
+  filling.all().set("origin", in_comment(origin));
   filling.all().set("lost", lost);
   for (const auto& [ending, form] : {std::pair(".h", embedded_axis_h()),
                                      {".c", embedded_axis_c()},

@@ -6,6 +6,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -82,12 +83,6 @@ std::vector<Variable> variables_of(const Model<double>& model) {
   std::vector<Variable> all{{kTimeVariable, "time", "s", "time", Causality::time},
                             {kCommandVariable, "command", unit(kCommandUnit),
                              "command of the drive, held during a step", Causality::input}};
-  if (structure.channels)
-    for (std::size_t j = 0; j < structure.channels->size(); ++j) {
-      const Channel& channel = (*structure.channels)[j];
-      all.push_back({kChannelVariables + static_cast<std::uint32_t>(j), channel.name, channel.unit,
-                     "channel, held during a step", Causality::input, channel.zero});
-    }
   for (const SignalInfo& entry : kSignalTable) {
     const SignalInfo on = info(entry.signal, vocabulary);
     if (has_signal(entry.signal, structure))
@@ -100,6 +95,14 @@ std::vector<Variable> variables_of(const Model<double>& model) {
       all.push_back({kStateVariables + static_cast<std::uint32_t>(i),
                      std::string(kStateTable[i].name), unit(kStateTable[i].unit),
                      words(kStateTable[i].meaning), Causality::output});
+  if (structure.channels)
+    for (std::size_t j = 0; j < structure.channels->size(); ++j) {
+      const Channel& channel = (*structure.channels)[j];
+      const bool is_taken = std::ranges::find(all, channel.name, &Variable::name) != all.end();
+      all.push_back({kChannelVariables + static_cast<std::uint32_t>(j),
+                     (is_taken ? "channel_" : "") + channel.name, channel.unit,
+                     "channel, held during a step", Causality::input, channel.zero});
+    }
   Model<double> copy = model;
   const std::vector<double*> values = members(copy);
   for (const QuantityEntry& entry : quantity_list(vocabulary))

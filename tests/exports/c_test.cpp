@@ -209,7 +209,8 @@ TEST(CCode, MovesAsOurSimulationWithEveryEffect) {
 }
 
 TEST(CCode, MovesAsOurSimulationWithFloatAndFixedSteps) {
-  for (const auto& [name, rig] : axes()) {
+  for (auto [name, rig] : axes()) {
+    rig.name = "an axis */ #error /* of a comment";
     const Readings ours = by_us(rig, 0.5e-4);
     // Events that are late by up to an inner step: where nothing is fast, a shorter one than usual.
     std::string at_step_ends = "-DAN_AXIS_LOCATE_EVENTS=0";

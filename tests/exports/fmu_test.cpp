@@ -552,7 +552,7 @@ TEST_P(FmuOfVersion, DescriptionsKeepTheRules) {
   const std::vector<double*> values = members(all.model);
   for (const QuantityEntry& entry : quantity_list())
     if (entry.effect) *values[entry.index] = entry.quantity.typical;
-  all.model.structure.channels = kept({{"temperature", "K", 293.0}});
+  all.model.structure.channels = kept({{"temperature", "K", 293.0}, {"command", "V", 0.0}});
   check_description(Fmu(all, GetParam()), true);
   all.model.structure.transmission = Transmission::rigid;
   all.model.structure.drive = Drive::motor_current;
