@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "io/config/axis_file.h"
+#include "io/config/fleet_file.h"
 #include "io/config/job_file.h"
 #include "io/config/machine_file.h"
 #include "io/config/motion_file.h"
@@ -137,6 +138,7 @@ std::map<std::string, Section> tables() {
        of_the_signal(keys_below(keys_below(axis, "instruments"), "position"))},
       {"axis.controller", keys_below(axis, "controller")},
       {"axis.revolute", on_a_revolute_joint()},
+      {"fleet", fleet_keys()},
       {"machine", machine_keys()},
       {"machine.axes.NAME", machine_axis_keys()},
       {"motion", motion_keys()}};
@@ -177,11 +179,12 @@ std::map<std::string, std::string> reference_files(const std::string& project) {
   add_schema("axis", axis_schema());
   add_schema("motion", motion_schema());
   add_schema("machine", machine_schema());
+  add_schema("fleet", fleet_schema());
 
   const std::map<std::string, Section> all = tables();
   std::set<std::string> shown;
-  for (const char* page :
-       {"docs/job-file.md", "docs/axis-file.md", "docs/motion-file.md", "docs/machine-file.md"}) {
+  for (const char* page : {"docs/job-file.md", "docs/axis-file.md", "docs/motion-file.md",
+                           "docs/machine-file.md", "docs/fleet.md"}) {
     const std::string old = contents_of(std::filesystem::path(project) / page);
     std::string made;
     std::size_t at = 0;

@@ -7,6 +7,7 @@
 
 #include "base/units.h"
 #include "io/config/axis_file.h"
+#include "io/config/fleet_file.h"
 #include "io/config/job_file.h"
 #include "io/config/machine_file.h"
 #include "io/config/motion_file.h"
@@ -294,6 +295,11 @@ nlohmann::ordered_json axis_schema() {
 nlohmann::ordered_json machine_schema() {
   SchemaMaker maker;
   return maker.with_definitions(maker.schema("axisfit machine file", machine_keys()));
+}
+
+nlohmann::ordered_json fleet_schema() {
+  SchemaMaker maker;
+  return maker.with_definitions(maker.schema("axisfit fleet file", fleet_keys()));
 }
 
 nlohmann::ordered_json motion_schema() {

@@ -16,5 +16,6 @@ nlohmann::ordered_json axis_schema();
 nlohmann::ordered_json motion_schema();
 
 nlohmann::ordered_json machine_schema();
+nlohmann::ordered_json fleet_schema();
 
 }  // namespace axisfit

@@ -20,7 +20,7 @@ std::string contents_of(const std::string& path) {
 
 TEST(Reference, FilesMadeOfTheDescriptionsOfKeysAreUpToDate) {
   const auto files = reference_files(AXISFIT_PROJECT);
-  EXPECT_EQ(files.size(), 8u);
+  EXPECT_EQ(files.size(), 10u);
   for (const auto& [name, contents] : files)
     EXPECT_TRUE(contents_of(std::string(AXISFIT_PROJECT) + "/" + name) == contents)
         << name << " is not what the descriptions of keys make: run scripts/update-reference";
@@ -29,8 +29,8 @@ TEST(Reference, FilesMadeOfTheDescriptionsOfKeysAreUpToDate) {
 TEST(Reference, APageKeepsItsTextAndShowsTablesThatThereAre) {
   const TempFolder project;
   std::filesystem::create_directory(project.path("docs"));
-  for (const char* page :
-       {"docs/job-file.md", "docs/axis-file.md", "docs/motion-file.md", "docs/machine-file.md"})
+  for (const char* page : {"docs/job-file.md", "docs/axis-file.md", "docs/motion-file.md",
+                           "docs/machine-file.md", "docs/fleet.md"})
     project.write(page, contents_of(std::string(AXISFIT_PROJECT) + "/" + page));
   const auto message = [&] {
     try {
