@@ -9,8 +9,10 @@
 #include "apps/progress.h"
 #include "base/parallel.h"
 #include "fleet/alarms.h"
+#include "fleet/page.h"
 #include "fleet/plan.h"
 #include "fleet/slurm.h"
+#include "io/results/output_folder.h"
 
 namespace {
 
@@ -61,6 +63,7 @@ Shard shard_of(const std::string& text) {
 struct Arguments {
   std::string fleet, plan = "plan", shard = "0/1", retry;
   int threads = 1;
+  std::string page;
   bool json = false;
   SlurmOptions slurm;
 };
@@ -107,7 +110,12 @@ int merge_plan(const Arguments& a) {
 int report(const Arguments& a) {
   const FleetFile file = read_fleet_file(a.fleet);
   const History history(file.history);
-  const FleetReport found = look_at(history.results(), {file.one_in, file.limits});
+  const std::vector<NightResult> results = history.results();
+  const FleetReport found = look_at(results, {file.one_in, file.limits});
+  if (!a.page.empty()) {
+    refuse_to_overwrite(a.page, {a.fleet, file.history});
+    write_file(a.page, fleet_page(results, found));
+  }
   print(a.json ? to_json(found).dump(2) + "\n" : report_text(found));
   return 0;
 }
@@ -144,6 +152,9 @@ int main(int argc, char** argv) {
   CLI::App* tell = command("report", "which axes have changed");
   CLI::App* list = command("table", "all parameters of all nights, as CSV");
   tell->add_flag("--json", a.json, "as JSON");
+  tell->add_option("--page", a.page, "a page for a browser as well, in one file")
+      ->check(kNotEmpty)
+      ->type_name("FILE.html");
   for (CLI::App* reads : {plan, tell, list})
     reads->add_option("FLEET.yaml", a.fleet, "fleet file (docs/fleet.md)")
         ->required()

@@ -62,8 +62,7 @@ std::map<std::string, std::vector<Course>> courses_of(const std::map<std::string
       constexpr double kErrorOfResidual = 0.02;
       for (const auto& r : n->residuals)
         if (r.role == "fit")
-          watched.push_back({fmt::format("residual of {} in {}", r.signal, r.recording), r.unit,
-                             r.rmse, kErrorOfResidual * r.rmse});
+          watched.push_back({residual_name(r), r.unit, r.rmse, kErrorOfResidual * r.rmse});
       for (const auto& p : watched) {
         if (!std::isfinite(p.value) || !(p.standard_error > 0.0)) continue;
         TrendNight night{n->night, days.at(n->night), p.value, p.standard_error, {}};
@@ -182,13 +181,22 @@ void add_outliers(const std::string& name, const std::vector<Course>& courses,
           {Alarm::Kind::outlier, courses[i].axis, name, nights.back().night, nights.front().night,
            middle, means[i], (means[i] - middle) / spread,
            fmt::format("{} is {}, where the fleet has {}, {:.0f} times its spread away.", name,
-                       with_unit(fmt::format("{:.4g}", means[i]), courses[i].unit),
-                       with_unit(fmt::format("{:.4g}", middle), courses[i].unit),
+                       with_unit(fmt::format("{:.6g}", means[i]), courses[i].unit),
+                       with_unit(fmt::format("{:.6g}", middle), courses[i].unit),
                        std::abs(means[i] - middle) / spread)});
     }
 }
 
 }  // namespace
+
+const char* kind_name(Alarm::Kind kind) {
+  constexpr std::array kNames{"parameter", "effect", "failures", "outlier"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::string residual_name(const NightResult::Residual& residual) {
+  return fmt::format("residual of {} in {}", residual.signal, residual.recording);
+}
 
 std::map<std::string, double> days_of(const std::vector<std::string>& nights) {
   const std::set<std::string> all(nights.begin(), nights.end());
@@ -251,10 +259,9 @@ FleetReport look_at(const std::vector<NightResult>& results, const AlarmOptions&
 
 nlohmann::ordered_json to_json(const FleetReport& report) {
   nlohmann::ordered_json alarms = nlohmann::ordered_json::array();
-  constexpr std::array kKinds{"parameter", "effect", "failures", "outlier"};
   for (const Alarm& a : report.alarms)
     alarms.push_back({{"axis", a.axis},
-                      {"kind", kKinds[static_cast<std::size_t>(a.kind)]},
+                      {"kind", kind_name(a.kind)},
                       {"what", a.what},
                       {"night", a.night},
                       {"since", a.since},

@@ -12,7 +12,7 @@
 namespace axisfit {
 
 struct Alarm {
-  enum class Kind { parameter, effect, failures, outlier };
+  enum class Kind { parameter, effect, failures, outlier };  // kind_name() names them
 
   Kind kind = Kind::parameter;
   std::string axis;
@@ -23,6 +23,11 @@ struct Alarm {
   double errors = 0.0;               ///< the change in standard errors
   std::string text;                  ///< a sentence or two
 };
+
+const char* kind_name(Alarm::Kind kind);
+
+/// What the residual of a signal is called among the parameters.
+std::string residual_name(const NightResult::Residual& residual);
 
 struct FleetReport {
   std::size_t axes = 0, nights = 0, results = 0, failed = 0, unusable = 0;

@@ -13,9 +13,9 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "base/embedded.h"
 #include "base/linear_algebra.h"
 #include "base/plain_text.h"
-#include "exports/embedded.h"
 #include "exports/targets.h"
 #include "sim/affine.h"
 #include "sim/equations.h"

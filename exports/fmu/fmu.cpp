@@ -13,8 +13,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "base/embedded.h"
 #include "base/version.h"
-#include "exports/embedded.h"
 #include "exports/fmu/axis_text.h"
 #include "exports/fmu/axis_unit.h"
 #include "exports/scratch_file.h"

@@ -18,3 +18,4 @@ complete -c axisfit-fleet -n '__fish_seen_subcommand_from submit' -l minutes -x 
 complete -c axisfit-fleet -n '__fish_seen_subcommand_from submit' -l memory -x -d 'MB for a task'
 complete -c axisfit-fleet -n '__fish_seen_subcommand_from submit' -l partition -x -d 'of the cluster'
 complete -c axisfit-fleet -n '__fish_seen_subcommand_from report' -l json -d 'as JSON'
+complete -c axisfit-fleet -n '__fish_seen_subcommand_from report' -l page -r -d 'a page for a browser as well'

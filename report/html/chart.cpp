@@ -1,17 +1,13 @@
 #include "report/html/chart.h"
 
-#include <zlib.h>
-
 #include <algorithm>
-#include <boost/archive/iterators/base64_from_binary.hpp>
-#include <boost/archive/iterators/transform_width.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <new>
 #include <set>
 
 #include "base/rounding.h"
+#include "report/html/packed.h"
 #include "sim/sampling.h"
 
 namespace axisfit {
@@ -381,25 +377,6 @@ Html legend(const Chart& chart, const ChartColumns& columns) {
   return all;
 }
 
-std::string base64(const std::string& bytes) {
-  using namespace boost::archive::iterators;
-  using Digits = base64_from_binary<transform_width<std::string::const_iterator, 6, 8>>;
-  std::string text(Digits(bytes.begin()), Digits(bytes.end()));
-  text.append((3 - bytes.size() % 3) % 3, '=');
-  return text;
-}
-
-std::string compressed(const std::string& bytes) {
-  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
-  std::string result(size, '\0');
-  if (compress2(reinterpret_cast<Bytef*>(result.data()), &size,
-                reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()),
-                Z_BEST_COMPRESSION) != Z_OK)
-    throw std::bad_alloc();
-  result.resize(size);
-  return result;
-}
-
 nlohmann::ordered_json column_data(const ChartColumn& column) {
   const std::size_t n = column.values.size();
   const double start = column.values.empty() ? 0.0 : column.values.front();
@@ -423,10 +400,7 @@ nlohmann::ordered_json column_data(const ChartColumn& column) {
     for (std::size_t plane = 0; plane < 4; ++plane)
       bytes[plane * n + i] = static_cast<char>(difference >> (8 * plane) & 0xFF);
   }
-  return {{"length", n},
-          {"start", column.origin},
-          {"step", column.step},
-          {"data", base64(compressed(bytes))}};
+  return {{"length", n}, {"start", column.origin}, {"step", column.step}, {"data", packed(bytes)}};
 }
 
 nlohmann::ordered_json axis_data(const ChartAxis& axis) {

@@ -1,4 +1,4 @@
-// Files that are part of the program; CMakeLists.txt lists them.
+// Files that are part of a program: those of axisfit_embed() in CMakeLists.txt.
 #pragma once
 
 #include <string_view>
