@@ -87,11 +87,12 @@ std::string fleet_page(const std::vector<NightResult>& results, const FleetRepor
   std::map<std::string, Course> courses;
   const auto set = [&](const NightResult& r, const std::string& name, const std::string& unit,
                        double value, double error) {
-    Course& course =
-        courses.try_emplace(name, Course{unit, Matrix(size), Matrix(size)}).first->second;
+    auto course = courses.find(name);
+    if (course == courses.end())
+      course = courses.emplace(name, Course{unit, Matrix(size), Matrix(size)}).first;
     const std::size_t at = axis_places.at(r.axis) * nights.size() + night_places.at(r.night);
-    course.values.numbers[at] = static_cast<float>(value);
-    course.errors.numbers[at] = static_cast<float>(error);
+    course->second.values.numbers[at] = static_cast<float>(value);
+    course->second.errors.numbers[at] = static_cast<float>(error);
   };
   for (const NightResult& r : results) {
     Json& axis = axes[axis_places.at(r.axis)];
