@@ -1,4 +1,4 @@
-// axisfit-fleet plan | work | merge | submit | report: many axes, every night.
+// axisfit-fleet plan | work | merge | submit | report | table | job: many axes, every night.
 
 #include <fmt/format.h>
 
@@ -61,7 +61,7 @@ Shard shard_of(const std::string& text) {
 }
 
 struct Arguments {
-  std::string fleet, plan = "plan", shard = "0/1", retry;
+  std::string fleet, axis, night, plan = "plan", shard = "0/1", retry;
   int threads = 1;
   std::string page;
   bool json = false;
@@ -120,6 +120,18 @@ int report(const Arguments& a) {
   return 0;
 }
 
+/// The job of one axis on one night, for fit-params.
+int job(const Arguments& a) {
+  const FleetFile file = read_fleet_file(a.fleet);
+  for (const FleetItem& item : find_items(file))
+    if (item.axis == a.axis && item.night == a.night) {
+      print(filled_in(file.job_text, item.values));
+      return 0;
+    }
+  throw std::runtime_error(
+      fmt::format("{} has no axis {} on night {}", a.fleet, in_quotes(a.axis), in_quotes(a.night)));
+}
+
 /// All parameters of all nights, a row for each.
 int table(const Arguments& a) {
   const History history(read_fleet_file(a.fleet).history);
@@ -151,14 +163,17 @@ int main(int argc, char** argv) {
   CLI::App* submit_it = command("submit", "let Slurm do a plan, and merge it");
   CLI::App* tell = command("report", "which axes have changed");
   CLI::App* list = command("table", "all parameters of all nights, as CSV");
+  CLI::App* show = command("job", "the job of one axis on one night, for fit-params");
   tell->add_flag("--json", a.json, "as JSON");
   tell->add_option("--page", a.page, "a page for a browser as well, in one file")
       ->check(kNotEmpty)
       ->type_name("FILE.html");
-  for (CLI::App* reads : {plan, tell, list})
+  for (CLI::App* reads : {plan, tell, list, show})
     reads->add_option("FLEET.yaml", a.fleet, "fleet file (docs/fleet.md)")
         ->required()
         ->check(kNotEmpty);
+  show->add_option("AXIS", a.axis, "name of the axis")->required();
+  show->add_option("NIGHT", a.night, "name of the night")->required();
   for (CLI::App* reads : {do_work, merge_it, submit_it})
     reads->add_option("PLAN", a.plan, "folder of the plan")->required()->check(kNotEmpty);
   plan->add_option("--plan", a.plan, "folder of the plan")
@@ -190,6 +205,7 @@ int main(int argc, char** argv) {
     if (*merge_it) return merge_plan(a);
     if (*tell) return report(a);
     if (*list) return table(a);
+    if (*show) return job(a);
     read_plan(a.plan);
     a.slurm.program = fs::read_symlink("/proc/self/exe").string();
     print("Submitted: " + submit(a.plan, a.slurm) + "\n");

@@ -1,6 +1,7 @@
 #include "fleet/items.h"
 
 #include <fmt/format.h>
+#include <sqlite3.h>
 #include <sys/stat.h>
 
 #define XXH_INLINE_ALL
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <regex>
 #include <sstream>
@@ -113,6 +115,27 @@ std::vector<std::map<std::string, std::string>> rows_of_manifest(const std::stri
   return rows;
 }
 
+/// The rows of the table `items` of a database.
+std::vector<std::map<std::string, std::string>> rows_of_database(const std::string& path) {
+  sqlite3* database = nullptr;
+  const int opened = sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READONLY, nullptr);
+  const std::unique_ptr<sqlite3, int (*)(sqlite3*)> owned(database, &sqlite3_close);
+  std::vector<std::map<std::string, std::string>> rows;
+  const auto add = [](void* all, int n, char** values, char** names) {
+    auto& row = static_cast<decltype(rows)*>(all)->emplace_back();
+    for (int i = 0; i < n; ++i) row[names[i]] = values[i] != nullptr ? values[i] : "";
+    return 0;
+  };
+  if (opened != SQLITE_OK ||
+      sqlite3_exec(database, "SELECT * FROM items", add, &rows, nullptr) != SQLITE_OK)
+    throw std::runtime_error(
+        fmt::format("manifest {}: {}", in_quotes(path), sqlite3_errmsg(database)));
+  for (const char* needed : {"axis", "night"})
+    if (!rows.empty() && !rows.front().contains(needed))
+      throw std::runtime_error(fmt::format("{}: its items have no column '{}'", path, needed));
+  return rows;
+}
+
 /// What a job reads: its axis file and its recordings, with names in braces.
 std::vector<std::string> files_of_job(const FleetFile& file) {
   Diagnostics diagnostics;
@@ -169,7 +192,11 @@ std::vector<FleetItem> find_items(const FleetFile& file) {
     items.push_back({values.at("axis"), values.at("night"), values, {}});
   };
   if (!file.manifest.empty()) {
-    for (const auto& row : rows_of_manifest(file.manifest)) add(row);
+    const std::string ending = fs::path(file.manifest).extension().string();
+    const bool is_database = ending == ".sqlite" || ending == ".db";
+    for (const auto& row :
+         is_database ? rows_of_database(file.manifest) : rows_of_manifest(file.manifest))
+      add(row);
   } else {
     const fs::path pattern(file.items);
     visit_files(pattern.root_path(), std::next(pattern.begin()), pattern.end(), {}, add);

@@ -204,7 +204,8 @@ async function show(i) {
   drawSoon();
   const axis = data.axes[i], own = alarmsOf(i), charts = byId("charts");
   byId("axis-name").textContent = axis.name;
-  byId("axis-text").textContent = `${axis.results} nights, ${axis.failed} of them failed.`;
+  byId("axis-text").textContent = `${axis.results} nights, ${axis.failed} of them failed. The job of a night: ` +
+      `axisfit-fleet job FLEET.yaml ${axis.name} ${own.length ? data.nights[own[0].at] : data.nights.at(-1)}`;
   byId("axis-alarms").replaceChildren(own.length ? alarmTable(own, false) : element("p", "No alarm."));
   charts.replaceChildren();
   byId("axis").hidden = false;

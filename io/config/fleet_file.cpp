@@ -26,8 +26,9 @@ const Section& fleet_keys() {
           "each"),
       Key::optional(
           "manifest", Text{}, DefaultText{"the files of `items`"},
-          "list of the axes and nights: text with commas, columns `axis`, `night` and any "
-          "other name that the job has in braces"),
+          "list of the axes and nights: text with commas, or the table `items` of an SQLite "
+          "database (`.sqlite`, `.db`), with the columns `axis`, `night` and any other name "
+          "that the job has in braces"),
       Key::optional("history", Text{}, DefaultText{"`history.sqlite`"},
                     "database of the results of all nights"),
       Key::optional("close_loop",

@@ -1,13 +1,13 @@
 # fish completion of axisfit-fleet: its commands, then fleet files or folders of plans
 set -l folders '(__fish_complete_directories (commandline -ct | string replace -r "^--[^=]*=" ""))'
 set -l yaml '(__fish_complete_suffix .yaml | string match -r "^.*(?:/|\.ya?ml)\$")'
-set -l commands plan work merge submit report table
+set -l commands plan work merge submit report table job
 set -l none "not __fish_seen_subcommand_from $commands"
 complete -c axisfit-fleet -f
 complete -c axisfit-fleet -n $none -a "$commands"
 complete -c axisfit-fleet -n $none -s V -l version -d 'print the version'
 complete -c axisfit-fleet -s h -l help -d 'print the options and examples'
-complete -c axisfit-fleet -n '__fish_seen_subcommand_from plan report table' -k -a $yaml
+complete -c axisfit-fleet -n '__fish_seen_subcommand_from plan report table job' -k -a $yaml
 complete -c axisfit-fleet -n '__fish_seen_subcommand_from work merge submit' -k -a $folders
 complete -c axisfit-fleet -n '__fish_seen_subcommand_from plan' -l plan -x -a $folders -d 'folder of the plan'
 complete -c axisfit-fleet -n '__fish_seen_subcommand_from plan' -l retry -x -a failed -d 'plan what has failed, too'

@@ -260,7 +260,7 @@ TEST_F(CommandLineTest, EveryOptionIsInTheManualAndTheCompletions) {
        {"fit-params", "simulate-axis", "axisfit-export", "axisfit-fleet", "simulate-fleet"}) {
     std::string help = run(program, {"--help"}).out;
     if (program == "axisfit-fleet")
-      for (const char* command : {"plan", "work", "merge", "submit", "report", "table"})
+      for (const char* command : {"plan", "work", "merge", "submit", "report", "table", "job"})
         help += run(program, {command, "--help"}).out;
     const std::regex option("\n  (?:-., ?)?(?:-.,)?--([a-z-]+)");
     int options = 0;

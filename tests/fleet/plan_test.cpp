@@ -148,6 +148,22 @@ TEST_F(PlanTest, ItemsComeFromAManifestToo) {
   const Plan plan = planned();
   ASSERT_EQ(plan.items.size(), 2u);
   EXPECT_EQ(work_on(plan, {}, {}).failed, 0u);
+  sqlite3* list = nullptr;
+  ASSERT_EQ(sqlite3_open((factory() + "/list.db").c_str(), &list), SQLITE_OK);
+  ASSERT_EQ(
+      sqlite3_exec(list,
+                   "CREATE TABLE items(axis, night, file); INSERT INTO items VALUES('left', 1, "
+                   "'recordings/axis-0001/2026-09-01.csv')",
+                   nullptr, nullptr, nullptr),
+      SQLITE_OK);
+  sqlite3_close(list);
+  folder_.write("factory/fleet.yaml", "job: night.yaml\nmanifest: list.db\n");
+  const std::vector<FleetItem> items = find_items(fleet());
+  ASSERT_EQ(items.size(), 1u);
+  EXPECT_EQ(items[0].values.at("file"), "recordings/axis-0001/2026-09-01.csv");
+  folder_.write("factory/fleet.yaml", "job: night.yaml\nmanifest: none.db\n");
+  EXPECT_NE(message_of([&] { find_items(fleet()); }).find("manifest '"), std::string::npos);
+  folder_.write("factory/fleet.yaml", "job: night.yaml\nmanifest: list.csv\n");
   folder_.write("factory/list.csv", "axis,night\nleft,1\nleft,1\n");
   EXPECT_NE(message_of([&] { find_items(fleet()); }).find("axis left has night 1 twice"),
             std::string::npos);
