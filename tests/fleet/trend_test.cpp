@@ -24,12 +24,13 @@ TEST(Cusum, AlarmsAsOftenAsItsThresholdSays) {
   Cusum chart(threshold_for(200.0));
   int alarms = 0;
   constexpr int kNights = 200'000;
+  constexpr double kExpected = kNights / 200.0;
   for (int i = 0; i < kNights; ++i)
     if (chart.add(normal(generator))) {
       ++alarms;
       chart.restart();
     }
-  EXPECT_NEAR(alarms, kNights / 200, 4.0 * std::sqrt(kNights / 200));
+  EXPECT_NEAR(alarms, kExpected, 4.0 * std::sqrt(kExpected));
 }
 
 /// A parameter of 100 with standard errors of 0.5 to 1 and an own scatter, which follows a channel
@@ -78,7 +79,7 @@ TEST(Trend, FalseAlarmsAreAsRareAsAskedFor) {
   const double threshold = threshold_for(kOneIn);
   std::size_t alarms = 0;
   for (const Trend& trend : fleet) alarms += trend.changes(prior, threshold).size();
-  constexpr double kExpected = kAxes * kNights / kOneIn;
+  constexpr double kExpected = double(kAxes) * kNights / kOneIn;
   EXPECT_LT(alarms, kExpected + 4.0 * std::sqrt(kExpected));
 }
 
