@@ -136,23 +136,33 @@ std::vector<std::map<std::string, std::string>> rows_of_database(const std::stri
   return rows;
 }
 
-/// What a job reads: its axis file and its recordings, with names in braces.
-std::vector<std::string> files_of_job(const FleetFile& file) {
+/// What a job reads: its axis file and its recordings, with these names in braces.
+std::vector<std::string> files_of_job(const FleetFile& file,
+                                      const std::map<std::string, std::string>& names) {
+  // In YAML a text that begins with a brace would be a map: so the names are marked otherwise.
+  std::map<std::string, std::string> marks;
+  for (const auto& [name, value] : names) marks[name] = "axisfit." + name + ".name";
+  const auto with_braces = [&](std::string text) {
+    for (const auto& [name, mark] : marks)
+      for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos;)
+        text.replace(at, mark.size(), "{" + name + "}");
+    return text;
+  };
   Diagnostics diagnostics;
   const std::string path = (fs::path(file.folder) / file.job_name).string();
-  const auto root = ConfigNode::parse(file.job_text, path, diagnostics);
+  const auto root = ConfigNode::parse(filled_in(file.job_text, marks), path, diagnostics);
   diagnostics.throw_if_any();
   std::vector<std::string> files;
   if (!root || !root->is_map()) return files;
   ConfigMap map(*root);
   if (const auto axis = map.optional("axis"); axis && axis->is_scalar())
-    files.push_back(axis->text());
+    files.push_back(with_braces(axis->text()));
   const auto recordings = map.optional("recordings");
   const auto entries = recordings ? recordings->as_sequence() : std::nullopt;
   for (const ConfigNode& entry : entries.value_or(std::vector<ConfigNode>{}))
     if (entry.is_map())
       if (const auto name = ConfigMap(entry).optional("file"); name && name->is_scalar())
-        files.push_back(name->text());
+        files.push_back(with_braces(name->text()));
   return files;
 }
 
@@ -204,7 +214,7 @@ std::vector<FleetItem> find_items(const FleetFile& file) {
   const std::string from = file.manifest.empty() ? file.items : file.manifest;
   if (items.empty()) throw std::runtime_error(fmt::format("{}: there are no such axes", from));
   std::ranges::sort(items, {}, [](const FleetItem& i) { return std::pair(i.axis, i.night); });
-  const std::vector<std::string> files = files_of_job(file);
+  const std::vector<std::string> files = files_of_job(file, items.front().values);
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (i > 0 && items[i].axis == items[i - 1].axis && items[i].night == items[i - 1].night)
       throw std::runtime_error(

@@ -142,12 +142,15 @@ TEST_F(PlanTest, ItemsComeFromAManifestToo) {
                 "axis, night, file\nleft,1,recordings/axis-0001/2026-09-01.csv\n"
                 "left,2,recordings/axis-0001/2026-09-02.csv\n");
   std::string job = folder_.read("factory/night.yaml");
-  job.replace(job.find("recordings/{axis}/{night}.csv"), 29, "'{file}'");
+  job.replace(job.find("recordings/{axis}/{night}.csv"), 29, "{file}");
   folder_.write("factory/night.yaml", job);
   folder_.write("factory/fleet.yaml", "job: night.yaml\nmanifest: list.csv\n");
   const Plan plan = planned();
   ASSERT_EQ(plan.items.size(), 2u);
   EXPECT_EQ(work_on(plan, {}, {}).failed, 0u);
+  const std::string before = find_items(fleet())[1].fingerprint;
+  fs::last_write_time(recording("axis-0001", 2), fs::file_time_type::clock::now());
+  EXPECT_NE(find_items(fleet())[1].fingerprint, before);
   sqlite3* list = nullptr;
   ASSERT_EQ(sqlite3_open((factory() + "/list.db").c_str(), &list), SQLITE_OK);
   ASSERT_EQ(
