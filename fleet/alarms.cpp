@@ -106,6 +106,16 @@ std::string limit_text(const std::string& name, const Course& course, const Chan
   return fmt::format(" At this rate the limit of {} is met {}.", text, in_time(days));
 }
 
+/// "2.7 %", "12 %", "766-fold", or the difference where there is no ratio.
+std::string amount_of(const Change& change, const std::string& unit) {
+  if (change.before > 0.0 && change.after > 0.0) {
+    const double ratio = change.after / change.before, percent = 100.0 * std::abs(ratio - 1.0);
+    if (ratio >= 3.0) return fmt::format("{:.3g}-fold", ratio);
+    return percent < 9.95 ? fmt::format("{:.2g} %", percent) : fmt::format("{:.0f} %", percent);
+  }
+  return with_unit(fmt::format("{:.3g}", std::abs(change.after - change.before)), unit);
+}
+
 Alarm alarm_of(const std::string& name, const Course& course, const Change& change,
                const AlarmOptions& options) {
   const std::vector<TrendNight>& nights = course.trend.nights();
@@ -118,16 +128,11 @@ Alarm alarm_of(const std::string& name, const Course& course, const Change& chan
               change.after,
               change.errors,
               {}};
-  const double percent = 100.0 * (change.after / change.before - 1.0);
-  const bool is_relative = change.before > 0.0 && change.after > 0.0 && std::abs(percent) < 200.0;
-  alarm.text = fmt::format(
-      "{} {} {} since {}, from {:.4g} to {}, {:.1f} standard errors.", name,
-      change.after > change.before ? "up" : "down",
-      is_relative
-          ? fmt::format("{:.2g} %", std::abs(percent))
-          : with_unit(fmt::format("{:.3g}", std::abs(change.after - change.before)), course.unit),
-      alarm.since, change.before, with_unit(fmt::format("{:.4g}", change.after), course.unit),
-      std::abs(change.errors));
+  alarm.text = fmt::format("{} {} {} since {}, from {:.4g} to {}, {:.1f} standard errors.", name,
+                           change.after > change.before ? "up" : "down",
+                           amount_of(change, course.unit), alarm.since, change.before,
+                           with_unit(fmt::format("{:.4g}", change.after), course.unit),
+                           std::abs(change.errors));
   alarm.text += limit_text(name, course, change, options);
   return alarm;
 }
