@@ -38,7 +38,7 @@ constexpr const char* kExamples = R"(Examples:
   axisfit-fleet merge tonight
   axisfit-fleet report fleet.yaml
 
-Exit codes: 0 done, 1 items are missing or work was interrupted, 2 bad input.)";
+Exit codes: 0 done, 1 items of the merged plan are missing, 2 bad input.)";
 
 /// "2/7"
 Shard shard_of(const std::string& text) {

@@ -43,6 +43,18 @@ void write_whole(const fs::path& path, const std::string& contents) {
   fs::rename(draft, path);
 }
 
+/// The head of a plan of whatever version of the program.
+Json head_of_plan(const std::string& folder) {
+  const std::string path = (fs::path(folder) / "plan.json").string();
+  std::ifstream in(path);
+  if (!in) throw std::runtime_error(in_quotes(path) + " cannot be read: is that a plan?");
+  const Json json = Json::parse(in, nullptr, false);
+  if (!json.is_object() || !json.contains("format") || !json.contains("tool") ||
+      !json.contains("items"))
+    throw std::runtime_error(in_quotes(path) + " is no plan");
+  return json;
+}
+
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 NightResult failed(const std::exception& error) {
@@ -81,7 +93,9 @@ NightResult result_of(const Plan& plan, const FleetItem& item, const RunContext&
 }  // namespace
 
 PlanSummary write_plan(const FleetFile& file, const std::string& folder, Retry retry) {
-  if (fs::exists(fs::path(folder) / "plan.json")) {
+  // The results of another version of the program are of no use.
+  const bool is_there = fs::exists(fs::path(folder) / "plan.json");
+  if (is_there && head_of_plan(folder).at("tool") == version()) {
     const Plan before = read_plan(folder);
     const auto known = History(before.history).entries();
     for (const FleetItem& item : before.items) {
@@ -91,8 +105,8 @@ PlanSummary write_plan(const FleetFile& file, const std::string& folder, Retry r
             "{} is a plan that is not merged yet: do 'axisfit-fleet merge {}', or remove it",
             in_quotes(folder), folder));
     }
-    fs::remove_all(fs::path(folder) / "results");
   }
+  if (is_there) fs::remove_all(fs::path(folder) / "results");
   PlanSummary summary;
   std::string lines;
   const auto known = History(file.history).entries();
@@ -134,10 +148,8 @@ Plan read_plan(const std::string& folder) {
   Plan plan;
   plan.folder = folder;
   const std::string path = (fs::path(folder) / "plan.json").string();
-  std::ifstream in(path);
-  if (!in) throw std::runtime_error(in_quotes(path) + " cannot be read: is that a plan?");
+  const Json json = head_of_plan(folder);
   try {
-    const Json json = Json::parse(in);
     if (json.at("format") != kFormat || json.at("tool") != version())
       throw std::runtime_error(
           fmt::format("{} was made by axisfit {}, this is {}: make the plan anew", in_quotes(path),

@@ -127,6 +127,19 @@ TEST_F(PlanTest, HasWhatTheHistoryDoesNotKnow) {
     }
 }
 
+TEST_F(PlanTest, PlansOfAnotherVersionAreMadeAnew) {
+  const Plan plan = planned();
+  const std::string head = folder_.read("plan/plan.json");
+  const std::size_t tool = head.find("\"tool\": \"") + 9;
+  folder_.write("plan/plan.json",
+                head.substr(0, tool) + "0.0.1" + head.substr(head.find('"', tool)));
+  EXPECT_NE(message_of([&] { read_plan(plan.folder); }).find("was made by axisfit 0.0.1"),
+            std::string::npos);
+  EXPECT_EQ(planned().items.size(), 15u);
+  folder_.write("plan/plan.json", "{\"mine\": 1}");
+  EXPECT_NE(message_of([&] { planned(); }).find("is no plan"), std::string::npos);
+}
+
 TEST_F(PlanTest, ResultsThatAreNoneAreToldByName) {
   const Plan plan = planned();
   work_on(plan, {}, {});
