@@ -99,7 +99,7 @@ std::string limit_text(const std::string& name, const Course& course, const Chan
     throw std::runtime_error(fmt::format("limit of {}: {}", name, error->message));
   const double bound = amount * std::get<double>(factor), now = course.trend.nights().back().value;
   const std::string text = with_unit(fmt::format("{:.4g}", amount), unit);
-  if ((change.after > change.before) == (now > bound))
+  if ((change.before < bound) != (now < bound))
     return fmt::format(" The limit of {} is passed.", text);
   const double days = (bound - now) / change.per_day;
   if (change.per_day == 0.0 || !(days > 0.0)) return "";

@@ -278,6 +278,20 @@ TEST(Alarms, SayWhatChangedSinceWhenAndWhereItLeads) {
             std::string::npos);
 }
 
+TEST(Alarms, ALimitIsPassedOnlyFromItsOtherSide) {
+  std::vector<NightResult> nights = worn_axis();
+  for (NightResult& night : nights)
+    night.parameters[0].value = 120.0 - night.parameters[0].value;  // falls from 60
+  const auto last_text = [&](double limit) {
+    return look_at(nights, {1000, {{"B_a", {limit, "N s/m"}}}}).alarms.back().text;
+  };
+  EXPECT_NE(last_text(58.0).find("The limit of 58 N s/m is passed."), std::string::npos)
+      << last_text(58.0);
+  EXPECT_EQ(last_text(70.0).find("limit"), std::string::npos) << last_text(70.0);
+  EXPECT_NE(last_text(40.0).find("the limit of 40 N s/m is met in "), std::string::npos)
+      << last_text(40.0);
+}
+
 TEST(Alarms, KnowDatesAndNumbers) {
   const auto days = days_of({"2026-02-27", "2026-03-01"});
   EXPECT_EQ(days.at("2026-03-01") - days.at("2026-02-27"), 2.0);
