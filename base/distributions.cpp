@@ -13,6 +13,8 @@ double normal_quantile(double probability) { return quantile(boost::math::normal
 
 double normal_density(double x) { return pdf(boost::math::normal(), x); }
 
+double normal_cdf(double x) { return cdf(boost::math::normal(), x); }
+
 double student_quantile(double probability, double degrees_of_freedom) {
   return quantile(boost::math::students_t(degrees_of_freedom), probability);
 }

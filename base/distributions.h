@@ -7,6 +7,8 @@ namespace axisfit {
 /// The value below which a standard normal variable stays with this probability.
 double normal_quantile(double probability);
 double normal_density(double x);
+/// The probability that it stays below x.
+double normal_cdf(double x);
 
 /// The value that Student's t exceeds with this probability, and the probability that it exceeds x.
 double student_upper_quantile(double probability, double degrees_of_freedom);

@@ -1,15 +1,10 @@
 #include "fleet/control_chart.h"
 
 #include <Eigen/LU>
-#include <cmath>
-#include <numbers>
+
+#include "base/distributions.h"
 
 namespace axisfit {
-namespace {
-
-double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
-
-}  // namespace
 
 double mean_run_length(double threshold, double reference) {
   // The sum between 0 and h in equal cells, of which the first is half as wide: the state zero is

@@ -5,11 +5,11 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <stdexcept>
 
 #include "base/plain_text.h"
+#include "io/results/output_folder.h"
 
 namespace axisfit {
 namespace {
@@ -46,12 +46,6 @@ std::string output_of(const std::string& command) {
   return text.substr(0, text.find_first_of("\n;"));
 }
 
-void write(const fs::path& path, const std::string& text) {
-  std::ofstream out(path);
-  out << text;
-  if (!out.flush()) throw std::runtime_error(in_quotes(path.string()) + " cannot be written");
-}
-
 }  // namespace
 
 std::string array_script(const std::string& plan, const SlurmOptions& options) {
@@ -72,8 +66,8 @@ std::string submit(const std::string& folder, const SlurmOptions& options) {
     throw std::runtime_error(in_quotes(plan.string()) +
                              ": Slurm takes no folder with such a character");
   fs::create_directories(plan / "logs");
-  write(plan / "work.sh", array_script(plan.string(), options));
-  write(plan / "merge.sh", merge_script(plan.string(), options));
+  write_file(plan / "work.sh", array_script(plan.string(), options));
+  write_file(plan / "merge.sh", merge_script(plan.string(), options));
   const std::string array = output_of("sbatch --parsable " + shell_word(plan / "work.sh"));
   // After all tasks have ended, however: what is missing is told by the merge.
   const std::string merge =
