@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include "sim/mode.h"
 #include "sim/model.h"
@@ -260,11 +261,12 @@ class Equations {
     T arm(0.0), motor(0.0);
     if (is_.needs.motor_torque) motor = motor_torque(mode, y, input) / r_g_;
     if (mode.sliding != 0) {
-      const Instant<T> at = instant(mode, y, input);
-      arm = slots::arm_force(m_.effects, is_.effects, at, input.memory);
+      Instant<T> at = instant(mode, y, input);
       if (is_.needs.friction_curve)
         arm -=
             double(mode.sliding) * slots::friction_curve(m_.effects, is_.effects, at, input.memory);
+      if (is_.needs.arm_force)
+        arm += slots::arm_force(m_.effects, is_.effects, std::move(at), input.memory);
       if (!is_.has.has_backlash) arm += motor;
       T mass = moving_mass();
       if (is_.needs.mass) {  // the affine part moves with the mass that stays

@@ -220,6 +220,16 @@ class Integrator {
     Propagator<S>& propagator;
     const Input<S>& input;
   };
+  /// Of a state, and how much of it the smooth forces of effects make.
+  template <class S>
+  struct Rate {
+    State<S> total, smooth{};
+  };
+  /// What is known at one instant.
+  struct Seen {
+    GuardValues guards;
+    std::optional<Rate<double>> rate{};  ///< where guards need it
+  };
   View<T> exact() const { return {equations_, flow_->system.exact, input_}; }
   View<double> plain() const { return {plain_, flow_->system.plain, plain_input_}; }
 
@@ -305,38 +315,39 @@ class Integrator {
 
   /// f(y), with smooth forces.
   template <class S>
-  State<S> rate(const View<S>& view, const State<S>& y) const {
+  Rate<S> rate(const View<S>& view, const State<S>& y) const {
+    Rate<S> f;
     // Values by the equations, which rounds least; with derivatives the matrices are cheaper.
     if constexpr (std::is_same_v<S, double>) {
-      return view.equations.rate(mode_, y, view.input);
+      f.total = view.equations.rate(mode_, y, view.input, Terms::affine);
     } else {
       const auto& [command, target, time, memory, disturbance, channels] = view.input;
-      State<S> f = view.propagator.a_times(y);
-      flow_->driven.add_product({S(1.0), command, target.velocity, target.position}, f);
+      f.total = view.propagator.a_times(y);
+      flow_->driven.add_product({S(1.0), command, target.velocity, target.position}, f.total);
       if (options_.has_disturbance) {
         const State<S> disturbed = view.equations.disturbance_rate(mode_, disturbance);
-        for (std::size_t i = 0; i < kStates; ++i) f[i] += disturbed[i];
+        for (std::size_t i = 0; i < kStates; ++i) f.total[i] += disturbed[i];
       }
-      if (!affine()) {
-        const State<S> smooth = view.equations.smooth_rate(mode_, y, view.input);
-        for (std::size_t i = 0; i < kStates; ++i) f[i] += smooth[i];
-      }
-      return f;
     }
+    if (affine()) return f;
+    f.smooth = view.equations.smooth_rate(mode_, y, view.input);
+    for (std::size_t i = 0; i < kStates; ++i) f.total[i] += f.smooth[i];
+    return f;
   }
   Slopes slopes() const { return {command_slope_, slope_.velocity, slope_.position}; }
 
   /// From the state y with the rate f.
   template <class S>
-  State<S> step(const View<S>& view, const State<S>& y, const State<S>& f, int level) const;
+  State<S> step(const View<S>& view, const State<S>& y, const Rate<S>& f, int level) const;
   /// The same of any length that is resolved.
   template <class S>
-  State<S> step_by_series(const View<S>& view, const State<S>& y, const State<S>& f,
+  State<S> step_by_series(const View<S>& view, const State<S>& y, const Rate<S>& f,
                           double length) const;
-  /// The classical method, or that of the midpoint where the step `is_short`. `middle` and `end`
-  /// are where the affine part leads after h / 2 and h; exponential(v) is exp(A h / 2) v.
+  /// The classical method, or that of the midpoint where the step `is_short`. `start` is what the
+  /// smooth forces do there; `middle` and `end` are where the affine part leads after h / 2 and h;
+  /// exponential(v) is exp(A h / 2) v.
   template <class S, class Exponential>
-  State<S> runge_kutta(const View<S>& view, const State<S>& y, double h, const State<S>& middle,
+  State<S> runge_kutta(const View<S>& view, const State<S>& start, double h, const State<S>& middle,
                        const State<S>& end, bool is_short, Exponential&& exponential) const;
   /// Of the affine part, with the smooth forces frozen.
   template <class S>
@@ -345,20 +356,26 @@ class Integrator {
   }
   template <class S>
   Series<S> series(const View<S>& view, const State<S>& y, double length) const {
-    return series(view, y, rate(view, y), length);
+    return series(view, y, rate(view, y).total, length);
   }
 
-  /// With tolerances.
-  GuardValues guard_values(const View<double>& view, const State<double>& y) const {
+  /// With tolerances. `f` is the rate of y.
+  GuardValues guard_values(const View<double>& view, const State<double>& y,
+                           const State<double>& f) const {
     GuardValues seen;
-    visit_guards_and_rates(view, y, [&](Guard, double g, double rate, double scale) {
+    visit_guards_and_rates(view, y, f, [&](Guard, double g, double rate, double scale) {
       seen.push_back({g, rate, 1e-12 * scale});
     });
     return seen;
   }
-  /// As linear forms, without tolerances, where all is affine.
-  GuardValues guard_values_fast(const View<double>& view, const State<double>& y) const {
-    return affine() ? flow_->guards->guard_values(y, view.input, slopes()) : guard_values(view, y);
+  GuardValues guard_values(const View<double>& view, const State<double>& y) const {
+    return guard_values(view, y, rate(view, y).total);
+  }
+  /// The guards as linear forms, without tolerances, where all is affine.
+  Seen look(const View<double>& view, const State<double>& y) const {
+    if (affine()) return {flow_->guards->guard_values(y, view.input, slopes())};
+    const Rate<double> f = rate(view, y);
+    return {guard_values(view, y, f.total), f};
   }
   /// Tries a step of `length` on plain values; `level` is its place in the ladder, or past its end
   /// for a step by the series. Leaves the end in `to` and unless a guard is met the guards there.
@@ -368,10 +385,11 @@ class Integrator {
   void move_time(double length);
   void pass_event(const Hit& hit);
 
-  /// Rate of a guard's value: where it is affine, a unit step along the rates gives it exactly.
+  /// Rate of a guard's value: where it is affine, a unit step along the rates `f` of y gives it
+  /// exactly.
   template <class S, class Visitor>
-  void visit_guards_and_rates(const View<S>& view, const State<S>& y, Visitor&& visit) const {
-    const State<S> f = view.equations.rate(mode_, y, view.input);
+  void visit_guards_and_rates(const View<S>& view, const State<S>& y, const State<S>& f,
+                              Visitor&& visit) const {
     std::array<std::pair<S, S>, kGuards> values;
     std::size_t n = 0;
     view.equations.visit_guards(mode_, y, view.input, [&](Guard, const S& g, double) {
@@ -411,7 +429,7 @@ class Integrator {
   ControllerMemory<T> controller_memory_{};
   Flow* flow_ = nullptr;
   int level_ = 0;  // of the longest step now allowed; falls to 0 as steps grow after an event
-  std::optional<GuardValues> here_;  // the guards at the present state, while they are known
+  std::optional<Seen> here_;  // at the present state, while it is known
   int events_ = 0;
   long steps_ = 0;
 };
@@ -480,52 +498,52 @@ typename Integrator<T>::Flow& Integrator<T>::flow_of(const Mode& mode) {
 
 template <class T>
 template <class S>
-State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, const State<S>& f,
+State<S> Integrator<T>::step(const View<S>& view, const State<S>& y, const Rate<S>& f,
                              int level) const {
   Propagator<S>& p = view.propagator;
-  const State<S> end = p.advance(y, f, slopes(), level);
+  const State<S> end = p.advance(y, f.total, slopes(), level);
   if (!view.equations.has_smooth_forces() || level == p.step_levels().last) return end;
   // Behind an event steps are so short that the midpoint rule is as good.
   constexpr int kShort = 4;
-  return runge_kutta(view, y, p.step_levels().length(level), p.advance(y, f, slopes(), level + 1),
-                     end, level >= check_level() + kShort,
+  return runge_kutta(view, f.smooth, p.step_levels().length(level),
+                     p.advance(y, f.total, slopes(), level + 1), end,
+                     level >= check_level() + kShort,
                      [&](const State<S>& v) { return p.exponential(v, level + 1); });
 }
 
 template <class T>
 template <class S>
-State<S> Integrator<T>::step_by_series(const View<S>& view, const State<S>& y, const State<S>& f,
+State<S> Integrator<T>::step_by_series(const View<S>& view, const State<S>& y, const Rate<S>& f,
                                        double length) const {
   Propagator<S>& p = view.propagator;
   const StepLevels& levels = p.step_levels();
   if (affine()) {
     const auto* known = p.repeated(length);
-    if (known == nullptr) return series(view, y, f, length).at(length);
-    State<S> end = p.advance(y, f, slopes(), *known);
-    for (std::size_t i = 0; i < kStates; ++i) end[i] += (length - known->time) * f[i];
+    if (known == nullptr) return series(view, y, f.total, length).at(length);
+    State<S> end = p.advance(y, f.total, slopes(), *known);
+    for (std::size_t i = 0; i < kStates; ++i) end[i] += (length - known->time) * f.total[i];
     return end;
   }
-  if (length <= levels.length(levels.last)) return series(view, y, f, length).at(length);
+  if (length <= levels.length(levels.last)) return series(view, y, f.total, length).at(length);
   const double half = 0.5 * length;
   // Where readings and switches of the command are even, pieces of few lengths recur.
   std::optional<State<S>> end;
-  if (const auto* known = p.repeated(length)) end = p.advance(y, f, slopes(), *known);
+  if (const auto* known = p.repeated(length)) end = p.advance(y, f.total, slopes(), *known);
   if (const auto* known = p.repeated(half); known && end)
-    return runge_kutta(view, y, length, p.advance(y, f, slopes(), *known), *end, false,
+    return runge_kutta(view, f.smooth, length, p.advance(y, f.total, slopes(), *known), *end, false,
                        [&](const State<S>& v) { return p.exponential(v, *known); });
-  const Series<S> path = series(view, y, f, length);
+  const Series<S> path = series(view, y, f.total, length);
   return runge_kutta(
-      view, y, length, path.at(half), path.at(length), false,
+      view, f.smooth, length, path.at(half), path.at(length), false,
       [&](const State<S>& v) { return p.series(v, p.a_times(v), {}, half).at(half); });
 }
 
 template <class T>
 template <class S, class Exponential>
-State<S> Integrator<T>::runge_kutta(const View<S>& view, const State<S>& y, double h,
+State<S> Integrator<T>::runge_kutta(const View<S>& view, const State<S>& start, double h,
                                     const State<S>& middle, const State<S>& end, bool is_short,
                                     Exponential&& exponential) const {
   // Of n(y) = N(y) - N(y at the start), in the frame that moves with the affine flow.
-  const State<S> start = view.equations.smooth_rate(mode_, y, view.input);
   const auto n = [&](const State<S>& at, double delay) {
     State<S> remainder = view.equations.smooth_rate(mode_, at, moved(view.input, delay));
     for (std::size_t i = 0; i < kStates; ++i) remainder[i] -= start[i];
@@ -548,7 +566,8 @@ Crossing Integrator<T>::try_step(const State<double>& from, int level, double le
   ++steps_;  // also one that meets a guard: a search without end has to end
   const View<double> now = plain();
   const bool by_series = level > step_levels().last;
-  const State<double> f = rate(now, from);
+  if (!here_) here_ = look(now, from);
+  const Rate<double> f = here_->rate ? *here_->rate : rate(now, from);
   to = by_series ? step_by_series(now, from, f, length) : step(now, from, f, level);
   for (const double x : to)
     if (!std::isfinite(x)) return Crossing::none;  // to nowhere, which the caller sees
@@ -558,9 +577,8 @@ Crossing Integrator<T>::try_step(const State<double>& from, int level, double le
   const int halvings = fine - level + doubted;
   const Input<double> input = moved(now.input, length);
   const View<double> then{now.equations, now.propagator, input};
-  if (!here_) here_ = guard_values_fast(now, from);
-  const GuardValues end = guard_values_fast(then, to);
-  GuardCourse course(*here_, end, std::size_t{1} << halvings, length);
+  const Seen end = look(then, to);
+  GuardCourse course(here_->guards, end.guards, std::size_t{1} << halvings, length);
   std::array<double, kGuards> tolerance{};
   const auto with_tolerances = [&](const GuardValues& seen) {
     for (std::size_t i = 0; i < seen.count; ++i)
@@ -574,7 +592,7 @@ Crossing Integrator<T>::try_step(const State<double>& from, int level, double le
                     .emplace(std::pair(level, halvings),
                              GuardForms(*flow_->guards, now.propagator, level, halvings))
                     .first;
-      forms->second.follow(*here_, f, slopes(), course);
+      forms->second.follow(here_->guards, f.total, slopes(), course);
     }
     if (course.review(doubted, tolerance) == Crossing::none) {
       here_ = end;
@@ -593,7 +611,7 @@ Crossing Integrator<T>::try_step(const State<double>& from, int level, double le
       course.set(
           1, guard_values({now.equations, now.propagator, halfway}, step(now, from, f, level + 1)));
     }
-    with_tolerances(end);
+    with_tolerances(end.guards);
   }
   const Crossing seen = course.review(doubted, tolerance);
   if (seen == Crossing::none) here_ = end;
@@ -652,12 +670,12 @@ void Integrator<T>::pass_event(const Hit& hit) {
   // One Newton step on the guard in T. Its value is rounding; its derivatives are those of the
   // event time.
   T correction(0.0);
-  visit_guards_and_rates(exact(), y_, [&](Guard guard, const T& g, const T& rate, double) {
+  const State<T> f = equations_.rate(mode_, y_, input_);
+  visit_guards_and_rates(exact(), y_, f, [&](Guard guard, const T& g, const T& rate, double) {
     if (guard == hit.guard && value_of(rate) != 0.0)
       correction = -derivative_part(g) / value_of(rate);
   });
   if (!options_.event_derivatives) correction = T(0.0);
-  const State<T> f = equations_.rate(mode_, y_, input_);
   for (std::size_t i = 0; i < kStates; ++i) y_[i] += f[i] * correction;
   input_ = moved(input_, correction);
   ++events_;
@@ -721,7 +739,7 @@ bool Integrator<T>::advance_to(const T& end) {
       y_ = to;
     } else {
       const View<T> view = exact();
-      const State<T> f = rate(view, y_);
+      const Rate<T> f = rate(view, y_);
       y_ = by_series ? step_by_series(view, y_, f, length) : step(view, y_, f, level);
     }
     move_time(length);

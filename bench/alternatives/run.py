@@ -160,7 +160,8 @@ def print_cases(results, methods):
     for label, case, answers in results:
         cells = [f"{judge(case, answers[m])}: {told(m, answers[m])}, {ratio(answers, m):.2f}"
                  for m in methods]  # fmt: skip
-        note = answers["axisfit"].note if "axisfit" in answers else ""
+        own = answers.get("axisfit")
+        note = f"{own.note}, {own.seconds:.1f} s" if own else ""
         print(f"| {label} | {case.setup} | " + " | ".join(cells) + f" | {note} |")
 
 

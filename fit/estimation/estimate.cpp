@@ -60,6 +60,7 @@ std::vector<StartRun> run_starts(const Job& job, const ParameterSpace& space,
       trial.interrupted = true;
       return;
     }
+    if (starts > 1) trial.result.last.at_solution.reset();  // large, and only the best needs it
     const std::lock_guard lock(mutex);
     ++all.done;
     if (trial.result.last.usable) all.best = std::fmin(all.best, trial.result.last.reduced_cost);
@@ -200,7 +201,7 @@ FitResult estimate(const Job& job, const RunContext& context, std::span<const do
     result.recordings[r] = evaluate_recording(job, space, r, solved.u, result.observer_gain);
   });
 
-  Linearization at_solution = linearize(job, space, solved.u, result.observer_gain);
+  Linearization at_solution = linearize(job, space, solved, result.observer_gain);
   at_solution.input_noise = input_noise(job, space, solved.u, result.observer_gain, at_solution);
   const double degrees_of_freedom =
       static_cast<double>(at_solution.residuals.size()) - static_cast<double>(space.size()) -

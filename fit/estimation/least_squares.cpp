@@ -66,8 +66,9 @@ class StartPenalty : public ceres::CostFunction {
   Eigen::VectorXd start_;
 };
 
-/// Keeps what another cost gave last. A solver with bounds asks for the Jacobian at a point that it
-/// tries, then for the residuals there, and if it takes it for the Jacobian once more.
+/// Keeps what another cost gave at the two latest points. A solver with bounds asks for the
+/// Jacobian at a point that it tries, then for the residuals there, and if it takes it for the
+/// Jacobian once more; the last point that it tries is not the one at which it ends.
 class CachedCost : public ceres::CostFunction {
  public:
   explicit CachedCost(std::unique_ptr<ceres::CostFunction> cost)
@@ -75,35 +76,50 @@ class CachedCost : public ceres::CostFunction {
         size_(static_cast<std::size_t>(cost_->parameter_block_sizes().front())) {
     set_num_residuals(cost_->num_residuals());
     *mutable_parameter_block_sizes() = cost_->parameter_block_sizes();
-    residuals_.resize(static_cast<std::size_t>(num_residuals()));
   }
 
   void compute(const double* u, bool with_jacobian) const {
-    const std::span<const double> at(u, size_);
-    if (std::ranges::equal(at, u_) && (has_jacobian_ || !with_jacobian)) return;
-    u_.assign(at.begin(), at.end());
-    has_jacobian_ = with_jacobian;
-    finished_ = false;  // also where it throws
-    if (with_jacobian) jacobian_.resize(residuals_.size() * size_);
-    double* jacobian = jacobian_.data();
-    finished_ = cost_->Evaluate(&u, residuals_.data(), with_jacobian ? &jacobian : nullptr);
+    if (!latest_.is_at(u)) std::swap(latest_, other_);
+    if (latest_.is_at(u) && (latest_.has_jacobian || !with_jacobian)) return;
+    latest_.u.assign(u, u + size_);
+    latest_.has_jacobian = with_jacobian;
+    latest_.finished = false;  // also where it throws
+    latest_.residuals.resize(static_cast<std::size_t>(num_residuals()));
+    if (with_jacobian) latest_.jacobian.resize(latest_.residuals.size() * size_);
+    double* jacobian = latest_.jacobian.data();
+    latest_.finished =
+        cost_->Evaluate(&u, latest_.residuals.data(), with_jacobian ? &jacobian : nullptr);
+  }
+
+  /// Whether the Jacobian there need not be computed.
+  bool knows_jacobian(const double* u) const {
+    const auto knows = [u](const Point& p) { return p.is_at(u) && p.has_jacobian; };
+    return knows(latest_) || knows(other_);
   }
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
     const bool with_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
     compute(parameters[0], with_jacobian);
-    if (!finished_) return false;
-    std::ranges::copy(residuals_, residuals);
-    if (with_jacobian) std::ranges::copy(jacobian_, jacobians[0]);
+    if (!latest_.finished) return false;
+    std::ranges::copy(latest_.residuals, residuals);
+    if (with_jacobian) std::ranges::copy(latest_.jacobian, jacobians[0]);
     return true;
   }
 
  private:
+  struct Point {
+    std::vector<double> u, residuals, jacobian;
+    bool has_jacobian = false, finished = false;
+
+    bool is_at(const double* point) const {
+      return std::equal(u.begin(), u.end(), point) && !u.empty();
+    }
+  };
+
   std::unique_ptr<ceres::CostFunction> cost_;
   std::size_t size_;  ///< of u
-  mutable std::vector<double> u_, residuals_, jacobian_;
-  mutable bool has_jacobian_ = false, finished_ = false;
+  mutable Point latest_, other_;
 };
 
 /// Computes costs side by side, at a point where a solver is about to ask for one after the other.
@@ -125,6 +141,42 @@ Costs priors_of(const ParameterSpace& space) {
   for (std::size_t i = 0; i < space.size(); ++i)
     if (space[i].prior) costs.push_back(std::make_unique<PriorCost>(space, i));
   return costs;
+}
+
+using CostPointers = std::vector<const ceres::CostFunction*>;
+
+CostPointers pointers_to(const Costs& costs) {
+  CostPointers list;
+  for (const auto& cost : costs) list.push_back(cost.get());
+  return list;
+}
+
+/// The costs and then the priors at u, all rows of one series; with their Jacobian or without.
+Linearization evaluated(const ParameterSpace& space, CostPointers costs, const Eigen::VectorXd& u,
+                        bool with_jacobian) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Linearization result;
+  SeriesRows& all = result.series.emplace_back();
+  for (const auto* cost : costs) all.count += cost->num_residuals();
+  const Costs priors = priors_of(space);
+  std::ranges::copy(pointers_to(priors), std::back_inserter(costs));
+  std::vector<Eigen::Index> first{0};
+  for (const auto* cost : costs) first.push_back(first.back() + cost->num_residuals());
+  result.residuals.resize(first.back());
+  if (with_jacobian) result.jacobian.resize(first.back(), u.size());
+  std::atomic<bool> finite = true;
+  parallel_for(costs.size(), [&](std::size_t i) {
+    const Eigen::Index row = first[i], n = costs[i]->num_residuals();
+    RowMajor block(with_jacobian ? n : 0, u.size());
+    const double* parameters = u.data();
+    double* jacobian = block.data();
+    if (!costs[i]->Evaluate(&parameters, result.residuals.data() + row,
+                            with_jacobian ? &jacobian : nullptr))
+      finite = false;
+    if (with_jacobian) result.jacobian.middleRows(row, n) = block;
+  });
+  result.finite = finite;
+  return result;
 }
 
 /// The point of a solution between its bounds. Knows which parameters are at one, and which of
@@ -229,10 +281,12 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
   ceres::Problem::Options of_problem;
   of_problem.evaluation_callback = &parallel_evaluation;
   ceres::Problem problem(of_problem);
+  std::vector<const CachedCost*> cached_costs;
   for (auto& cost : costs) {
     auto* cached = new CachedCost(std::move(cost));  // the problem's
     problem.AddResidualBlock(cached, nullptr, u);
     parallel_evaluation.add(cached);
+    cached_costs.push_back(cached);
   }
   for (auto& cost : priors_of(space)) problem.AddResidualBlock(cost.release(), nullptr, u);
   if (options.penalize_distance_from_start)
@@ -274,46 +328,21 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
     if (!point.review() && !stopped) break;
   }
   result.reduced_cost = 2.0 * result.cost / problem.NumResiduals();
+  if (result.usable && std::ranges::all_of(cached_costs, [u](const CachedCost* cost) {
+        return cost->knows_jacobian(u);
+      }))
+    result.at_solution = std::make_shared<const Linearization>(
+        evaluated(space, {cached_costs.begin(), cached_costs.end()}, result.u, true));
   return result;
 }
 
-namespace {
-
-/// The costs and then the priors at u, all rows of one series; with their Jacobian or without.
-Linearization evaluated(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u,
-                        bool with_jacobian) {
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  Linearization result;
-  SeriesRows& all = result.series.emplace_back();
-  for (const auto& cost : costs) all.count += cost->num_residuals();
-  std::ranges::move(priors_of(space), std::back_inserter(costs));
-  std::vector<Eigen::Index> first{0};
-  for (const auto& cost : costs) first.push_back(first.back() + cost->num_residuals());
-  result.residuals.resize(first.back());
-  if (with_jacobian) result.jacobian.resize(first.back(), u.size());
-  std::atomic<bool> finite = true;
-  parallel_for(costs.size(), [&](std::size_t i) {
-    const Eigen::Index row = first[i], n = costs[i]->num_residuals();
-    RowMajor block(with_jacobian ? n : 0, u.size());
-    const double* parameters = u.data();
-    double* jacobian = block.data();
-    if (!costs[i]->Evaluate(&parameters, result.residuals.data() + row,
-                            with_jacobian ? &jacobian : nullptr))
-      finite = false;
-    if (with_jacobian) result.jacobian.middleRows(row, n) = block;
-  });
-  result.finite = finite;
-  return result;
+Linearization linearize(const ParameterSpace& space, const Costs& costs, const Eigen::VectorXd& u) {
+  return evaluated(space, pointers_to(costs), u, true);
 }
 
-}  // namespace
-
-Linearization linearize(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u) {
-  return evaluated(space, std::move(costs), u, true);
-}
-
-Eigen::VectorXd residuals_at(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u) {
-  Linearization at = evaluated(space, std::move(costs), u, false);
+Eigen::VectorXd residuals_at(const ParameterSpace& space, const Costs& costs,
+                             const Eigen::VectorXd& u) {
+  Linearization at = evaluated(space, pointers_to(costs), u, false);
   return at.finite ? std::move(at.residuals) : Eigen::VectorXd();
 }
 

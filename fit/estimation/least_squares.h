@@ -36,6 +36,8 @@ struct SolveResult {
   double reduced_cost = 0.0;  ///< 2 cost / number of residuals
   int iterations = 0;
   std::string message;  ///< the solver's own reason to stop
+  /// Where the solver came by it: null also where the result is from a journal.
+  std::shared_ptr<const Linearization> at_solution{};
 };
 
 /// Minimises the costs and the space's priors from u, within the space's bounds. The thread pool
@@ -45,9 +47,10 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
 
 /// Of the costs, which the thread pool evaluates side by side, and the space's priors. All rows are
 /// one series.
-Linearization linearize(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u);
+Linearization linearize(const ParameterSpace& space, const Costs& costs, const Eigen::VectorXd& u);
 
 /// Its residuals alone; none where they are not finite.
-Eigen::VectorXd residuals_at(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u);
+Eigen::VectorXd residuals_at(const ParameterSpace& space, const Costs& costs,
+                             const Eigen::VectorXd& u);
 
 }  // namespace axisfit

@@ -16,6 +16,24 @@ Costs recording_costs(const Job& job, const ParameterSpace& space, double observ
   return list;
 }
 
+/// The series of the residuals as RecordingCost has them: recording by recording, measurement by
+/// measurement.
+std::vector<SeriesRows> series_of(const Job& job) {
+  std::vector<SeriesRows> series;
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    const Recording& recording = job.recordings[r];
+    for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
+      Eigen::Index n = 0;
+      for (std::size_t i = 0; i < recording.times.size(); ++i)
+        n += recording.fits(recording.measurements[m], i) ? 1 : 0;
+      if (n > 0) series.push_back({r, m, row, n});
+      row += n;
+    }
+  }
+  return series;
+}
+
 }  // namespace
 
 SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
@@ -41,19 +59,15 @@ Linearization linearize(const Job& job, const ParameterSpace& space, const Eigen
                         double observer_gain) {
   // To its end, for a result that was found before a stop needs it.
   Linearization result = linearize(space, recording_costs(job, space, observer_gain, nullptr), u);
-  // As RecordingCost has them: recording by recording, measurement by measurement.
-  result.series.clear();
-  Eigen::Index row = 0;
-  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
-    const Recording& recording = job.recordings[r];
-    for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
-      Eigen::Index n = 0;
-      for (std::size_t i = 0; i < recording.times.size(); ++i)
-        n += recording.fits(recording.measurements[m], i) ? 1 : 0;
-      if (n > 0) result.series.push_back({r, m, row, n});
-      row += n;
-    }
-  }
+  result.series = series_of(job);
+  return result;
+}
+
+Linearization linearize(const Job& job, const ParameterSpace& space, const SolveResult& solved,
+                        double observer_gain) {
+  if (!solved.at_solution) return linearize(job, space, solved.u, observer_gain);
+  Linearization result = *solved.at_solution;
+  result.series = series_of(job);
   return result;
 }
 

@@ -17,6 +17,9 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
 /// u.
 Linearization linearize(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
                         double observer_gain);
+/// At what solve() found with this gain, which may know it.
+Linearization linearize(const Job& job, const ParameterSpace& space, const SolveResult& solved,
+                        double observer_gain);
 
 /// The residuals alone; none where a simulation does not finish.
 Eigen::VectorXd residuals_at(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,

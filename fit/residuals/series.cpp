@@ -128,7 +128,8 @@ void allow_for_parameters(const Job& job, const FitResult& result,
   for (Recording& r : other.recordings) r.role = r.role == Role::fit ? Role::validate : Role::fit;
   const ParameterSpace space(other);
   const Eigen::VectorXd u = space.internal(values_of(result));
-  const Linearization fitted = linearize(job, space, u, result.observer_gain);
+  const Linearization fitted =
+      result.at_solution ? *result.at_solution : linearize(job, space, u, result.observer_gain);
   const Linearization unfitted = linearize(other, space, u, result.observer_gain);
   if (!fitted.finite || !unfitted.finite || unfitted.jacobian.rows() == 0) return;
   // Columns of equal length, and what is not determined to one part in a thousand left out: an

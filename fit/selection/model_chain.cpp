@@ -9,9 +9,17 @@
 
 namespace axisfit {
 
+std::vector<double> SelectionStep::values() const {
+  std::vector<double> values = values_of(fit);
+  values.push_back(fit.observer_gain);
+  return values;
+}
+
 bool explains(const SelectionStep& model) {
   auto series = residual_series(model.job, model.fit);
   if (std::ranges::all_of(series, is_explained)) return !series.empty();
+  const auto fails = [](const ResidualSeries& s) { return s.fitted && !is_explained(s); };
+  if (std::ranges::any_of(series, fails)) return false;  // nothing is allowed these
   allow_for_parameters(model.job, model.fit, series);
   return !series.empty() && std::ranges::all_of(series, is_explained);
 }
@@ -33,8 +41,7 @@ void ModelChain::replace(SelectionStep declared, SelectionStep last) {
 }
 
 ModelChain::Neighbours& ModelChain::neighbours() {
-  std::vector<double> values = values_of(current().fit);
-  values.push_back(current().fit.observer_gain);
+  std::vector<double> values = current().values();
   if (values != neighbours_.of || neighbours_.reduced.size() != accepted_.size())
     neighbours_ = {std::move(values), {accepted_.size(), std::nullopt}, false, std::nullopt};
   return neighbours_;

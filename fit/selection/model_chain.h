@@ -15,6 +15,10 @@ struct SelectionStep {
   std::string added;  ///< the effect; empty for the declared model
   Job job;
   FitResult fit;
+
+  /// Of the free parameters, and last the observer gain: two steps of a search that agree in them
+  /// are the same model.
+  std::vector<double> values() const;
 };
 
 /// Whether the model leaves nothing but noise in any signal.

@@ -26,15 +26,20 @@ bool all_are_rejected(const std::vector<ExtendedModel>& models) {
 
 class RoundTrial {
  public:
-  RoundTrial(const SelectionStep& model, const RoundOptions& options, const RunContext& context)
+  RoundTrial(const SelectionStep& model, const RoundOptions& options, RoundMemory& memory,
+             const RunContext& context)
       : model_(model),
         options_(options),
+        memory_(memory),
         context_(context),
         is_complete_(explains(model)),
-        before_(residual_series(model.job, model.fit)) {}
+        before_(residual_series(model.job, model.fit)) {
+    std::vector<double> values = model.values();
+    if (values != memory.of) memory = {.of = std::move(values)};
+  }
 
   RoundResult run() && {
-    refit_in_turns(entries());
+    refit_in_turns(choice());
     keep_the_best_setting();
     // Where nothing but noise is left, what lowers no error elsewhere is chance.
     if (!is_complete_ && !options_.held_out_blocks && all_are_rejected(result_.models))
@@ -59,67 +64,89 @@ class RoundTrial {
     return gains;
   }
 
-  std::vector<ShortlistEntry> entries() {
-    report_progress("scoring effects");
-    Shortlist list = shortlist(model_.job, values_of(model_.fit), gains_to_score(), options_.curves,
+  const ShortlistEntry& entry(std::size_t place) const { return memory_.list->entries[place]; }
+
+  /// The places in the shortlist of what is to be refitted.
+  std::vector<std::size_t> choice() {
+    if (!memory_.list) {
+      report_progress("scoring effects");
+      memory_.list = shortlist(model_.job, values_of(model_.fit), gains_to_score(), options_.curves,
                                options_.shortlist, context_);
-    result_.tried = list.tried;
+      memory_.refits.resize(memory_.list->entries.size());
+    }
+    result_.tried = memory_.list->tried;
     const double samples = samples_of(before_);
-    std::erase_if(list.entries, [&](const ShortlistEntry& entry) {
-      const bool is_chance =
-          is_complete_ && entry.gain < least_gain(entry.candidate, samples, result_.tried);
-      return is_chance || std::ranges::any_of(options_.excluded, [&](const Candidate& c) {
-               return same_effect(c, entry.candidate);
-             });
+    std::vector<std::size_t> places(memory_.list->entries.size());
+    std::iota(places.begin(), places.end(), 0);
+    std::erase_if(places, [&](std::size_t place) {
+      const auto& [candidate, score, gain, is_second] = entry(place);
+      const bool is_chance = is_complete_ && gain < least_gain(candidate, samples, result_.tried);
+      const auto is_this = [&other = candidate](const Candidate& c) {
+        return same_effect(c, other);
+      };
+      return is_chance || std::ranges::any_of(options_.excluded, is_this);
     });
-    return std::move(list.entries);
+    return places;
   }
 
   /// What promises little beside the best is refitted only where that does not pass, and what a
   /// simpler effect does as well where none of these does.
-  void refit_in_turns(std::vector<ShortlistEntry> entries) {
+  void refit_in_turns(std::vector<std::size_t> places) {
     constexpr double kRival = 0.6;
     double promised = 0.0;
-    for (const ShortlistEntry& entry : entries)
-      if (!entry.is_second) promised = std::max(promised, entry.gain);
-    const auto turn = [&](const ShortlistEntry& entry) {
-      return entry.is_second ? 2 : entry.gain >= kRival * promised ? 0 : 1;
+    for (const std::size_t place : places)
+      if (!entry(place).is_second) promised = std::max(promised, entry(place).gain);
+    const auto turn = [&](std::size_t place) {
+      return entry(place).is_second ? 2 : entry(place).gain >= kRival * promised ? 0 : 1;
     };
-    std::ranges::stable_sort(entries, {}, turn);
-    for (auto next = entries.begin(); next != entries.end() && all_are_rejected(result_.models);) {
-      const auto end = std::ranges::upper_bound(next, entries.end(), turn(*next), {}, turn);
+    std::ranges::stable_sort(places, {}, turn);
+    for (auto next = places.begin(); next != places.end() && all_are_rejected(result_.models);) {
+      const auto end = std::ranges::upper_bound(next, places.end(), turn(*next), {}, turn);
       refit_all({next, end});
       next = end;
     }
   }
 
   /// Refits with each of these and judges it.
-  void refit_all(std::span<const ShortlistEntry> entries) {
+  void refit_all(std::span<const std::size_t> places) {
     std::vector<ExtendedModel>& models = result_.models;
     const std::size_t first = models.size();
-    models.resize(first + entries.size());
+    models.resize(first + places.size());
     // What takes longest first, so that nobody waits for it at the end.
-    std::vector<std::size_t> order(entries.size());
+    std::vector<std::size_t> order(places.size());
     std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, std::greater{},
-                             [&](std::size_t i) { return entries[i].candidate.parameters(); });
+    std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) {
+      return entry(places[i]).candidate.parameters();
+    });
     int done = 0;
     std::mutex mutex;
     parallel_for(order.size(), [&](std::size_t k) {
-      const ShortlistEntry& p = entries[order[k]];
+      const std::size_t place = places[order[k]];
       const auto report = [&](int step) {
         const std::lock_guard lock(mutex);
         done += step;
-        report_progress("trying " + p.candidate.name, done, static_cast<int>(entries.size()));
+        report_progress("trying " + entry(place).candidate.name, done,
+                        static_cast<int>(places.size()));
       };
       report(0);
       ExtendedModel& e = models[first + order[k]];
-      e = fit_extended_model(model_.job, p.candidate, p.score.values, p.score.strengths,
-                             p.score.shapes, context_);
-      e.score = p.score.gain;
+      e = refitted(place);
       judge(e, before_, result_.tried, options_.chance);
       report(1);
     });
+  }
+
+  /// With an entry of the shortlist.
+  const ExtendedModel& refitted(std::size_t place) {
+    std::optional<ExtendedModel>& known = memory_.refits[place];
+    if (!known) {
+      const ShortlistEntry& p = entry(place);
+      ExtendedModel e = fit_extended_model(model_.job, p.candidate, p.score.values,
+                                           p.score.strengths, p.score.shapes, context_);
+      e.score = p.score.gain;
+      known = std::move(e);
+    }
+    return *known;
   }
 
   /// Of several settings of one effect.
@@ -169,13 +196,26 @@ class RoundTrial {
 
   /// What lowers the error of one recording and not that of another may yet be in both, where
   /// something else differs between them.
-  void try_to_replicate(ExtendedModel& e) const {
-    const auto elsewhere = fit_elsewhere(e.job, e.fit, context_);
+  void try_to_replicate(ExtendedModel& e) {
+    const std::optional<FitResult> elsewhere = fitted_elsewhere(e);
     if (!elsewhere) return;
     Replication found = replication(e.job, e.fit, *elsewhere, e.candidate);
     if (!found.is_alike) return;
     e.rejection = rejection_of(e.candidate, e.gain, determined(e), result_.tried, kChance, true);
     if (!e.rejection) e.replication = std::move(found);
+  }
+
+  std::optional<FitResult> fitted_elsewhere(const ExtendedModel& e) {
+    const std::vector<double> values = values_of(e.fit);
+    const auto known = [&] {
+      const std::lock_guard lock(elsewhere_);
+      const auto found = memory_.elsewhere.find(values);
+      return found == memory_.elsewhere.end() ? std::nullopt : std::optional(found->second);
+    };
+    if (auto found = known()) return *std::move(found);
+    std::optional<FitResult> fit = fit_elsewhere(e.job, e.fit, context_);
+    const std::lock_guard lock(elsewhere_);
+    return memory_.elsewhere.emplace(values, std::move(fit)).first->second;
   }
 
   /// What the recordings to validate could not have shown is judged by stretches of the fitted
@@ -195,8 +235,8 @@ class RoundTrial {
       });
       return series;
     };
-    if (!stretches_before_) stretches_before_ = held_out(model_);
-    Improvement gain = improvement(*stretches_before_, held_out({"", e.job, e.fit}));
+    if (!memory_.on_stretches) memory_.on_stretches = held_out(model_);
+    Improvement gain = improvement(*memory_.on_stretches, held_out({"", e.job, e.fit}));
     gain.fit_gain = e.gain.fit_gain;
     gain.samples = e.gain.samples;
     if (rejection_of(e.candidate, gain, determined(e), result_.tried)) return;
@@ -224,19 +264,19 @@ class RoundTrial {
 
   const SelectionStep& model_;
   const RoundOptions& options_;
+  RoundMemory& memory_;
+  std::mutex elsewhere_;  // of the memory
   const RunContext& context_;
   const bool is_complete_;
   const std::vector<ResidualSeries> before_;
   RoundResult result_;
-  /// Of the model, fitted to every second stretch, once an effect was tried so.
-  std::optional<std::vector<ResidualSeries>> stretches_before_;
 };
 
 }  // namespace
 
-RoundResult try_round(const SelectionStep& model, const RoundOptions& options,
+RoundResult try_round(const SelectionStep& model, const RoundOptions& options, RoundMemory& memory,
                       const RunContext& context) {
-  return RoundTrial(model, options, context).run();
+  return RoundTrial(model, options, memory, context).run();
 }
 
 void judge(ExtendedModel& e, const std::vector<ResidualSeries>& before, std::size_t tried,

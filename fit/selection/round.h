@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <optional>
 #include <vector>
 
 #include "fit/selection/model_chain.h"
+#include "fit/selection/shortlist.h"
 
 namespace axisfit {
 
@@ -18,6 +21,18 @@ struct RoundOptions {
   std::vector<Candidate> excluded{};  ///< not to be tried
 };
 
+/// What a round computed of its model, for another round of the same model with other options.
+/// Those of named effects and those of curves need one each.
+struct RoundMemory {
+  std::vector<double> of{};  ///< values and observer gain of the model
+  std::optional<Shortlist> list{};
+  std::vector<std::optional<ExtendedModel>> refits{};  ///< of the list's entries, not judged
+  /// By the values of an extended model, see fit_elsewhere().
+  std::map<std::vector<double>, std::optional<FitResult>> elsewhere{};
+  /// Of the model fitted to every second stretch, see with_held_out_blocks().
+  std::optional<std::vector<ResidualSeries>> on_stretches{};
+};
+
 struct RoundResult {
   std::vector<ExtendedModel> models;  ///< refitted and judged, each effect once
   std::optional<std::size_t> best{};  ///< of them; none: no effect passes
@@ -26,8 +41,9 @@ struct RoundResult {
 
 /// Scores all effects, refits a shortlist, and takes the best that passes the acceptance test.
 /// Where the size of the residual is that of the noise, an effect may yet be hidden in it: then
-/// only those are refitted whose score is beyond chance.
-RoundResult try_round(const SelectionStep& model, const RoundOptions& options,
+/// only those are refitted whose score is beyond chance. Uses what the memory has of this model,
+/// and leaves there what it computed.
+RoundResult try_round(const SelectionStep& model, const RoundOptions& options, RoundMemory& memory,
                       const RunContext& context);
 
 /// Puts an extended model, chosen among so many, to the acceptance test: against these residuals.

@@ -284,7 +284,7 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   const SolveResult tracking = solve(job, space, space.internal(values), rate, options, context);
   if (!tracking.usable) return test;
   const std::vector<double> tracking_values = space.values(tracking.u);
-  const Linearization base = linearize(job, space, tracking.u, rate);
+  const Linearization base = linearize(job, space, tracking, rate);
   if (!base.finite) return test;
   const Eigen::MatrixXd basis = basis_of(base.jacobian);
   const Eigen::VectorXd residual = base.residuals - basis * (basis.transpose() * base.residuals);

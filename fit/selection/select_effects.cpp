@@ -211,7 +211,7 @@ class EffectSelector {
                                    .chance = chance,
                                    .held_out_blocks = result_.held_out_blocks,
                                    .excluded = degenerate_},
-                                  context_);
+                                  curves ? of_curves_ : of_names_, context_);
     tried_ = found.tried;
     ExtendedModel* best = found.best ? &found.models[*found.best] : nullptr;
     for (const ExtendedModel& e : found.models) trials_.record(e, best, round_);
@@ -539,6 +539,7 @@ class EffectSelector {
   std::vector<RivalPair> rival_pairs_;
   std::vector<Candidate> degenerate_;  ///< not to be tried again
   std::size_t tried_ = 1;
+  RoundMemory of_names_, of_curves_;
   int round_ = 0;
   bool swapped_ = false;
 };

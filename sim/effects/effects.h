@@ -162,85 +162,74 @@ Slots<T> affine(const Effects<T>& effects, const EffectSet& active) {
   return total;
 }
 
-/// Calls read(index, effect, at) for the effects in the set, each with its own memory at the
-/// instant.
+/// Calls read(index, effect) for the effects in the set, each with its own memory at the instant.
 template <class T, class Read>
-void visit_active(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at,
+void visit_active(const Effects<T>& effects, const EffectSet& active, Instant<T>& at,
                   const RestMemory<T>& memory, Read&& read) {
   visit_effects(effects, [&]<class Effect>(std::size_t index, const Effect& effect) {
     if (!active[index]) return;
-    if constexpr (kHasHysteresis<Effect>) {
-      Instant<T> own = at;
-      own.memory = {memory.position, memory.hystereses[kHysteresesBefore[index]]};
-      read(index, effect, own);
-    } else {
-      read(index, effect, at);
-    }
+    if constexpr (kHasHysteresis<Effect>)
+      at.memory = {memory.position, memory.hystereses[kHysteresesBefore[index]]};
+    read(index, effect);
   });
 }
 
 /// Smooth force on the arm, N.
 template <class T>
-T arm_force(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at,
+T arm_force(const Effects<T>& effects, const EffectSet& active, Instant<T> at,
             const RestMemory<T>& memory) {
   T total(0.0);
-  visit_active(effects, active, at, memory,
-               [&](std::size_t, const auto& effect, const Instant<T>& own) {
-                 if constexpr (requires { effect.arm_force(own); }) total += effect.arm_force(own);
-               });
+  visit_active(effects, active, at, memory, [&](std::size_t, const auto& effect) {
+    if constexpr (requires { effect.arm_force(at); }) total += effect.arm_force(at);
+  });
   return total;
 }
 
 /// Dry friction that is not affine, N.
 template <class T>
-T friction_curve(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at,
+T friction_curve(const Effects<T>& effects, const EffectSet& active, Instant<T> at,
                  const RestMemory<T>& memory) {
   T total(0.0);
-  visit_active(effects, active, at, memory,
-               [&](std::size_t, const auto& effect, const Instant<T>& own) {
-                 if constexpr (requires { effect.friction_curve(own); })
-                   total += effect.friction_curve(own);
-               });
+  visit_active(effects, active, at, memory, [&](std::size_t, const auto& effect) {
+    if constexpr (requires { effect.friction_curve(at); }) total += effect.friction_curve(at);
+  });
   return total;
 }
 
 /// Smooth torque on the motor, N m.
 template <class T>
-T motor_torque(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at,
+T motor_torque(const Effects<T>& effects, const EffectSet& active, Instant<T> at,
                const RestMemory<T>& memory) {
   T total(0.0);
-  visit_active(effects, active, at, memory,
-               [&](std::size_t, const auto& effect, const Instant<T>& own) {
-                 if constexpr (requires { effect.motor_torque(own); })
-                   total += effect.motor_torque(own);
-               });
+  visit_active(effects, active, at, memory, [&](std::size_t, const auto& effect) {
+    if constexpr (requires { effect.motor_torque(at); }) total += effect.motor_torque(at);
+  });
   return total;
 }
 
 /// Mass of the arm that changes, kg, and its rate, kg/s.
 template <class T>
-std::pair<T, T> mass(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at,
+std::pair<T, T> mass(const Effects<T>& effects, const EffectSet& active, Instant<T> at,
                      const RestMemory<T>& memory) {
   std::pair<T, T> total{T(0.0), T(0.0)};
-  visit_active(effects, active, at, memory,
-               [&](std::size_t, const auto& effect, const Instant<T>& own) {
-                 if constexpr (requires { effect.mass(own); }) {
-                   total.first += effect.mass(own);
-                   total.second += effect.mass_rate(own);
-                 }
-               });
+  visit_active(effects, active, at, memory, [&](std::size_t, const auto& effect) {
+    if constexpr (requires { effect.mass(at); }) {
+      total.first += effect.mass(at);
+      total.second += effect.mass_rate(at);
+    }
+  });
   return total;
 }
 
 /// What is to be remembered of an arm that comes to rest.
 template <class T>
-RestMemory<T> memory_of(const Effects<T>& effects, const EffectSet& active, const Instant<T>& at,
+RestMemory<T> memory_of(const Effects<T>& effects, const EffectSet& active, Instant<T> at,
                         const RestMemory<T>& memory) {
   RestMemory<T> next{at.position, {}};
   visit_active(effects, active, at, memory,
-               [&]<class Effect>(std::size_t index, const Effect& effect, const Instant<T>& own) {
+               [&]<class Effect>(std::size_t index, const Effect& effect) {
                  if constexpr (kHasHysteresis<Effect>)
-                   next.hystereses[kHysteresesBefore[index]] = effect.hysteresis(own);
+                   next.hystereses[kHysteresesBefore[index]] = effect.hysteresis(at);
                });
   return next;
 }

@@ -77,6 +77,17 @@ TEST(LeastSquares, AsksForAJacobianOncePerPoint) {
   }
 }
 
+TEST(LeastSquares, KnowsTheJacobianAtItsSolution) {
+  std::vector<Asked> asked(2);
+  const ParameterSpace space = two_parameters();
+  const SolveResult solved = minimize(space, costs_of(asked), Eigen::Vector2d(3.0, 3.0), {});
+  ASSERT_TRUE(solved.at_solution);
+  const Linearization expected = linearize(space, costs_of(asked), solved.u);
+  EXPECT_EQ(solved.at_solution->residuals, expected.residuals);
+  EXPECT_EQ(solved.at_solution->jacobian, expected.jacobian);
+  EXPECT_TRUE(solved.at_solution->finite);
+}
+
 // At the minimum exp(u) = 2.05 and 4.1 the residuals are +-0.05 and +-0.1.
 TEST(LeastSquares, ReducedCostIsTheMeanSquareOfTheResiduals) {
   std::vector<Asked> asked(2);

@@ -1,0 +1,79 @@
+#include "fit/selection/round.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "fit/estimation/estimate.h"
+#include "tests/fit/selection/hidden_effects.h"
+
+namespace axisfit {
+namespace {
+
+SelectionStep declared_model(const Job& job) { return {"", job, estimate(job)}; }
+
+Job rubbing() {
+  HiddenEffect friction;
+  for (const HiddenEffect& e : hidden_effects())
+    if (e.name == "coulomb_friction") friction = e;
+  return friction.job();
+}
+
+void expect_same(const RoundResult& a, const RoundResult& b) {
+  EXPECT_EQ(a.best, b.best);
+  EXPECT_EQ(a.tried, b.tried);
+  ASSERT_EQ(a.models.size(), b.models.size());
+  for (std::size_t i = 0; i < a.models.size(); ++i) {
+    EXPECT_EQ(a.models[i].candidate.name, b.models[i].candidate.name);
+    EXPECT_EQ(values_of(a.models[i].fit), values_of(b.models[i].fit));
+    EXPECT_EQ(a.models[i].gain.p_value, b.models[i].gain.p_value);
+  }
+}
+
+class RoundOfAModel : public testing::Test {
+ protected:
+  RoundResult round(const RoundOptions& options, RoundMemory& memory) {
+    phases_.clear();
+    const RunContext context{nullptr, nullptr, [&](const Progress& p) { phases_.insert(p.phase); }};
+    return try_round(model_, options, memory, context);
+  }
+  bool has_scored() const { return phases_.contains("scoring effects"); }
+
+  SelectionStep model_ = declared_model(rubbing());
+  std::set<std::string> phases_;
+};
+
+TEST_F(RoundOfAModel, IsTheSameFromMemory) {
+  RoundMemory memory;
+  const RoundResult first = round({}, memory);
+  EXPECT_TRUE(has_scored());
+  ASSERT_TRUE(first.best);
+  EXPECT_EQ(first.models[*first.best].candidate.name, "coulomb_friction");
+  const RoundResult again = round({}, memory);
+  EXPECT_FALSE(has_scored());
+  expect_same(first, again);
+}
+
+TEST_F(RoundOfAModel, ComputesWhatAnotherDidNotNeed) {
+  RoundMemory memory;
+  const RoundResult all = round({}, memory);
+  RoundOptions options;
+  options.excluded = {all.models[*all.best].candidate};
+  const RoundResult rest = round(options, memory);
+  EXPECT_FALSE(has_scored());
+  RoundMemory none;
+  expect_same(rest, round(options, none));
+  EXPECT_TRUE(has_scored());
+}
+
+TEST_F(RoundOfAModel, RemembersNothingOfAnotherModel) {
+  RoundMemory memory;
+  round({}, memory);
+  model_.fit.parameters.front().value *= 1.0 + 1e-12;
+  round({}, memory);
+  EXPECT_TRUE(has_scored());
+}
+
+}  // namespace
+}  // namespace axisfit
