@@ -128,6 +128,10 @@ double shape_named(std::string_view name, const Candidate& candidate,
 
 }  // namespace
 
+bool Candidate::is_instrument() const {
+  return quantity_list()[strengths.front()].signal.has_value();
+}
+
 bool is_part_of(const Candidate& part, const Candidate& whole) {
   return part.extends == whole.name && whole.extends.empty() &&
          (whole.gives_backlash || quantity_list()[part.strengths.front()].effect ==

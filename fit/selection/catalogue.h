@@ -42,6 +42,8 @@ struct Candidate {
   /// A value of the axis file that is not free: the hypothesis is that it is another.
   bool is_constant = false;
 
+  /// Whether it is in what is read of the machine, not in the machine.
+  bool is_instrument() const;
   std::size_t parameters() const {
     return strengths.size() + (shapes_are_free ? shapes.size() : 0);
   }

@@ -323,12 +323,12 @@ class EffectSelector {
   }
 
   /// Of a model with which most of the error remains, no part is named but what other recordings
-  /// show alike.
+  /// show alike; and no instrument, which takes the blame for a part of the machine in all alike.
   void drop_unreplicated_where_half_remains() {
     const std::optional<Rejection> rejection = rejection_of_all();
     for (std::size_t a = 0; rejection && a < chain_.accepted().size();) {
       const Candidate candidate = chain_.accepted()[a].candidate;
-      if (is_alike_elsewhere(candidate)) {
+      if (!candidate.is_instrument() && is_alike_elsewhere(candidate)) {
         ++a;
         continue;
       }

@@ -264,10 +264,12 @@ TEST(SelectEffects, FindsWhatHidesInTheNoise) {
 }
 
 /// Of two effects that a job lacks one alone leaves most of the error.
-Job two_hidden_effects() {
+Job two_hidden_effects(double friction = 5.0, const std::string& of_instrument = "velocity.gain") {
   Model<double> truth = slide();
-  hidden_effect_named("coulomb_friction").put_into(truth);
-  hidden_effect_named("velocity.gain").put_into(truth);
+  HiddenEffect coulomb = hidden_effect_named("coulomb_friction");
+  coulomb.strengths[0].second = friction;
+  coulomb.put_into(truth);
+  hidden_effect_named(of_instrument).put_into(truth);
   return two_recordings(truth, slide(), {"M", "B_a"});
 }
 
@@ -291,6 +293,17 @@ TEST(SelectEffects, NamesNothingWhereMostRemains) {
   EXPECT_GT(friction->rejection->found, 25.0);
   EXPECT_LT(friction->rejection->found, 50.0);
   EXPECT_EQ(one.result.job.free.size(), job.free.size());
+}
+
+// What the machine lacks looks like an instrument that errs, in all recordings alike.
+TEST(SelectEffects, NamesNoInstrumentWhereMostRemains) {
+  const EffectSelection one = select_one_effect(two_hidden_effects(1.6, "acceleration.bias"));
+  EXPECT_TRUE(accepted(one).empty());
+  const auto bias = std::ranges::find(one.effects, "acceleration.bias",
+                                      [](const EffectTrial& t) { return t.candidate.name; });
+  ASSERT_NE(bias, one.effects.end());
+  ASSERT_TRUE(bias->rejection);
+  EXPECT_EQ(bias->rejection->test, Rejection::Test::share);
 }
 
 TEST(SelectEffects, NamesWhatTwoRecordingsTellAlikeThoughMostRemains) {
