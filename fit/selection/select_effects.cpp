@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <functional>
 #include <optional>
@@ -215,7 +216,10 @@ class EffectSelector {
     tried_ = found.tried;
     ExtendedModel* best = found.best ? &found.models[*found.best] : nullptr;
     for (const ExtendedModel& e : found.models) trials_.record(e, best, round_);
-    if (best == nullptr) return false;
+    if (best == nullptr) {
+      for (const ExtendedModel& e : found.models) note_relative(e);
+      return false;
+    }
     AcceptedEffect accepted{best->candidate, {}, best->replication || best->on_stretches};
     for (const ExtendedModel& e : found.models) {
       if (&e == best || !e.fit.usable || !e.gain.comparable) continue;
@@ -226,6 +230,22 @@ class EffectSelector {
     chain_.append(std::move(accepted), std::move(best->job), std::move(best->fit));
     if (!provisional_) last_valid_ = snapshot();
     return true;
+  }
+
+  /// What gains beside an accepted effect of its kind, and only there, may be what that imitates:
+  /// it becomes its rival.
+  void note_relative(const ExtendedModel& e) {
+    using enum Rejection::Test;
+    constexpr std::array kOfValidation{validation, power, validation_size};
+    if (e.candidate.is_constant || !e.rejection ||
+        std::ranges::find(kOfValidation, e.rejection->test) == kOfValidation.end())
+      return;
+    for (AcceptedEffect& accepted : chain_.accepted()) {
+      const auto is_known = [&](const Rival& r) { return same_effect(r.candidate, e.candidate); };
+      if (accepted.candidate.acts_on == e.candidate.acts_on &&
+          std::ranges::none_of(accepted.rivals, is_known))
+        accepted.rivals.push_back({e.candidate, candidate_values(e.job, e.fit, e.candidate)});
+    }
   }
 
   /// Strikes an accepted effect off, for what its trial says already, and what is part of it.
