@@ -93,6 +93,18 @@ double bic_difference(const std::vector<ResidualSeries>& best, std::size_t best_
                     std::log(std::max(2.0, samples));
 }
 
+double least_bic_difference(const std::vector<ResidualSeries>& best, double more_parameters) {
+  double gain = 0.0, samples = 0.0;
+  for (const ResidualSeries& series : best) {
+    if (series.noise == NoiseSource::fit) return -INFINITY;
+    const double independent =
+        static_cast<double>(series.values.size()) / autocorrelation_time(series.values);
+    gain += std::max(0.0, 1.0 - 1.0 / mean_square(series.values)) * independent;
+    samples += independent;
+  }
+  return more_parameters * std::log(std::max(2.0, samples)) - gain;
+}
+
 bool is_clearly_worse(double bic_difference) { return bic_difference > 2.0 * std::log(100.0); }
 
 bool is_needed(const Improvement& gain, std::size_t parameters, bool replicates) {

@@ -39,6 +39,11 @@ Improvement improvement(const std::vector<ResidualSeries>& before,
 double bic_difference(const std::vector<ResidualSeries>& best, std::size_t best_parameters,
                       const std::vector<ResidualSeries>& other, std::size_t other_parameters);
 
+/// About what bic_difference() is to the model of these residuals, of another with so many
+/// parameters more that leaves nothing but noise. Minus infinity where the size of the noise is not
+/// known.
+double least_bic_difference(const std::vector<ResidualSeries>& best, double more_parameters);
+
 /// Whether a difference of that is ground for a preference: odds of more than a hundred to one.
 bool is_clearly_worse(double bic_difference);
 

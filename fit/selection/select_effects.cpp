@@ -82,7 +82,7 @@ class EffectSelector {
     if (explained()) return;
     SearchState strict = snapshot();
     provisional_ = true;
-    search_together();
+    search_together(strict.chain.accepted());
     provisional_ = false;
     if (!is_better(current(), strict.chain.current())) restore(std::move(strict));
     last_valid_ = snapshot();
@@ -95,7 +95,7 @@ class EffectSelector {
     // A simulation that tracks the data shows a curve also beside effects that imitate a part of
     // it.
     const bool tracks = declared_job().options.observer == ObserverMode::fixed;
-    if (named.chain.accepted().empty() || (tracks && !appends)) return;
+    if (named.chain.accepted().empty() || (tracks && !appends) || !can_gain_by_a_curve()) return;
     provisional_ = true;
     restart(chain_.declared());
     if (!round(true)) return restore(appended);
@@ -108,6 +108,17 @@ class EffectSelector {
                                          residual_series(current().job, current().fit));
     const bool is_proven = gain.comparable && gain.p_value < kChance;
     if (!is_proven || (loss > 0.0 && (appends || is_clearly_worse(loss)))) restore(appended);
+  }
+
+  /// Whether a model with a curve in the place of the accepted effects could explain the recordings
+  /// about as well, if it left nothing but noise.
+  bool can_gain_by_a_curve() const {
+    constexpr double kOfACurve = 14.0;  // coefficients, at least
+    double more = kOfACurve;
+    for (const AcceptedEffect& a : chain_.accepted())
+      more -= static_cast<double>(a.candidate.parameters());
+    return !is_clearly_worse(
+        least_bic_difference(residual_series(current().job, current().fit), more));
   }
 
   /// By how much b explains the recordings worse than a, parameters counted.
@@ -123,8 +134,9 @@ class EffectSelector {
   /// whichever of them is added, and its residual says little. A simulation that tracks the data
   /// stays near them. So the effects are found and judged while tracking, and then refitted
   /// together free-running. What else is missing counts as noise for each of them: they are judged
-  /// leniently until all are known, and strictly by backward elimination.
-  void search_together() {
+  /// leniently until all are known, and strictly by backward elimination. What is known already has
+  /// been searched on from.
+  void search_together(const std::vector<AcceptedEffect>& known) {
     constexpr double kProvisionalChance = 0.05;
     const SelectionStep declared = chain_.declared();
     const bool is_continued = declared.job.options.observer == ObserverMode::continuation;
@@ -137,8 +149,13 @@ class EffectSelector {
     }
     while (current().fit.usable && has_room() && !explained() && round(false, kProvisionalChance)) {
     }
+    const bool is_new = std::ranges::any_of(chain_.accepted(), [&](const AcceptedEffect& found) {
+      return std::ranges::none_of(known, [&](const AcceptedEffect& other) {
+        return same_effect(found.candidate, other.candidate);
+      });
+    });
+    if (!is_new) return restart(declared);
     if (is_continued) {
-      if (chain_.accepted().empty()) return restart(declared);
       SelectionStep all = chain_.with_accepted(declared.job);
       if (!all.fit.usable) return restart(declared);
       chain_.replace(declared, std::move(all));

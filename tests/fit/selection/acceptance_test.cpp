@@ -246,6 +246,21 @@ TEST(BicDifferenceTest, OfAModelThatFailsIsInfinite) {
   EXPECT_EQ(bic_difference(both, 3, {series(true, noise(1))}, 3), INFINITY);
 }
 
+TEST(BicDifferenceTest, IsAtLeastThatOfAModelThatLeavesNoiseAlone) {
+  const auto wave = pair(with_wave(noise(1), 1.0), with_wave(noise(2), 1.0));
+  const double price = std::log(static_cast<double>(kSamples));
+  for (const double more : {-2.0, 0.0, 14.0}) {
+    const double least = least_bic_difference(wave, more);
+    const auto parameters = static_cast<std::size_t>(5.0 + more);
+    const double of_noise = bic_difference(wave, 5, pair(noise(1), noise(2)), parameters);
+    EXPECT_LT(least, of_noise + std::abs(more)) << more;
+    EXPECT_GT(least, -2.0 * kSamples + more * price) << more;
+  }
+  auto unknown = wave;
+  unknown.front().noise = NoiseSource::fit;
+  EXPECT_EQ(least_bic_difference(unknown, 14.0), -INFINITY);
+}
+
 TEST(BicDifferenceTest, CorrelatedResidualsCountLess) {
   const auto best = pair(held_for_five(noise(1)), held_for_five(noise(2)));
   const auto other = pair(with_wave(best[0].values, 0.5), with_wave(best[1].values, 0.5));
