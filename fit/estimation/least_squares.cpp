@@ -127,6 +127,7 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
  public:
   explicit ParallelEvaluation(const double* u) : u_(u) {}
   void add(const CachedCost* cost) { costs_.push_back(cost); }
+  const std::vector<const CachedCost*>& costs() const { return costs_; }
   void PrepareForEvaluation(bool with_jacobian, bool) override {
     parallel_for(costs_.size(), [&](std::size_t i) { costs_[i]->compute(u_, with_jacobian); });
   }
@@ -281,12 +282,10 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
   ceres::Problem::Options of_problem;
   of_problem.evaluation_callback = &parallel_evaluation;
   ceres::Problem problem(of_problem);
-  std::vector<const CachedCost*> cached_costs;
   for (auto& cost : costs) {
     auto* cached = new CachedCost(std::move(cost));  // the problem's
     problem.AddResidualBlock(cached, nullptr, u);
     parallel_evaluation.add(cached);
-    cached_costs.push_back(cached);
   }
   for (auto& cost : priors_of(space)) problem.AddResidualBlock(cost.release(), nullptr, u);
   if (options.penalize_distance_from_start)
@@ -328,11 +327,11 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
     if (!point.review() && !stopped) break;
   }
   result.reduced_cost = 2.0 * result.cost / problem.NumResiduals();
-  if (result.usable && std::ranges::all_of(cached_costs, [u](const CachedCost* cost) {
-        return cost->knows_jacobian(u);
-      }))
+  const auto& cached = parallel_evaluation.costs();
+  const auto is_known = [u](const CachedCost* cost) { return cost->knows_jacobian(u); };
+  if (result.usable && std::ranges::all_of(cached, is_known))
     result.at_solution = std::make_shared<const Linearization>(
-        evaluated(space, {cached_costs.begin(), cached_costs.end()}, result.u, true));
+        evaluated(space, {cached.begin(), cached.end()}, result.u, true));
   return result;
 }
 

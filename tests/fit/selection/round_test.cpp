@@ -6,19 +6,12 @@
 #include <string>
 
 #include "fit/estimation/estimate.h"
-#include "tests/fit/selection/hidden_effects.h"
+#include "tests/fit/selection/selection.h"
 
 namespace axisfit {
 namespace {
 
 SelectionStep declared_model(const Job& job) { return {"", job, estimate(job)}; }
-
-Job rubbing() {
-  HiddenEffect friction;
-  for (const HiddenEffect& e : hidden_effects())
-    if (e.name == "coulomb_friction") friction = e;
-  return friction.job();
-}
 
 void expect_same(const RoundResult& a, const RoundResult& b) {
   EXPECT_EQ(a.best, b.best);
@@ -40,7 +33,7 @@ class RoundOfAModel : public testing::Test {
   }
   bool has_scored() const { return phases_.contains("scoring effects"); }
 
-  SelectionStep model_ = declared_model(rubbing());
+  SelectionStep model_ = declared_model(hidden_effect_named("coulomb_friction").job());
   std::set<std::string> phases_;
 };
 

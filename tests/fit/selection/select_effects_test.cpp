@@ -285,9 +285,8 @@ TEST(SelectEffects, NamesNothingWhereMostRemains) {
   std::erase_if(job.recordings, [](const Recording& r) { return r.role == Role::validate; });
   const EffectSelection one = select_one_effect(job);
   EXPECT_TRUE(accepted(one).empty());
-  const auto friction = std::ranges::find(one.effects, "coulomb_friction",
-                                          [](const EffectTrial& t) { return t.candidate.name; });
-  ASSERT_NE(friction, one.effects.end());
+  const EffectTrial* friction = trial_of(one, "coulomb_friction");
+  ASSERT_NE(friction, nullptr);
   ASSERT_TRUE(friction->rejection);
   EXPECT_EQ(friction->rejection->test, Rejection::Test::share);
   EXPECT_GT(friction->rejection->found, 25.0);
@@ -299,9 +298,8 @@ TEST(SelectEffects, NamesNothingWhereMostRemains) {
 TEST(SelectEffects, NamesNoInstrumentWhereMostRemains) {
   const EffectSelection one = select_one_effect(two_hidden_effects(1.6, "acceleration.bias"));
   EXPECT_TRUE(accepted(one).empty());
-  const auto bias = std::ranges::find(one.effects, "acceleration.bias",
-                                      [](const EffectTrial& t) { return t.candidate.name; });
-  ASSERT_NE(bias, one.effects.end());
+  const EffectTrial* bias = trial_of(one, "acceleration.bias");
+  ASSERT_NE(bias, nullptr);
   ASSERT_TRUE(bias->rejection);
   EXPECT_EQ(bias->rejection->test, Rejection::Test::share);
 }

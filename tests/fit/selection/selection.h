@@ -27,6 +27,14 @@ inline std::set<std::string> undecided(const EffectSelection& selection) {
   return names(selection, Decision::undecided);
 }
 
+/// Its last trial; null where it had none.
+inline const EffectTrial* trial_of(const EffectSelection& selection, std::string_view name) {
+  const auto found = std::ranges::find(selection.effects, name, [](const EffectTrial& t) {
+    return std::string_view(t.candidate.name);
+  });
+  return found == selection.effects.end() ? nullptr : &*found;
+}
+
 /// Fits, closes the loop, and tells the outcome on the way.
 inline EffectSelection close(const Job& job) {
   const FitResult fit = estimate(job);
