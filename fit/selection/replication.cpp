@@ -22,10 +22,11 @@ bool is_far_from_zero(const Estimate& e, double neutral) {
   return from_neutral(e, neutral) > kFar * e.error;
 }
 
-bool is_near(const Estimate& a, const Estimate& b, double neutral) {
-  constexpr double kErrors = 3.0, kPart = 0.1;
+/// Within their errors, or this part of what they are.
+bool is_near(const Estimate& a, const Estimate& b, double neutral, double part) {
+  constexpr double kErrors = 3.0;
   return std::abs(a.value - b.value) <=
-         std::max(kErrors * std::hypot(a.error, b.error), kPart * from_neutral(a, neutral));
+         std::max(kErrors * std::hypot(a.error, b.error), part * from_neutral(a, neutral));
 }
 
 /// By more than estimates differ that say alike of the same thing.
@@ -93,7 +94,10 @@ Replication replication(const Job& job, const FitResult& fit, const FitResult& e
   bool far_here = false, far_there = false;
   result.is_alike = true;
   for (std::size_t i = 0; i < here.size(); ++i) {
-    result.is_alike = result.is_alike && is_near(here[i], there[i], neutral[i]);
+    // A ripple is known by its period: with another one it is another ripple.
+    const bool is_period = candidate.has_phase && i > 0;
+    result.is_alike =
+        result.is_alike && is_near(here[i], there[i], neutral[i], is_period ? 0.02 : 0.1);
     if (i + (candidate.has_phase ? 1 : 0) >= strengths) continue;
     far_here = far_here || is_far_from_zero(here[i], neutral[i]);
     far_there = far_there || is_far_from_zero(there[i], neutral[i]);

@@ -75,18 +75,25 @@ class RoundTrial {
       memory_.refits.resize(memory_.list->entries.size());
     }
     result_.tried = memory_.list->tried;
-    const double samples = samples_of(before_);
     std::vector<std::size_t> places(memory_.list->entries.size());
     std::iota(places.begin(), places.end(), 0);
     std::erase_if(places, [&](std::size_t place) {
-      const auto& [candidate, score, gain, is_second] = entry(place);
-      const bool is_chance = is_complete_ && gain < least_gain(candidate, samples, result_.tried);
-      const auto is_this = [&other = candidate](const Candidate& c) {
+      const auto is_this = [&other = entry(place).candidate](const Candidate& c) {
         return same_effect(c, other);
       };
-      return is_chance || std::ranges::any_of(options_.excluded, is_this);
+      return is_hopeless(entry(place)) || std::ranges::any_of(options_.excluded, is_this);
     });
     return places;
+  }
+
+  /// Whether the acceptance test would find it no better than chance. What a score promises holds
+  /// to first order; where a shape is free, the refit may find a better one.
+  bool is_hopeless(const ShortlistEntry& entry) const {
+    constexpr double kPart = 0.8, kPartWithShapes = 0.4;
+    const double least = least_gain(entry.candidate, samples_of(before_), result_.tried);
+    if (is_complete_) return entry.gain < least;
+    const bool has_shapes = entry.candidate.shapes_are_free && !entry.candidate.shapes.empty();
+    return entry.promise < (has_shapes ? kPartWithShapes : kPart) * least;
   }
 
   /// What promises little beside the best is refitted only where that does not pass, and what a
@@ -197,6 +204,7 @@ class RoundTrial {
   /// What lowers the error of one recording and not that of another may yet be in both, where
   /// something else differs between them.
   void try_to_replicate(ExtendedModel& e) {
+    if (e.candidate.is_curve) return;  // proves nothing, see replication()
     const std::optional<FitResult> elsewhere = fitted_elsewhere(e);
     if (!elsewhere) return;
     Replication found = replication(e.job, e.fit, *elsewhere, e.candidate);

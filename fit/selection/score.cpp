@@ -106,9 +106,11 @@ class Scorer {
           moved(*setting.candidate, setting.strengths[k], step[static_cast<Eigen::Index>(k)]));
       if (setting.strengths.size() == 1 && (reached[k] < q.lower || reached[k] > q.upper)) return;
     }
-    const double gain = residual_.squaredNorm() - (residual_ + columns * step).squaredNorm();
+    Eigen::VectorXd change = columns * step;
+    const double gain = residual_.squaredNorm() - (residual_ + change).squaredNorm();
     if (!(gain > score.gain)) return;
     score.gain = gain;
+    score.change = std::move(change);
     score.shapes = setting.shapes;
     score.strengths = reached;
     // The free parameters adapt to the effect, no further than a linear step can be trusted.
@@ -287,9 +289,10 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   const Linearization base = linearize(job, space, tracking, rate);
   if (!base.finite) return test;
   const Eigen::MatrixXd basis = basis_of(base.jacobian);
-  const Eigen::VectorXd residual = base.residuals - basis * (basis.transpose() * base.residuals);
-  test.sum_of_squares = residual.squaredNorm();
-  test.mean_square = test.sum_of_squares / static_cast<double>(residual.size());
+  test.residuals = base.residuals - basis * (basis.transpose() * base.residuals);
+  test.series = base.series;
+  test.sum_of_squares = test.residuals.squaredNorm();
+  test.mean_square = test.sum_of_squares / static_cast<double>(test.residuals.size());
   test.usable = std::isfinite(test.sum_of_squares);  // squares may overflow
   if (!test.usable) return test;
   test.candidates =
@@ -297,11 +300,11 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   std::erase_if(test.candidates, [&](const Candidate& c) { return c.is_curve != curves; });
   for (std::size_t c = 0; c < test.candidates.size(); ++c)
     for (const auto& setting : test.candidates[c].settings)
-      test.scores.push_back({c, setting, {}, tracking_values, 0.0});
+      test.scores.push_back({c, setting, {}, tracking_values, 0.0, {}});
 
   const Job fixed = fixed_at(job, tracking_values);
   const EffectColumns columns(fixed, rate, context);
-  Scorer scorer(fixed, space, tracking.u, base, basis, residual);
+  Scorer scorer(fixed, space, tracking.u, base, basis, test.residuals);
   std::vector<EffectSetting> settings;
   std::vector<Score*> of_setting;
   for (Score& score : test.scores) {
@@ -339,6 +342,11 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   probe(rest);
   refine_shapes(fixed, columns, scorer, test);
   std::ranges::stable_sort(test.scores, std::greater{}, &Score::gain);
+  std::vector<bool> is_known(test.candidates.size(), false);
+  for (Score& score : test.scores) {
+    if (is_known[score.candidate]) score.change.resize(0);
+    is_known[score.candidate] = true;
+  }
   return test;
 }
 

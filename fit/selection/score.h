@@ -24,13 +24,16 @@ struct Score {
   std::vector<double> shapes;  ///< the setting tried
   /// Where one step of least squares would put them, and the job's free parameters with them.
   std::vector<double> strengths, values;
-  double gain = 0.0;  ///< fall of the sum of squares that this step promises
+  double gain = 0.0;       ///< fall of the sum of squares that this step promises
+  Eigen::VectorXd change;  ///< of ScoreTest::residuals by it; of the best setting of a candidate
 };
 
 struct ScoreTest {
   bool usable = false;  ///< false: the tracking simulation has no finite residuals
   double sum_of_squares = 0.0;
-  double mean_square = 0.0;  ///< of the tracking simulation's residuals, which noise drives, too
+  double mean_square = 0.0;   ///< of the tracking simulation's residuals, which noise drives, too
+  Eigen::VectorXd residuals;  ///< without what the free parameters can still do
+  std::vector<SeriesRows> series;  ///< theirs
   std::vector<Candidate> candidates;
   std::vector<Score> scores;  ///< of every candidate and setting, the largest gain first
 };

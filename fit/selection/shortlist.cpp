@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "fit/selection/acceptance.h"
 
 namespace axisfit {
 namespace {
@@ -17,6 +18,17 @@ bool nearly_same(const ShortlistEntry& a, const ShortlistEntry& b) {
          });
 }
 
+std::vector<ResidualSeries> series_of(const ScoreTest& test, const Eigen::VectorXd& residuals) {
+  std::vector<ResidualSeries> list;
+  for (const SeriesRows& rows : test.series) {
+    ResidualSeries& series = list.emplace_back();
+    static_cast<SeriesKey&>(series) = {rows.recording, rows.measurement, true};
+    const auto own = residuals.segment(rows.first, rows.count);
+    series.values.assign(own.begin(), own.end());
+  }
+  return list;
+}
+
 /// The best of the scores: no more than `length`, but for those that nearly gain as much.
 std::vector<ShortlistEntry> best_of(const ScoreTest& test, std::size_t length) {
   constexpr double kMinGain = 6.0;  // of a sum of squares: below is chance
@@ -27,6 +39,7 @@ std::vector<ShortlistEntry> best_of(const ScoreTest& test, std::size_t length) {
   const std::size_t most_constants = (length + 1) / 2;
   const double unit = std::max(1.0, test.mean_square);
   const double samples = test.sum_of_squares / std::max(1e-300, test.mean_square);
+  const std::vector<ResidualSeries> before = series_of(test, test.residuals);
   std::vector<ShortlistEntry> taken;
   std::size_t constants = 0;
   for (const Score& score : test.scores) {
@@ -44,7 +57,10 @@ std::vector<ShortlistEntry> best_of(const ScoreTest& test, std::size_t length) {
             taken, [&](const ShortlistEntry& p) { return same_effect(p.candidate, candidate); }))
       continue;
     constants += candidate.is_constant ? 1 : 0;
-    taken.push_back({candidate, score, score.gain / unit});
+    const double promise =
+        improvement(before, series_of(test, test.residuals + score.change)).fit_gain;
+    taken.push_back({candidate, score, score.gain / unit, promise});
+    taken.back().score.change.resize(0);
   }
   // What a simpler one gains as well, more parameters gain by chance.
   for (ShortlistEntry& entry : taken)

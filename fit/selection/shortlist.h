@@ -12,7 +12,8 @@ namespace axisfit {
 struct ShortlistEntry {
   Candidate candidate;
   Score score;
-  double gain = 0.0;  ///< the score's, in units of the residuals' mean square, at least one
+  double gain = 0.0;     ///< the score's, in units of the residuals' mean square, at least one
+  double promise = 0.0;  ///< the same in units of the acceptance test, see Improvement::fit_gain
   /// A simpler one gains as much, so that this is worth a fit only where that one fails.
   bool is_second = false;
 };

@@ -97,7 +97,7 @@ TEST(ReplicationTest, OfAPhaseOnlyTheAmplitudeCounts) {
 }
 
 TEST(ReplicationTest, APeriodMustNotBeAnother) {
-  const auto found = [](double period, double error, double strength = 3.0) {
+  const auto ripples = [](double period, double error, double strength = 3.0) {
     const std::vector<Estimate> a{{"periodic_force.F_s1", 3.0, 0.1},
                                   {"periodic_force.F_c1", 4.0, 0.1},
                                   {"periodic_force.period", 2.1, 0.02}},
@@ -107,8 +107,12 @@ TEST(ReplicationTest, APeriodMustNotBeAnother) {
     Candidate ripple =
         candidate({"periodic_force.F_s1", "periodic_force.F_c1"}, {"periodic_force.period"});
     ripple.has_phase = true;
-    return replication(job_with(a), fit_of(a), fit_of(b), ripple).has_other_period;
+    return replication(job_with(a), fit_of(a), fit_of(b), ripple);
   };
+  const auto found = [&](auto... of) { return ripples(of...).has_other_period; };
+  EXPECT_TRUE(ripples(2.14, 0.001, -5.0).is_alike);
+  EXPECT_TRUE(ripples(2.25, 0.05, -5.0).is_alike);
+  EXPECT_FALSE(ripples(2.25, 0.01, -5.0).is_alike) << "a tenth is much of a period";
   EXPECT_TRUE(found(1.3, 0.05));
   EXPECT_FALSE(found(2.2, 0.05));
   EXPECT_FALSE(found(1.3, 0.5)) << "nothing is known of it there";

@@ -60,6 +60,30 @@ TEST_F(RoundOfAModel, ComputesWhatAnotherDidNotNeed) {
   EXPECT_TRUE(has_scored());
 }
 
+// A disturbance that no effect of the catalogue makes: some promise a part of what the test asks.
+TEST(RoundTest, RefitsNothingThatIsHopeless) {
+  Job job = two_recordings(slide(), slide(), {"M", "B_a"});
+  for (Recording& r : job.recordings)
+    for (Measurement& m : r.measurements) {
+      std::vector<double> values(m.values);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] += 3.0 * m.sigma * std::sin(20.0 * r.times[i] * r.times[i]);
+      m.values = values;
+    }
+  RoundMemory memory;
+  const RoundResult found = try_round(declared_model(job), {}, memory, {});
+  EXPECT_FALSE(found.best);
+  ASSERT_TRUE(memory.list);
+  std::size_t hopeless = 0;
+  for (std::size_t i = 0; i < memory.refits.size(); ++i) {
+    const ShortlistEntry& entry = memory.list->entries[i];
+    const double least = least_gain(entry.candidate, 1.0, 1);  // less than any price
+    hopeless += memory.refits[i] ? 0 : 1;
+    if (memory.refits[i]) EXPECT_GT(entry.promise, 0.4 * least) << entry.candidate.name;
+  }
+  EXPECT_GT(hopeless, 0u);
+}
+
 TEST_F(RoundOfAModel, RemembersNothingOfAnotherModel) {
   RoundMemory memory;
   round({}, memory);

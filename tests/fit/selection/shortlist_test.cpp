@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "fit/selection/extended_model.h"
 #include "tests/fit/example.h"
 
 namespace axisfit {
@@ -43,6 +44,23 @@ TEST(Shortlist, HasWhatASimplerEffectGainsAsWellAsSecond) {
   EXPECT_TRUE(names_in(list).contains("dahl_friction"));
   EXPECT_FALSE(first.contains("dahl_friction"));
   EXPECT_FALSE(first.contains("stribeck_friction"));
+}
+
+// In a simulation that tracks, an effect that enters linearly gains what its score promises.
+TEST(Shortlist, PromisesWhatTheAcceptanceTestFinds) {
+  Job job = with_friction(3.0);
+  job.options.observer = ObserverMode::fixed;
+  job.options.observer_gain = 30.0;
+  const FitResult fit = estimate(job);
+  ASSERT_TRUE(fit.usable);
+  const Shortlist list = shortlist(job, values_of(fit), score_gains(job), false, 6);
+  const auto entry = std::ranges::find_if(
+      list.entries, [](const ShortlistEntry& e) { return e.candidate.name == "coulomb_friction"; });
+  ASSERT_NE(entry, list.entries.end());
+  const ExtendedModel refitted = fit_extended_model(
+      job, entry->candidate, entry->score.values, entry->score.strengths, entry->score.shapes, {});
+  const double found = improvement(residual_series(job, fit), refitted.residuals).fit_gain;
+  EXPECT_NEAR(entry->promise, found, 0.1 * found);
 }
 
 // Beyond the first three, and but for delays.
