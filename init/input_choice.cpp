@@ -1,0 +1,308 @@
+#include "init/input_choice.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <span>
+
+#include "fit/data/noise.h"
+#include "fit/data/recording_check.h"
+#include "init/force_balance.h"
+
+namespace axisfit {
+namespace {
+
+/// What a velocity loop is driven by. A position that is asked for counts only where the controller
+/// is known, which makes the command of it.
+std::optional<InputColumn> velocity_input(const RecordingGuess& recording, bool known_controller) {
+  for (const Kind kind : {Kind::set_velocity, Kind::command})
+    if (recording.find(kind)) return InputColumn{"command", kind};
+  if (recording.find(Kind::velocity, true))
+    return InputColumn{"command", Kind::velocity, true, ControllerGains<double>().gain};
+  if (known_controller && recording.find(Kind::position, true) && recording.find(Kind::position))
+    return InputColumn{"position_reference", Kind::position, true};
+  return std::nullopt;
+}
+
+bool moves(const RecordingGuess& recording) {
+  return recording.find(Kind::position) || recording.find(Kind::velocity) ||
+         recording.find(Kind::acceleration);
+}
+
+bool has_input(const RecordingGuess& recording, const InputColumn& input) {
+  return recording.find(input.kind, input.is_setpoint) != nullptr;
+}
+
+/// Values of another clock at these times; each holds until the next.
+std::vector<double> at_times(const std::vector<double>& times, const std::vector<double>& clock,
+                             const std::vector<double>& values, double offset) {
+  std::vector<double> result;
+  for (const double t : times) {
+    const auto next = std::ranges::upper_bound(clock, t - offset) - clock.begin();
+    result.push_back(values[static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - 1, 0))]);
+  }
+  return result;
+}
+
+double best_offset(const DraftRecording& motion, const std::vector<double>& clock,
+                   const std::vector<double>& values) {
+  const RecordingGuess& guess = motion.guess;
+  const GuessedColumn *position = guess.find(Kind::position),
+                      *velocity = guess.find(Kind::velocity);
+  const std::vector<double> none;
+  const std::vector<double>& times = guess.time.values;
+  const auto agreement = [&](double offset) {
+    const auto balance =
+        force_balance(times, position ? position->values : none, velocity ? velocity->values : none,
+                      at_times(times, clock, values, offset));
+    return balance ? std::abs(balance->correlation) : 0.0;
+  };
+  // As if both began together, and from there half of the shorter one to either side, in steps
+  // that become finer.
+  double best = times.front() - clock.front();
+  double step = 0.5 * std::min(times.back() - times.front(), clock.back() - clock.front()) / 50.0;
+  double found = agreement(best);
+  for (int range = 50; step > 1e-4; range = 10, step /= 5.0) {
+    const double middle = best;
+    for (int k = -range; k <= range; ++k)
+      if (const double here = agreement(middle + k * step); here > found) {
+        found = here;
+        best = middle + k * step;
+      }
+  }
+  return best;
+}
+
+/// The job takes a part of a rating as it is, where the drive does.
+void write_rating(const JobDraft& draft, DraftRecording& recording) {
+  if (!recording.input || !recording.input_column().of_rating || draft.command_unit() != "1")
+    return;
+  GuessedColumn& input = *recording.guess.find(recording.input->kind, recording.input->is_setpoint);
+  constexpr double kPercent = 0.01;
+  input.unit = std::string("%");  // of a char array g++ 12 warns without reason
+  for (double& x : input.values) x *= kPercent;
+  std::erase_if(input.reasons, [](const std::string& r) { return r.starts_with(kInPercent); });
+  input.guessed = false;
+}
+
+/// How the input of a recording goes with the motion: near one where it drives it, near minus one
+/// where it is recorded with the other sign.
+std::optional<double> agreement(const JobDraft& draft, const DraftRecording& recording) {
+  if (draft.is_force_driven()) {
+    const auto balance = draft.balance_of(recording);
+    return balance ? std::optional(balance->correlation) : std::nullopt;
+  }
+  const GuessedColumn* position = recording.guess.find(Kind::position);
+  if (position == nullptr || recording.input->key != std::string_view("command")) return {};
+  const auto found = rate_ratio(recording.guess.time.values, position->values, recording.driving());
+  return found ? std::optional(found->correlation) : std::nullopt;
+}
+
+/// By how much the velocity comes behind the derivative of the position, s, where it clearly does
+/// by two samples or more; or else zero.
+double lateness(const RecordingGuess& recording) {
+  const GuessedColumn *position = recording.find(Kind::position),
+                      *velocity = recording.find(Kind::velocity);
+  constexpr std::size_t kMost = 20;
+  const std::size_t n = recording.time.values.size();
+  if (position == nullptr || velocity == nullptr || n < 10 * kMost) return 0.0;
+  /// The part of the velocity that is not that derivative, so many samples before.
+  const auto unlike = [&](std::size_t samples) {
+    const auto found = rate_ratio(std::span(recording.time.values).first(n - samples),
+                                  std::span(position->values).first(n - samples),
+                                  std::span(velocity->values).last(n - samples));
+    return found ? 1.0 - found->correlation * std::abs(found->correlation) : 1.0;
+  };
+  std::size_t best = 0;
+  double least = unlike(0);
+  const double now = least;
+  for (std::size_t samples = 1; samples <= kMost; ++samples)
+    if (const double left = unlike(samples); left < least) {
+      least = left;
+      best = samples;
+    }
+  constexpr double kClear = 0.5;
+  return best >= 2 && least < kClear * now
+             ? static_cast<double>(best) * sampling(recording.time.values).interval
+             : 0.0;
+}
+
+/// Whether the velocity says less than the position, over the time in which an observer follows
+/// them: then the simulation would follow its noise. Drives often compute it from the position.
+bool is_velocity_idle(const RecordingGuess& recording, const std::vector<double>& input) {
+  const GuessedColumn *position = recording.find(Kind::position),
+                      *velocity = recording.find(Kind::velocity);
+  if (position == nullptr || velocity == nullptr) return false;
+  const double rate = suggested_observer_gain(recording.time.values, position->values, {}, input);
+  // The slope of a line through the positions of that time, beside the mean of the velocities.
+  constexpr double kSlope = 3.46, kClear = 2.0;
+  const double noise =
+      std::max(noise_from_differences(position->values), resolution_of(position->values) / kSlope);
+  return noise_from_differences(velocity->values) > kClear * kSlope * noise * rate;
+}
+
+}  // namespace
+
+const std::vector<InputColumn>& force_inputs() {
+  static const std::vector<InputColumn> list{
+      {"drive_force", Kind::force, false},   {"drive_force", Kind::force, true},
+      {"command", Kind::current, false},     {"command", Kind::current, true},
+      {"command", Kind::command, false},     {"command", Kind::motor_voltage, false},
+      {"command", Kind::set_velocity, false}};
+  return list;
+}
+
+std::optional<InputColumn> voltage_input(const RecordingGuess& recording) {
+  if (recording.find(Kind::motor_voltage)) return InputColumn{"command", Kind::motor_voltage};
+  if (recording.find(Kind::position, true) && recording.find(Kind::position))
+    return InputColumn{"position_reference", Kind::position, true};
+  if (recording.find(Kind::command)) return InputColumn{"command", Kind::command};
+  return std::nullopt;
+}
+
+bool has_changing_input(const RecordingGuess& recording, const InputColumn& input) {
+  const GuessedColumn* column = recording.find(input.kind, input.is_setpoint);
+  return column != nullptr && !column->is_constant();
+}
+
+bool is_of_velocity_loop(const RecordingGuess& recording) {
+  return velocity_input(recording, false) &&
+         (recording.find(Kind::tachometer) || recording.find(Kind::preamplifier_voltage) ||
+          std::ranges::none_of(force_inputs(), [&](const InputColumn& input) {
+            return input.kind != Kind::set_velocity && has_input(recording, input);
+          }));
+}
+
+void join_files(JobDraft& draft) {
+  if (draft.recordings.size() != 2) return;
+  const auto driver = std::ranges::find_if(draft.recordings, [](const DraftRecording& s) {
+    return !moves(s.guess) && std::ranges::any_of(force_inputs(), [&](const InputColumn& input) {
+      return has_input(s.guess, input);
+    });
+  });
+  const auto motion = std::ranges::find_if(draft.recordings, [](const DraftRecording& s) {
+    return moves(s.guess) && std::ranges::none_of(force_inputs(), [&](const InputColumn& input) {
+             return has_input(s.guess, input);
+           });
+  });
+  if (driver == draft.recordings.end() || motion == draft.recordings.end()) return;
+  const auto input = std::ranges::find_if(
+      force_inputs(), [&](const InputColumn& i) { return has_input(driver->guess, i); });
+  GuessedColumn column = *driver->guess.find(input->kind, input->is_setpoint);
+  const GuessedColumn& clock = driver->guess.time;
+  const double offset = best_offset(*motion, clock.values, column.values);
+  motion->input_file = driver->file;
+  motion->input_offset = offset;
+  column.clock = clock.column;
+  column.clock_unit = clock.unit;
+  column.values = at_times(motion->guess.time.values, clock.values, column.values, offset);
+  column.reasons.push_back(
+      fmt::format("from {}, whose clock was set {:.6g} s {}: there the force goes best with the "
+                  "acceleration; the delay T_d, which is free, does the rest",
+                  driver->name, std::abs(offset), offset < 0.0 ? "back" : "forward"));
+  column.guessed = true;
+  motion->guess.columns.push_back(std::move(column));
+  draft.joined = true;
+  draft.recordings.erase(driver);
+}
+
+void choose_inputs(JobDraft& draft) {
+  if (!draft.is_force_driven()) {
+    for (DraftRecording& recording : draft.recordings) {
+      recording.input = capabilities(draft.structure).has_back_emf
+                            ? voltage_input(recording.guess)
+                            : velocity_input(recording.guess, !draft.axis.empty());
+      if (!recording.input || recording.input->kind != Kind::velocity) continue;
+      GuessedColumn& column = *recording.guess.find(Kind::velocity, true);
+      column.reasons.push_back(fmt::format("a set velocity, taken as a command of {:g} V per m/s",
+                                           recording.input->gain));
+      column.guessed = true;
+    }
+    return;
+  }
+  const auto of_all = [&](auto&& has) {
+    return std::ranges::find_if(force_inputs(), [&](const InputColumn& input) {
+      return std::ranges::all_of(draft.recordings,
+                                 [&](const DraftRecording& s) { return has(s.guess, input); });
+    });
+  };
+  auto chosen = of_all(has_changing_input);
+  if (chosen == force_inputs().end()) chosen = of_all(has_input);
+  if (chosen == force_inputs().end())
+    chosen = std::ranges::find_if(force_inputs(), [&](const InputColumn& input) {
+      return has_input(draft.recordings.front().guess, input);
+    });
+  for (DraftRecording& recording : draft.recordings)
+    if (chosen != force_inputs().end() && has_input(recording.guess, *chosen)) {
+      recording.input = *chosen;
+      // A part of a rating is a force only once K_f says how large.
+      if (recording.input_column().of_rating) recording.input->key = "command";
+    }
+  if (draft.axis.empty() && chosen != force_inputs().end() && draft.recordings.front().input) {
+    if (draft.recordings.front().input_column().of_rating)
+      draft.structure.drive = Drive::rated_force;
+    else if (chosen->kind == Kind::current)
+      draft.structure.drive = Drive::motor_current;
+  }
+  for (DraftRecording& recording : draft.recordings) write_rating(draft, recording);
+}
+
+void correct_signs(JobDraft& draft) {
+  constexpr double kClear = 0.8, kSome = 0.5;
+  std::map<std::string, std::vector<std::pair<DraftRecording*, double>>> of_column;
+  for (DraftRecording& recording : draft.recordings)
+    of_column[recording.input_column().column].emplace_back(
+        &recording, agreement(draft, recording).value_or(0.0));
+  for (auto& column : of_column) {
+    auto& found = column.second;
+    const auto any = [&](auto&& holds) {
+      return std::ranges::any_of(found, [&](const auto& f) { return holds(f.second); });
+    };
+    if (!any([&](double c) { return c < -kSome; })) continue;
+    const bool turned =
+        any([&](double c) { return c < -kClear; }) && !any([&](double c) { return c > kClear; });
+    std::vector<std::string> each;
+    for (const auto& [recording, correlation] : found)
+      each.push_back(draft.recordings.size() > 1
+                         ? fmt::format("{:.2f} in {}", correlation, recording->name)
+                         : fmt::format("{:.2f}", correlation));
+    const std::string reason =
+        fmt::format("the axis {} in the opposite direction (correlation {}): {}",
+                    draft.is_force_driven() ? "accelerates" : "moves", fmt::join(each, ", "),
+                    turned ? "its sign was inverted" : "is its sign right? It was left as it is");
+    for (auto& [recording, correlation] : found) {
+      GuessedColumn& input =
+          *recording->guess.find(recording->input->kind, recording->input->is_setpoint);
+      if (turned) {
+        input.negative = !input.negative;
+        for (double& x : input.values) x = -x;
+      }
+      input.reasons.push_back(reason);
+      input.guessed = true;
+    }
+  }
+}
+
+void drop_idle_velocities(JobDraft& draft) {
+  for (DraftRecording& recording : draft.recordings) {
+    const GuessedColumn& input = recording.input_column();
+    GuessedColumn* velocity = recording.guess.find(Kind::velocity);
+    if (velocity == nullptr || velocity == &input) continue;
+    const double late = lateness(recording.guess);
+    // The simulation of a direct drive follows the recording.
+    velocity->idle =
+        late > 0.0 || (draft.is_direct() && is_velocity_idle(recording.guess, input.values));
+    if (late > 0.0)
+      velocity->reasons.push_back(
+          fmt::format("not used: it comes {:.2g} ms behind the derivative of the position, as one "
+                      "that a filter has smoothed",
+                      1e3 * late));
+    else if (velocity->idle)
+      velocity->reasons.push_back("not used: the position tells the same more precisely");
+  }
+}
+
+}  // namespace axisfit
