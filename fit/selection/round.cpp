@@ -87,13 +87,12 @@ class RoundTrial {
   }
 
   /// Whether the acceptance test would find it no better than chance. What a score promises holds
-  /// to first order; where a shape is free, the refit may find a better one.
+  /// to first order: the refit may find more, above all of what gains much.
   bool is_hopeless(const ShortlistEntry& entry) const {
-    constexpr double kPart = 0.8, kPartWithShapes = 0.4;
+    constexpr double kPart = 0.4, kMuch = 10.0;
     const double least = least_gain(entry.candidate, samples_of(before_), result_.tried);
     if (is_complete_) return entry.gain < least;
-    const bool has_shapes = entry.candidate.shapes_are_free && !entry.candidate.shapes.empty();
-    return entry.promise < (has_shapes ? kPartWithShapes : kPart) * least;
+    return entry.promise < kPart * least && entry.gain < kMuch * least;
   }
 
   /// What promises little beside the best is refitted only where that does not pass, and what a
