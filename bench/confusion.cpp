@@ -72,14 +72,16 @@ bool changes_dry_friction(const std::string& name) {
          std::ranges::any_of(kEffectTable[*effect].search({}), &SearchEntry::changes_dry_friction);
 }
 
-/// All effects but the curves, dead time and instruments, and at last a curve, which stands for an
-/// effect outside of the catalogue.
+/// All effects but the curves and the gravity of a pendulum, which this axis is not (over a few
+/// hundredths of a radian it is a constant force and a spring); dead time and instruments; and at
+/// last a curve, which stands for an effect outside of the catalogue.
 const std::vector<std::string>& secret_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> list;
     for (const ActsOn place : kPlacesToAct)
       for (const EffectInfo& effect : kEffectTable)
-        if (effect.acts_on == place && !is_curve(effect.name) && stands_alone(effect))
+        if (effect.acts_on == place && !is_curve(effect.name) && stands_alone(effect) &&
+            effect.name != "pendulum_gravity")
           list.emplace_back(effect.name);
     for (const char* other : {"dead_time", "acceleration.bias", "acceleration.gain",
                               "acceleration.lag", "velocity.gain", "velocity.lag", "velocity.delay",

@@ -1,9 +1,9 @@
 """fit-params --close-loop on a case: what it claims, and the force that its model lacks in a recording
-that it has not seen, from the same filtered signals as the alternatives.
+that it has not seen, from the same signals as the alternatives.
 
 Inverse dynamics of the final model: the laws of docs/effects.md with the estimates of result.json. A
-sensor effect changes the signals first, timing shifts them, and a part on a spring is a filter of the
-acceleration.
+sensor effect changes the signals first, timing shifts them, and what is behind a spring or a gap is
+simulated behind the motor's motion.
 """
 import dataclasses
 import json
@@ -12,9 +12,9 @@ import os
 import subprocess
 
 import numpy as np
-from scipy import signal
+from scipy import interpolate, signal
 
-from regression import compared, hysteresis, kinematics
+from regression import hysteresis, kinematics, missing
 
 
 class Unknown(Exception):
@@ -69,11 +69,11 @@ def spline(values, x, low, high):
 
 
 def elastic(k, p):
-    """m_e q'' where q'' + 2 zeta w q' + w^2 q = -a."""
+    """What a part of the mass on a spring makes of the force that it would take if it were rigid."""
     w = 2 * np.pi * p["f_e"]
-    transfer = signal.cont2discrete(([-1.0, 0, 0], [1.0, 2 * p.get("zeta_e", 0.02) * w, w * w]),
-                                    1.0 / k.rate, "bilinear")  # fmt: skip
-    return p["m_e"] * signal.lfilter(transfer[0][0], transfer[1], k.a)
+    part = {"M": p["m_e"], "B_a": 0.0, "H": 0.0, "k_g": p["m_e"] * w * w,
+            "b_g": 2.0 * p.get("zeta_e", 0.02) * w * p["m_e"]}  # fmt: skip
+    return behind_gap(k, part, 0.0, np.zeros_like(k.v)) - p["m_e"] * k.a
 
 
 def curve(of):
@@ -123,25 +123,41 @@ LAWS = {
 
 
 def behind_gap(k, base, dry, others):
-    """The force between the motor, whose motion is recorded, and an arm behind a gap: the arm by small
-    steps, with dry friction that turns round over 0.1 mm/s, and the force of all other laws."""
+    """The force between the motor, whose motion is recorded, and an arm behind a gap, with dry friction
+    that turns round over 0.1 mm/s, and the force of all other laws. The arm by Runge-Kutta steps of the
+    fourth order, the motor between samples by the cubic through its positions and velocities."""
     steps, creep = 40, 1e-4  # per sample, m/s
     h = 1.0 / (k.rate * steps)
-    y, v = k.y[0], k.v[0]
-    carried = np.zeros_like(k.v)
-    for i in range(len(k.v) - 1):
-        for step in range(steps):
-            part = step / steps
-            apart = k.y[i] + part * (k.y[i + 1] - k.y[i]) - y
-            beyond = apart - min(max(apart, -base["H"]), base["H"])
-            f = 0.0
-            if beyond != 0.0 or base["H"] == 0.0:
-                f = base["k_g"] * beyond + base["b_g"] * (k.v[i] + part * (k.v[i + 1] - k.v[i]) - v)
-            if step == 0:
-                carried[i] = f
-            v += h / base["M"] * (f - base["B_a"] * v - others[i] - dry * math.tanh(v / creep))
-            y += h * v
-    return carried
+    course = interpolate.CubicHermiteSpline(k.time, k.y, k.v)
+    at = k.time[0] + 0.5 * h * np.arange(2 * steps * (len(k.time) - 1) + 1)
+    motor_y, motor_v = course(at).tolist(), course.derivative()(at).tolist()
+    loads = np.interp(at, k.time, others).tolist()
+    gap, stiffness, damping = base["H"], base["k_g"], base["b_g"]
+    mass, viscous = base["M"], base["B_a"]
+
+    def gear_force(i, y, v):
+        apart = motor_y[i] - y
+        beyond = apart - min(max(apart, -gap), gap)
+        return stiffness * beyond + damping * (motor_v[i] - v) if beyond or not gap else 0.0
+
+    def rate(i, y, v):
+        return (gear_force(i, y, v) - viscous * v - loads[i] - dry * math.tanh(v / creep)) / mass
+
+    y, v = motor_y[0], motor_v[0]
+    carried = []
+    for i in range(0, len(at) - 1, 2):
+        if i % (2 * steps) == 0:
+            carried.append(gear_force(i, y, v))
+        a1 = rate(i, y, v)
+        v2 = v + 0.5 * h * a1
+        a2 = rate(i + 1, y + 0.5 * h * v, v2)
+        v3 = v + 0.5 * h * a2
+        a3 = rate(i + 1, y + 0.5 * h * v2, v3)
+        v4 = v + h * a3
+        a4 = rate(i + 2, y + h * v3, v4)
+        y += h / 6.0 * (v + 2.0 * (v2 + v3) + v4)
+        v += h / 6.0 * (a1 + 2.0 * (a2 + a3) + a4)
+    return np.array([*carried, gear_force(len(at) - 1, y, v)])
 
 
 ELSEWHERE = ("torque_fade", "force_droop", "drive_lag")  # they change the force that arrives
@@ -158,20 +174,21 @@ def grouped(values):
 
 def corrected(recording, groups):
     """The recording with the effects of its instruments taken back."""
+    instrument = next((groups[name] for name in ("position", "velocity") if name in groups), {})
+    late = instrument.get("delay", 0.0) + instrument.get("lag", 0.0)
     changed = {}
-    for signal_name in ("position", "velocity"):
-        values = getattr(recording, signal_name)
-        instrument = groups.get(signal_name, {})
-        if values is None:
+    for name in ("position", "velocity", "acceleration"):  # one of them is what the instrument shows
+        if (values := getattr(recording, name)) is None:
             continue
-        values = (values - instrument.get("bias", 0.0)) / instrument.get("gain", 1.0)
-        late = instrument.get("delay", 0.0) + instrument.get("lag", 0.0)
-        changed[signal_name] = shifted(values, recording.time, late) if late else values
+        bias = groups.get(name, {}).get("bias", 0.0)
+        values = (values - bias) / instrument.get("gain", 1.0)
+        changed[name] = shifted(values, recording.time, late) if late else values
     return dataclasses.replace(recording, **changed)
 
 
 def lacking(values, recording):
-    """The force in N that a model with these values lacks, in the band in which forces are compared."""
+    """rms in N of the force that a model with these values lacks where the axis moves, in the band in which
+    forces are compared."""
     groups = grouped(values)
     base = groups.get("", {})
     k = kinematics(corrected(recording, groups))
@@ -197,12 +214,12 @@ def lacking(values, recording):
         needed = base["J_m"] * k.a + behind_gap(k, {"H": 0.0, **base}, dry, others)
     else:
         needed = needed + base["M"] * k.a + base["B_a"] * k.v
-    return compared(force - needed, k.rate)
+    return missing(k, force - needed)
 
 
 def held_out(values, recording):
     """rms of `lacking`; not a number for an effect that is not known here."""
     try:
-        return float(np.sqrt(np.mean(lacking(values, recording) ** 2)))
+        return lacking(values, recording)
     except (Unknown, KeyError):
         return np.nan

@@ -1,8 +1,8 @@
 """The cases of the independent generator: machines, motions, recordings, jobs, and the truth.
 
 A case has three recordings of different motions: `fit`, `validate`, and `test`, which no method sees
-and on which all are judged. That one has neither noise nor disturbance, so that its error is the
-model's. Half of the machines are driven by a servo with a position encoder and
+and on which all are judged. That one has neither noise nor disturbance, and its motion is known exactly,
+so that its error is the model's. Half of the machines are driven by a servo with a position encoder and
 fitted with an observer, as --init and the EMPS job do; the others by levels of force, with a recorded
 velocity and a free run. All but the clean ones with white noise may have a coloured disturbance too.
 
@@ -33,6 +33,7 @@ class Recording:
     force: np.ndarray
     position: np.ndarray = None
     velocity: np.ndarray = None
+    acceleration: np.ndarray = None  # of `test` alone, whose motion is known exactly: all three are given
 
 
 @dataclasses.dataclass
@@ -185,7 +186,10 @@ def make(names, count, seed):
         c.recordings = {}
         for role in ROLES:
             log = next(logs)
-            noise = rng.standard_normal((2, len(log["time"]))) * (role != "test")
+            if role == "test":
+                c.recordings[role] = Recording(**log)
+                continue
+            noise = rng.standard_normal((2, len(log["time"])))
             r = Recording(log["time"], log["force"] + c.sigma_force * noise[0])
             if c.setup == "servo":
                 r.position = log["position"] + c.sigma * noise[1]

@@ -24,13 +24,14 @@ from sklearn.linear_model import LassoCV
 CUTOFF = 60.0  # Hz, of the derivatives
 BAND = 20.0  # Hz, in which forces are compared
 RIDGES = (1e-4, 1e-2)  # of stlsq, beside terms of unit size
+LEAST_SPEED = 0.01  # of the largest, at which an axis moves
 EDGE = 0.15  # s, at either end, where filters start
 NAMES = {"M": "a", "B_a": "v", "F_c": "sgn v", "F_0": "1"}  # base terms
 
 
 @dataclasses.dataclass
 class Kinematics:
-    """Filtered signals of a recording at an even rate, and the force as recorded."""
+    """Signals of a recording at an even rate, filtered unless they are exact, and the force as recorded."""
 
     time: np.ndarray
     force: np.ndarray
@@ -42,6 +43,11 @@ class Kinematics:
     @property
     def rate(self):
         return 1.0 / (self.time[1] - self.time[0])
+
+    @property
+    def moves(self):
+        """Where it does: at rest the friction is what the drive makes it."""
+        return np.abs(self.v) > LEAST_SPEED * np.max(np.abs(self.v))
 
 
 def low_pass(values, corner, rate):
@@ -58,6 +64,9 @@ def slope(time, values):
 def kinematics(recording, cutoff=CUTOFF):
     """Position, velocity and acceleration from what is recorded of them."""
     step = recording.time[1] - recording.time[0]
+    if recording.acceleration is not None:
+        return Kinematics(recording.time, recording.force, recording.position, recording.velocity,
+                          recording.acceleration, np.sign(recording.velocity))  # fmt: skip
     if recording.velocity is not None:
         v = low_pass(recording.velocity, cutoff, 1.0 / step)
         y = np.concatenate([[0.0], np.cumsum(0.5 * step * (v[1:] + v[:-1]))])
@@ -76,6 +85,11 @@ def compared(values, rate):
     """Values in the band in which forces are compared, without the edges and decimated."""
     edge, keep = int(EDGE * rate), max(1, int(rate / (3.0 * BAND)))
     return low_pass(values, BAND, rate)[edge:-edge:keep]
+
+
+def missing(k, force):
+    """rms in N of a force that a model lacks where the axis moves, in the band in which forces are compared."""
+    return float(np.sqrt(np.mean(compared(np.where(k.moves, force, 0.0), k.rate) ** 2)))
 
 
 def hysteresis(k, length):
@@ -141,18 +155,24 @@ def candidate_terms(k, s, declared):
 class Problem:
     """Force and terms of a recording to fit and of another to validate, filtered and decimated."""
 
-    def __init__(self, fit, validate, declared):
+    def __init__(self, fit, validate, declared, mass=0.0):
+        """With the base terms that are fitted, and a mass in kg that is taken for known."""
         self.declared = declared
+        self.mass = 0.0 if "M" in declared else mass
         self.scales = scales(fit)
         self.effects = []
         self.force, self.base, self.terms = zip(*(self.filtered(k) for k in (fit, validate)))
 
-    def filtered(self, k):
+    def columns(self, k):
+        """The force less that of the known mass, the base terms and the candidate terms."""
         terms = candidate_terms(k, self.scales, self.declared)
         self.effects = [effect for effect, _, _ in terms]
         base = base_terms(k)
-        columns = np.stack([k.force, *(base[q] for q in self.declared), *(c for *_, c in terms)], -1)
-        columns = compared(columns, k.rate)
+        force = k.force - self.mass * k.a
+        return np.stack([force, *(base[q] for q in self.declared), *(c for *_, c in terms)], -1)
+
+    def filtered(self, k):
+        columns = compared(self.columns(k), k.rate)
         split = 1 + len(self.declared)
         return columns[:, 0], columns[:, 1:split], columns[:, split:]
 
@@ -229,6 +249,7 @@ METHODS = {"stlsq": stlsq, "bic": bic, "lasso": lasso}
 
 def held_out(p, selected, k):
     """rms in N of the force that a selection lacks in a recording that it has not seen."""
-    force, base, terms = p.filtered(k)
-    columns = np.column_stack([base, terms[:, selected]])
-    return float(np.sqrt(np.mean((force - columns @ p.solve(selected)) ** 2)))
+    columns = p.columns(k)
+    split = 1 + len(p.declared)
+    chosen = [*range(1, split), *(split + i for i in selected)]
+    return missing(k, columns[:, 0] - columns[:, chosen] @ p.solve(selected))
