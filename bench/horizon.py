@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""horizon.py BUILD EMPS [HORIZON...]: the free run through EMPS's pulses by models that were fitted to its training record with
-several horizons, and the 95 % band about it: its half width in the median, and how much of the error it holds. EMPS
-is the folder of the benchmark's two MATLAB files. The last line of each model is `horizon: auto`, which knows the
-training record alone."""
+"""horizon.py BUILD EMPS [HORIZON...]: the free run through EMPS's pulses by models that were fitted to its
+training record with several horizons, and the 95 % band about it: its half width in the median, and how much of the
+error it holds. EMPS is the folder of the benchmark's two MATLAB files. The last line of each model is `horizon: auto`,
+which knows the training record alone."""
 import json
 import pathlib
 import re

@@ -80,7 +80,7 @@ double best_offset(const DraftRecording& motion, const std::vector<double>& cloc
 void write_rating(const JobDraft& draft, DraftRecording& recording) {
   if (!recording.input || !recording.input_column().of_rating || draft.command_unit() != "1")
     return;
-  GuessedColumn& input = *recording.guess.find(recording.input->kind, recording.input->is_setpoint);
+  GuessedColumn& input = recording.input_column();
   constexpr double kPercent = 0.01;
   input.unit = std::string("%");  // of a char array g++ 12 warns without reason
   for (double& x : input.values) x *= kPercent;
@@ -274,8 +274,7 @@ void correct_signs(JobDraft& draft) {
                     draft.is_force_driven() ? "accelerates" : "moves", fmt::join(each, ", "),
                     turned ? "its sign was inverted" : "is its sign right? It was left as it is");
     for (auto& [recording, correlation] : found) {
-      GuessedColumn& input =
-          *recording->guess.find(recording->input->kind, recording->input->is_setpoint);
+      GuessedColumn& input = recording->input_column();
       if (turned) {
         input.negative = !input.negative;
         for (double& x : input.values) x = -x;

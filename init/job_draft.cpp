@@ -48,6 +48,10 @@ const GuessedColumn& DraftRecording::input_column() const {
   return *guess.find(input->kind, input->is_setpoint);
 }
 
+GuessedColumn& DraftRecording::input_column() {
+  return *guess.find(input->kind, input->is_setpoint);
+}
+
 std::vector<double> DraftRecording::driving() const {
   std::vector<double> values = input_column().values;
   for (double& x : values) x *= input->gain;

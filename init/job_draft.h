@@ -38,6 +38,7 @@ struct DraftRecording {
 
   /// Once the input is known.
   const GuessedColumn& input_column() const;
+  GuessedColumn& input_column();
   /// Its values, times the gain.
   std::vector<double> driving() const;
   /// Whether what drives the axis was measured, not commanded.

@@ -95,9 +95,9 @@ Replication replication(const Job& job, const FitResult& fit, const FitResult& e
   result.is_alike = true;
   for (std::size_t i = 0; i < here.size(); ++i) {
     // A ripple is known by its period: with another one it is another ripple.
-    const bool is_period = candidate.has_phase && i > 0;
-    result.is_alike =
-        result.is_alike && is_near(here[i], there[i], neutral[i], is_period ? 0.02 : 0.1);
+    constexpr double kPart = 0.1, kPartOfPeriod = 0.02;
+    const double part = candidate.has_phase && i > 0 ? kPartOfPeriod : kPart;
+    result.is_alike = result.is_alike && is_near(here[i], there[i], neutral[i], part);
     if (i + (candidate.has_phase ? 1 : 0) >= strengths) continue;
     far_here = far_here || is_far_from_zero(here[i], neutral[i]);
     far_there = far_there || is_far_from_zero(there[i], neutral[i]);

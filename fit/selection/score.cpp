@@ -342,11 +342,6 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   probe(rest);
   refine_shapes(fixed, columns, scorer, test);
   std::ranges::stable_sort(test.scores, std::greater{}, &Score::gain);
-  std::vector<bool> is_known(test.candidates.size(), false);
-  for (Score& score : test.scores) {
-    if (is_known[score.candidate]) score.change.resize(0);
-    is_known[score.candidate] = true;
-  }
   return test;
 }
 

@@ -25,7 +25,7 @@ struct Score {
   /// Where one step of least squares would put them, and the job's free parameters with them.
   std::vector<double> strengths, values;
   double gain = 0.0;       ///< fall of the sum of squares that this step promises
-  Eigen::VectorXd change;  ///< of ScoreTest::residuals by it; of the best setting of a candidate
+  Eigen::VectorXd change;  ///< of ScoreTest::residuals by it
 };
 
 struct ScoreTest {

@@ -72,16 +72,18 @@ TEST(RoundTest, RefitsNothingThatIsHopeless) {
       m.values = values;
     }
   RoundMemory memory;
-  const RoundResult found = try_round(declared_model(job), {}, memory, {});
+  const SelectionStep model = declared_model(job);
+  const RoundResult found = try_round(model, {}, memory, {});
   EXPECT_FALSE(found.best);
   ASSERT_TRUE(memory.list);
+  const double samples = samples_of(residual_series(model.job, model.fit));
   std::size_t hopeless = 0;
   for (std::size_t i = 0; i < memory.refits.size(); ++i) {
     const ShortlistEntry& entry = memory.list->entries[i];
-    const double least = least_gain(entry.candidate, 1.0, 1);  // less than any price
-    hopeless += memory.refits[i] ? 0 : 1;
-    if (!memory.refits[i]) continue;
-    EXPECT_TRUE(entry.promise > 0.4 * least || entry.gain > 10.0 * least) << entry.candidate.name;
+    const double least = least_gain(entry.candidate, samples, found.tried);
+    const bool may_pass = entry.promise >= 0.4 * least || entry.gain >= 10.0 * least;
+    EXPECT_EQ(memory.refits[i].has_value(), may_pass) << entry.candidate.name;
+    hopeless += may_pass ? 0 : 1;
   }
   EXPECT_GT(hopeless, 0u);
 }
