@@ -92,9 +92,10 @@ const std::vector<std::string>& secret_names() {
   return names;
 }
 
-/// An effect of which nothing else is known: at about its typical strength and shape.
+/// An effect of which nothing else is known: at about its typical strength, at most three times it,
+/// and its typical shape.
 Secret typical_secret(const EffectInfo& effect, Draw& draw) {
-  Secret secret{std::string(effect.name), {}, {}, 1.0};
+  Secret secret{std::string(effect.name), {}, {}, 1.0, 3.0};
   for (const QuantityEntry& entry : quantity_list()) {
     if (entry.group != effect.name) continue;
     const double value = entry.quantity.typical;

@@ -115,7 +115,7 @@ bool WindowStates::improve(const Eigen::VectorXd& residuals, const Columns& deri
   const bool begun = passes_++ > 0;
   if (!begun) derivatives_ = derivatives;
   std::vector<bool> is_better(windows_.size());
-  double all = 0.0, gain = 0.0;
+  double all = 0.0, promised = 0.0;
   for (std::size_t k = 0; k < windows_.size(); ++k) {
     Window& window = windows_[k];
     const Vector2d tried = begun ? Vector2d(window.best + window.step) : window.best;
@@ -127,21 +127,20 @@ bool WindowStates::improve(const Eigen::VectorXd& residuals, const Columns& deri
       window.cost = here;
       const Matrix2d n = normal[k] + Matrix2d(window.weight.asDiagonal());
       window.step = -n.ldlt().solve(gradient[k] + window.weight.cwiseProduct(away));
-      gain += window.step.dot(n * window.step);
+      window.promise = window.step.dot(n * window.step);
     } else {
       window.step *= 0.5;
-      constexpr double kSmall = 1e-6;  // of the deviations
-      if (window.step.cwiseAbs2().dot(window.weight) < kSmall * kSmall) window.step.setZero();
-      gain += window.step.isZero() ? 0.0 : window.cost;  // not known, and worth a look
+      window.promise *= 0.5;
     }
     all += window.cost;
+    promised += window.promise;
   }
   for (Index row = 0; row < residuals.size(); ++row)
     if (is_better[window_of_[static_cast<std::size_t>(row)]])
       derivatives_.row(row) = derivatives.row(row);
-  constexpr double kNothing = 1e-12;
+  constexpr double kNothing = 1e-10;
   constexpr int kMostPasses = 10;
-  const bool goes_on = gain > kNothing * all && passes_ < kMostPasses;
+  const bool goes_on = promised > kNothing * all && passes_ < kMostPasses;
   for (std::size_t k = 0; k < windows_.size(); ++k)
     set_start(k, goes_on ? Vector2d(windows_[k].best + windows_[k].step) : windows_[k].best);
   return goes_on;

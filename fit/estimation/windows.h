@@ -102,6 +102,7 @@ class WindowStates {
     Eigen::Vector2d nominal, best, step;
     Eigen::Vector2d weight;  ///< of the distance from the nominal state
     double cost = 0.0;       ///< of the best
+    double promise = 0.0;    ///< about how much less it is behind the step
   };
   void set_start(std::size_t window, const Eigen::Vector2d& state);
 

@@ -24,6 +24,16 @@ FitResult refit_from(Job job, const std::vector<double>& values, const RunContex
   return refit(job, context);
 }
 
+void resume(ExtendedModel& e, const RunContext& context) {
+  constexpr int kMany = 100;
+  Job near = e.job;
+  set_initial_values(near, values_of(e.fit));
+  if (near.options.observer == ObserverMode::continuation)
+    near.options.observer = ObserverMode::none;
+  e.fit = refit(near, context, kMany);
+  e.residuals = residual_series(e.job, e.fit);
+}
+
 ExtendedModel fit_extended_model(const Job& job, const Candidate& candidate,
                                  const std::vector<double>& values,
                                  const std::vector<double>& strengths,

@@ -34,6 +34,9 @@ ExtendedModel fit_extended_model(const Job& job, const Candidate& candidate,
                                  const std::vector<double>& strengths,
                                  const std::vector<double>& shapes, const RunContext& context = {});
 
+/// Goes on with a refit that ended for want of iterations.
+void resume(ExtendedModel& e, const RunContext& context = {});
+
 /// What a candidate's quantities are in a fitted model that has it.
 struct CandidateValues {
   std::vector<double> strengths, shapes;

@@ -138,8 +138,20 @@ class RoundTrial {
       ExtendedModel& e = models[first + order[k]];
       e = refitted(place);
       judge(e, before_, result_.tried, options_.chance);
+      if (is_cut_short(e)) {
+        resume(e, context_);
+        memory_.refits[place] = e;
+        judge(e, before_, result_.tried, options_.chance);
+      }
       report(1);
     });
+  }
+
+  /// Whether a refit promises to pass, but for want of iterations.
+  bool is_cut_short(const ExtendedModel& e) const {
+    return e.fit.verdict.kind == FitVerdict::Kind::no_minimum && e.gain.comparable &&
+           e.gain.p_value < options_.chance &&
+           e.gain.fit_gain > least_gain(e.candidate, e.gain.samples, result_.tried);
   }
 
   /// With an entry of the shortlist.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/model.h"
+#include "tests/fit/selection/selection.h"
 
 namespace axisfit {
 namespace {
@@ -37,6 +38,23 @@ TEST_F(ShapeAtBoundTest, IsNoneWhereShapesAreNotEstimated) {
   fit_.parameters[2].uncertainty.at_bound = true;
   candidate_.shapes_are_free = false;
   EXPECT_EQ(found(), "");
+}
+
+TEST(Resume, GoesOnToTheMinimum) {
+  const HiddenEffect secret = hidden_effect_named("drive_lag");
+  ExtendedModel e;
+  e.job = two_recordings(secret.truth(), secret.truth(), {"M", "B_a", "drive_lag.T_l"});
+  const FitResult whole = refit(e.job, {}, 100);
+  ASSERT_EQ(whole.status, Status::converged);
+  e.fit = refit(e.job, {}, 1);
+  ASSERT_EQ(e.fit.verdict.kind, FitVerdict::Kind::no_minimum);
+  resume(e);
+  EXPECT_EQ(e.fit.status, Status::converged);
+  EXPECT_NEAR(e.fit.reduced_chi_square, whole.reduced_chi_square, 1e-5);
+  for (std::size_t i = 0; i < e.job.free.size(); ++i)
+    EXPECT_NEAR(e.fit.parameters[i].value, whole.parameters[i].value,
+                0.05 * whole.parameters[i].uncertainty.standard_error);
+  EXPECT_EQ(e.residuals.size(), residual_series(e.job, e.fit).size());
 }
 
 }  // namespace
