@@ -12,6 +12,7 @@
 #include "io/config/channels.h"
 #include "io/config/job_parameters.h"
 #include "io/config/job_recording.h"
+#include "io/config/recording_keys.h"
 
 namespace axisfit {
 namespace {

@@ -8,6 +8,7 @@
 #include "io/config/axis_file.h"
 #include "io/config/channels.h"
 #include "io/config/job_recording.h"
+#include "io/config/recording_keys.h"
 
 namespace axisfit {
 namespace {

@@ -8,8 +8,8 @@
 #include "base/units.h"
 #include "io/config/axis_file.h"
 #include "io/config/channels.h"
-#include "io/config/job_recording.h"
 #include "io/config/motion_file.h"
+#include "io/config/recording_series.h"
 
 namespace axisfit {
 namespace {
