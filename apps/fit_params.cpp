@@ -13,18 +13,16 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
 
 #include "apps/command_line.h"
+#include "apps/first_job.h"
+#include "apps/fit_arguments.h"
 #include "apps/progress.h"
 #include "apps/result_files.h"
 #include "apps/run_options.h"
 #include "base/terminal.h"
-#include "base/text_table.h"
 #include "fit/design/run_time_estimate.h"
 #include "fit/run.h"
-#include "init/machine_choice.h"
-#include "init/starter_axis.h"
 #include "io/config/axis_file.h"
 #include "io/config/config.h"
 #include "io/config/job_file.h"
@@ -78,55 +76,6 @@ void stop_after(double seconds) {
 
 int exit_code_of_stop() { return time_limit_reached ? kTimeLimitReached : kInterrupted; }
 
-struct Arguments {
-  std::string command;             // as one would type it
-  std::vector<std::string> files;  // the job, or the recordings to make one for
-  std::string data;
-  std::string output;
-  std::string from;
-  std::string axis, machine;
-  std::optional<double> gain;        ///< N/V
-  std::vector<std::string> answers;  ///< what columns are
-  std::vector<std::string> others;   ///< axis files to compare with
-  std::string motion;                ///< motion file to predict; "-": none
-  std::vector<std::string> tolerances;
-  bool init = false;
-  bool check = false;
-  RunOptions options;
-  std::optional<double> time_limit;  ///< s
-  bool resume = false;
-  bool json = false;
-  bool quiet = false;
-  bool no_colour = false;
-  std::optional<int> threads, starts;
-  std::optional<std::uint64_t> seed;
-};
-
-constexpr const char* kShortHelp = R"(Usage: fit-params [OPTIONS] JOB.yaml
-
-Examples:
-  fit-params --init step.csv levels.csv    create a job from recordings
-  fit-params job.yaml --check              see what the recordings tell
-  fit-params job.yaml --output results     fit
-
-All options: fit-params --help
-)";
-
-constexpr const char* kExamples = R"(Examples:
-  fit-params --init step.csv levels.csv
-  fit-params configs/jobs/paper.yaml
-  fit-params configs/jobs/close-loop.yaml --close-loop
-  fit-params configs/jobs/paper.yaml --check
-  fit-params configs/jobs/paper.yaml --profile=V_L,k_g
-  fit-params configs/jobs/paper.yaml --suggest-experiment --output results
-  fit-params configs/jobs/paper.yaml --output results --starts 20 --seed 7
-  fit-params configs/jobs/emps.yaml --data ~/Downloads/EMPS
-  fit-params job.yaml --starts 1000 --time-limit 60 --output results
-  fit-params job.yaml --json | jq '.parameters[] | {name, value}'
-
-Exit codes: 0 explained or usable, 2 bad input, 3 model wrong, nothing
-determined or not converged, 124 stopped by the time limit, 130 by Ctrl-C.)";
-
 /// Begins at the values of another axis, as far as it has them, instead of the job's initial ones.
 void start_from(const std::string& axis_file, Job& job) {
   Diagnostics diagnostics;
@@ -148,7 +97,7 @@ void start_from(const std::string& axis_file, Job& job) {
 
 /// Prints the text that `report` makes, which is told whether it may have colours.
 template <class Report>
-void print_report(const Arguments& arguments, Report&& report) {
+void print_report(const FitArguments& arguments, Report&& report) {
   const bool colour = !arguments.no_colour && takes_colour(STDOUT_FILENO);
   const TextWidth narrow(text_width(STDOUT_FILENO));
   const std::string text = report(colour);
@@ -156,7 +105,7 @@ void print_report(const Arguments& arguments, Report&& report) {
 }
 
 /// What the recordings show and can tell, before the fit.
-int check(const Arguments& arguments, const Job& job, std::optional<ProgressLine>& line) {
+int check(const FitArguments& arguments, const Job& job, std::optional<ProgressLine>& line) {
   line->update({"checking what the recordings determine"});
   const Forecast found = forecast(job, draw_start(job, 0));
   const RunTimeEstimate run_time = estimate_run_time(job);
@@ -172,79 +121,8 @@ int check(const Arguments& arguments, const Job& job, std::optional<ProgressLine
   return kUsable;
 }
 
-/// Which axes were tried for recordings, and how they did.
-std::string tried_text(const MachineChoice& choice) {
-  if (choice.tried.size() < 2) return {};
-  std::vector<std::vector<std::string>> rows{{"  axis", "free", "error / noise", ""}};
-  for (const TriedAxis& tried : choice.tried)
-    rows.push_back({tried.name == "mass" ? "  one mass" : "  " + tried.name,
-                    std::to_string(tried.parameters),
-                    tried.error ? fmt::format("{:.3g}", *tried.error) : "no fit",
-                    &tried == &choice.tried.front() ? "chosen" : ""});
-  using enum Alignment;
-  return fmt::format("Axes tried, with the error of {}\n{}",
-                     choice.is_validated ? "the recording that was not fitted" : "what was fitted",
-                     format_table(rows, {left, right, right, left}));
-}
-
-/// A job file for recordings, and an axis file where none is given.
-int init(const Arguments& arguments, std::optional<ProgressLine>& line) {
-  namespace fs = std::filesystem;
-  const fs::path folder = arguments.output.empty() ? "." : arguments.output;
-  std::vector<ColumnAnswer> answers;
-  for (const std::string& text : arguments.answers) answers.push_back(read_answer(text));
-  const bool is_machine = !arguments.machine.empty();
-  MachineChoice choice;
-  if (is_machine || !arguments.axis.empty() || arguments.gain)
-    choice.job = initial_job(arguments.files, is_machine ? arguments.machine : arguments.axis,
-                             folder.string(), arguments.gain, answers, is_machine);
-  else
-    choice =
-        choose_machine(arguments.files, folder.string(), answers,
-                       {.progress = [&](const Progress& progress) { line->update(progress); }});
-  const InitialJob& created = choice.job;
-  const auto path = [&](const std::string& name) {
-    return (folder / name).lexically_normal().string();
-  };
-  line.reset();
-  for (const auto& [name, contents] : created.files)
-    if (fs::exists(path(name)))
-      throw std::runtime_error(
-          fmt::format("{} already exists and would be overwritten: move it, or choose another "
-                      "folder with --output",
-                      path(name)));
-  fs::create_directories(folder);
-  for (const auto& [name, contents] : created.files) write_file(path(name), contents);
-  if (arguments.quiet) return kUsable;
-  std::string text;
-  for (const auto& [name, contents] : created.files) text += fmt::format("Wrote {}\n", path(name));
-  text += tried_text(choice);
-  if (!created.guesses.empty()) text += "Guessed, please check\n";
-  for (const std::string& guess : created.guesses) text += paragraph(guess, 2);
-  const std::string job = path(created.files.back().first);
-  print_error(text + fmt::format("Next: fit-params {} --check\n      fit-params {}\n", job, job));
-  return kUsable;
-}
-
-/// As a shell reads it.
-std::string quoted(const std::string& path) {
-  if (!path.empty() && path.find_first_of(" \t\n'\"\\$&;|<>()*?[]{}`!#~") == std::string::npos)
-    return path;
-  std::string text = path;
-  for (std::size_t at = 0; (at = text.find('\'', at)) != std::string::npos; at += 4)
-    text.replace(at, 1, "'\\''");
-  return "'" + text + "'";
-}
-
-/// The command line, as one would type it.
-std::string command_line_of(int argc, char** argv) {
-  std::string line = "fit-params";
-  for (int i = 1; i < argc; ++i) line += " " + quoted(argv[i]);
-  return line;
-}
-
 /// How to go on after Ctrl-C or the time limit.
-std::string how_to_continue(const Arguments& arguments) {
+std::string how_to_continue(const FitArguments& arguments) {
   if (arguments.output.empty())
     return "\n" + paragraph(
                       "Nothing was saved. With --output FOLDER, results are saved even when a run "
@@ -253,12 +131,12 @@ std::string how_to_continue(const Arguments& arguments) {
                      arguments.resume ? "" : " --resume");
 }
 
-void begin_line(const Arguments& arguments, std::optional<ProgressLine>& line) {
+void begin_line(const FitArguments& arguments, std::optional<ProgressLine>& line) {
   line.emplace(!arguments.quiet && is_terminal(STDERR_FILENO));
 }
 
 /// The folder of the results, with the journal of the run in it.
-std::unique_ptr<OutputFolder> open_folder(const Arguments& arguments,
+std::unique_ptr<OutputFolder> open_folder(const FitArguments& arguments,
                                           std::vector<std::string> inputs,
                                           std::optional<ProgressLine>& line) {
   if (arguments.output.empty()) return nullptr;
@@ -301,7 +179,7 @@ bool holds_complete_result(const std::string& folder) {
 }
 
 /// Writes the result, unless that would replace a better one.
-void write(const Arguments& arguments, const JobFile& file, const RunResult& run_result,
+void write(const FitArguments& arguments, const JobFile& file, const RunResult& run_result,
            const std::string& json, OutputFolder& folder) {
   const bool complete = !run_result.interrupted;
   if ((!complete || !run_result.grade.is_usable()) && holds_complete_result(arguments.output)) {
@@ -322,7 +200,7 @@ void write(const Arguments& arguments, const JobFile& file, const RunResult& run
 using Show = std::function<void(const RunResult&, const std::string& json)>;
 
 /// Reads a job, runs it, shows and writes what it found. The exit code; of a check no result.
-int run_job(const Arguments& arguments, std::optional<ProgressLine>& line, const Show& show,
+int run_job(const FitArguments& arguments, std::optional<ProgressLine>& line, const Show& show,
             std::optional<RunResult>& result) {
   JobFile file = read_job_file(arguments.files.front(), arguments.data);
   if (!arguments.from.empty()) start_from(arguments.from, file.job);
@@ -365,7 +243,8 @@ int run_job(const Arguments& arguments, std::optional<ProgressLine>& line, const
 
 /// One job after the other, each with a folder of its own below that of the results. The exit code
 /// is the first that is not kUsable.
-int run_axes(const Arguments& arguments, const AxesJob& axes, std::optional<ProgressLine>& line) {
+int run_axes(const FitArguments& arguments, const AxesJob& axes,
+             std::optional<ProgressLine>& line) {
   if (!arguments.from.empty())
     throw std::runtime_error(
         "--from has the values of one axis: leave it out, or run the axes' "
@@ -376,7 +255,7 @@ int run_axes(const Arguments& arguments, const AxesJob& axes, std::optional<Prog
   int code = kUsable;
   for (const auto& axis : axes.jobs) {
     const std::string& name = axis.first;
-    Arguments of_axis = arguments;
+    FitArguments of_axis = arguments;
     of_axis.files = {axis.second};
     if (!arguments.output.empty())
       of_axis.output = (std::filesystem::path(arguments.output) / name).string();
@@ -411,11 +290,14 @@ int run_axes(const Arguments& arguments, const AxesJob& axes, std::optional<Prog
   return code;
 }
 
-int run_command(const Arguments& arguments) {
+int run_command(const FitArguments& arguments) {
   std::optional<ProgressLine> line;
   begin_line(arguments, line);
   line->update({"reading the recordings"});
-  if (arguments.init) return init(arguments, line);
+  if (arguments.init) {
+    write_first_job(arguments, line);
+    return kUsable;
+  }
   if (arguments.files.size() > 1)
     throw std::runtime_error(
         fmt::format("only one job file can be given; unexpected: {} (to create a job from "
@@ -442,140 +324,12 @@ int run_command(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Arguments arguments;
+  FitArguments arguments;
   CLI::App app{"Fits the model of a robot axis to recordings, as described by a job file.",
                "fit-params"};
-  app.footer(kExamples);
-  app.add_option("JOB.yaml", arguments.files,
-                 "job file (docs/job-file.md); with --init, recordings (CSV or MATLAB)")
-      ->required();
-  app.option_defaults()->group("Fit");
-  auto* check = app.add_flag("--check", arguments.check,
-                             "do not fit; report what the recordings contain, which free "
-                             "parameters they determine, and how long the fit will take");
-  auto* data = app.add_option("--data", arguments.data,
-                              "folder of the recordings, if not that of the job file")
-                   ->check(kNotEmpty)
-                   ->type_name("FOLDER");
-  auto* from = app.add_option("--from", arguments.from,
-                              "start from the values of this axis file, such as fitted.yaml")
-                   ->check(kNotEmpty)
-                   ->type_name("AXIS.yaml");
-  app.add_option("--starts", arguments.starts,
-                 "number of starts, the first from the initial values; default: as in the job")
-      ->transform(whole_number(1, 1'000'000));
-  app.add_option("--seed", arguments.seed, "seed of the random starts; default: as in the job")
-      ->transform(whole_number<std::uint64_t>(0));
-  std::string profiles;
-  auto* profile =
-      app.add_flag("--profile{all}", profiles,
-                   "likelihood profiles of all parameters, or of some: --profile=NAME,NAME")
-          ->excludes(check);
-  app.add_option("--threads", arguments.threads, "number of threads; default: all cores")
-      ->transform(whole_number(1, 1024));
-  auto* time_limit =
-      app.add_option("--time-limit", arguments.time_limit,
-                     "stop after this many seconds and keep what is finished, as Ctrl-C does")
-          ->check(number(0.001, 1e8))
-          ->excludes(check)
-          ->type_name("SECONDS");
-
-  auto* predict =
-      app.add_flag("--predict{-}", arguments.motion,
-                   "predict the recordings to validate, with 95 % bands, and a motion that nobody "
-                   "recorded: --predict=MOTION.yaml; written to prediction.csv and "
-                   "predicted-motion.csv in --output")
-          ->excludes(check);
-  app.add_option("--within", arguments.tolerances,
-                 "with --predict: say until when the bands are within this error, such as 1mm; may "
-                 "be given for several units")
-      ->needs(predict)
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->type_name("AMOUNT");
-
-  std::string others;
-  auto* compare =
-      app.add_flag("--compare{-}", others,
-                   "compare the models of --close-loop on the recordings to validate, and those of "
-                   "axis files: --compare=FITTED.yaml,FITTED.yaml")
-          ->excludes(check);
-
-  app.option_defaults()->group("Effect selection");
-  auto* close = app.add_flag("--close-loop", arguments.options.select_effects,
-                             "after the fit, add effects that the model lacks, each validated on "
-                             "data that were not fitted")
-                    ->excludes(check);
-  auto* experiment =
-      app.add_flag("--suggest-experiment", arguments.options.suggest_experiment,
-                   "suggest the motion to record next; written to next-motion.yaml in --output")
-          ->excludes(check);
-
-  app.option_defaults()->group("First job");
-  auto* init = app.add_flag("--init", arguments.init,
-                            "create job.yaml and axis.yaml from recordings; columns, units and "
-                            "signals are inferred from names and values")
-                   ->excludes(check)
-                   ->excludes(data)
-                   ->excludes(from)
-                   ->excludes(profile)
-                   ->excludes(time_limit)
-                   ->excludes(close)
-                   ->excludes(experiment)
-                   ->excludes(predict)
-                   ->excludes(compare);
-  auto* axis = app.add_option("--axis", arguments.axis, "with --init: use this axis file")
-                   ->needs(init)
-                   ->check(kNotEmpty)
-                   ->type_name("AXIS.yaml");
-  auto* machine = app.add_option("--machine", arguments.machine,
-                                 "with --init: begin with the axis file of such a machine")
-                      ->needs(init)
-                      ->excludes(axis)
-                      ->check(CLI::IsMember(machine_names()))
-                      ->type_name("NAME");
-  const Quantity& gain = find_quantity("K_f", Joint::revolute)->quantity;
-  app.add_option("--gain", arguments.gain,
-                 "with --init: force in N, or torque in N m, per unit of the recorded current or "
-                 "command, or at 100 % of the rating")
-      ->needs(init)
-      ->excludes(axis)
-      ->excludes(machine)
-      ->check(number(gain.lower, gain.upper))
-      ->type_name("K_f");
-  app.add_option("--column", arguments.answers,
-                 "with --init: what a column is, such as position=\"Geber [Ink]:um/8\"; may be "
-                 "given several times")
-      ->needs(init)
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->type_name("SIGNAL=COLUMN:UNIT");
-
-  app.option_defaults()->group("Results");
-  auto* output = app.add_option("-o,--output", arguments.output,
-                                "folder for report.html, result.json, fitted.yaml and "
-                                "residuals.csv; with --init, for the job")
-                     ->check(kNotEmpty)
-                     ->type_name("FOLDER");
-  app.add_flag("--resume", arguments.resume,
-               "resume a run that was stopped or killed, from its journal in --output")
-      ->needs(output)
-      ->excludes(init)
-      ->excludes(check);
-  auto* json = app.add_flag("--json", arguments.json, "print result.json instead of the tables")
-                   ->excludes(init);
-  app.add_flag("-q,--quiet", arguments.quiet, "print errors only")->excludes(json);
-  app.add_flag("--no-color", arguments.no_colour, "print without colours and bold headings");
-
-  return run_program(app, kShortHelp, argc, argv, [&] {
-    arguments.command = command_line_of(argc, argv);
-    for (std::istringstream names(profiles); std::getline(names, profiles, ',');)
-      arguments.options.profiles.push_back(profiles);
-    arguments.options.predict = predict->count() > 0;
-    arguments.options.compare = compare->count() > 0;
-    if (others != "-")
-      for (std::istringstream names(others); std::getline(names, others, ',');)
-        arguments.others.push_back(others);
+  add_options(app, arguments);
+  return run_program(app, kFitShortHelp, argc, argv, [&] {
+    complete(app, argc, argv, arguments);
     stop_flag = arguments.init || arguments.check;  // there is nothing to keep
     stop_on_signals();
     if (arguments.time_limit) stop_after(*arguments.time_limit);

@@ -1,0 +1,15 @@
+// fit-params --init: a job for recordings.
+#pragma once
+
+#include <optional>
+
+#include "apps/fit_arguments.h"
+#include "apps/progress.h"
+
+namespace axisfit {
+
+/// Writes a job file for recordings, and an axis file where none is given, and says what it
+/// guessed. Throws std::runtime_error where a file would be overwritten.
+void write_first_job(const FitArguments& arguments, std::optional<ProgressLine>& line);
+
+}  // namespace axisfit
