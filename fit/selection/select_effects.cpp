@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "fit/estimation/parameters.h"
+#include "fit/estimation/windows.h"
 #include "fit/residuals/missing_force.h"
 #include "fit/selection/alternatives.h"
 #include "fit/selection/grade.h"
@@ -19,6 +20,27 @@
 
 namespace axisfit {
 namespace {
+
+/// The model, refitted with a simulation that tracks the data.
+SelectionStep tracking(SelectionStep model, const RunContext& context) {
+  FitOptions& options = model.job.options;
+  const double gain = score_gains(model.job).front();
+  options.observer = ObserverMode::fixed;
+  options.observer_gain = gain;
+  options.horizon = 0.0;
+  model.fit = refit_from(model.job, values_of(model.fit), context);
+  return model;
+}
+
+/// Fits with the full accuracy from close by.
+FitResult final_fit(Job job, const std::vector<double>& values, const RunContext& context) {
+  set_initial_values(job, values);
+  job.options.starts = 1;
+  job.options.attempts = 1;
+  if (job.options.observer == ObserverMode::continuation)
+    job.options.observer_gain = score_gains(job).back();
+  return estimate(job, context.quiet());
+}
 
 class EffectSelector {
  public:
@@ -140,13 +162,7 @@ class EffectSelector {
     constexpr double kProvisionalChance = 0.05;
     const SelectionStep declared = chain_.declared();
     const bool is_continued = declared.job.options.observer == ObserverMode::continuation;
-    if (is_continued) {
-      SelectionStep tracking = declared;
-      tracking.job.options.observer = ObserverMode::fixed;
-      tracking.job.options.observer_gain = score_gains(declared.job).front();
-      tracking.fit = refit_from(tracking.job, values_of(declared.fit), context_);
-      restart(std::move(tracking));
-    }
+    if (is_continued) restart(tracking(declared, context_));
     while (current().fit.usable && has_room() && !explained() && round(false, kProvisionalChance)) {
     }
     const bool is_new = std::ranges::any_of(chain_.accepted(), [&](const AcceptedEffect& found) {
@@ -592,14 +608,8 @@ void EffectSelector::finish() {
     last.fit = first_;
   } else if (!result_.interrupted) {
     report_progress("final fit");
-    Job near = last.job;
-    set_initial_values(near, values_of(last.fit));
-    near.options.starts = 1;
-    near.options.attempts = 1;
-    if (near.options.observer == ObserverMode::continuation)
-      near.options.observer_gain = score_gains(near).back();
     try {
-      FitResult exact = estimate(near, context_.quiet());
+      FitResult exact = final_fit(last.job, values_of(last.fit), context_);
       if (exact.usable) last.fit = std::move(exact);
     } catch (const Interrupted&) {
       result_.interrupted = true;
@@ -665,12 +675,52 @@ void EffectSelector::decide() {
   }
 }
 
+/// What was found while the simulation tracked, with the fits that the job asks for.
+void refit_all(EffectSelection& selection, const SelectionStep& declared,
+               const RunContext& context) {
+  std::vector<SelectionStep> models{declared};
+  for (std::size_t i = 1; i < selection.models.size(); ++i) {
+    SelectionStep& model = models.emplace_back(selection.models[i]);
+    if (context.progress) context.progress({.phase = "fitting with " + model.added});
+    model.job.options = declared.job.options;
+    const std::vector<double> values = values_of(model.fit);
+    const bool is_last = i + 1 == selection.models.size();
+    model.fit =
+        is_last ? final_fit(model.job, values, context) : refit_from(model.job, values, context);
+  }
+  selection.models = std::move(models);
+  selection.result = selection.models.back();
+  SelectionVerdict& verdict = selection.verdict;
+  if (selection.models.size() > 1)
+    verdict.validate_percent =
+        improvement(residual_series(declared.job, declared.fit),
+                    residual_series(selection.result.job, selection.result.fit))
+            .validate_percent;
+  using enum SelectionVerdict::Kind;
+  const SelectionStep& last = selection.result;
+  selection.explained = last.fit.usable && explains(last) && verdict.small.empty();
+  if (verdict.kind == nothing_missing && !selection.explained) verdict.kind = none_passes;
+  if (verdict.kind == none_passes && selection.explained) verdict.kind = nothing_missing;
+}
+
 }  // namespace
 
 EffectSelection select_effects(const Job& job, const FitResult& first,
                                const SelectionOptions& options, const RunContext& context) {
   const ThreadPool pool(job.options.threads);
-  return EffectSelector(job, first, options, context).run();
+  if (window_states(job) == 0 || !first.usable)
+    return EffectSelector(job, first, options, context).run();
+  // The states with which windows begin take part of what is missing upon themselves, and every
+  // fit with them takes minutes.
+  const SelectionStep declared{"", job, first};
+  const SelectionStep start = tracking(declared, context);
+  EffectSelection selection = EffectSelector(start.job, start.fit, options, context).run();
+  try {
+    if (!selection.interrupted) refit_all(selection, declared, context);
+  } catch (const Interrupted&) {
+    selection.interrupted = true;
+  }
+  return selection;
 }
 
 }  // namespace axisfit

@@ -100,6 +100,25 @@ TEST(SelectEffects, AddsNothingToAModelThatHasEverything) {
   }
 }
 
+// The search tracks, and what it found is fitted as the job asks for.
+TEST(SelectEffects, FindsEffectsForAFitInWindows) {
+  const HiddenEffect secret = hidden_effect_named("stroke_spring");
+  Job job = secret.job();
+  job.options.horizon = 0.5;
+  const FitResult first = estimate(job);
+  const EffectSelection selection = select_effects(job, first);
+  EXPECT_EQ(accepted(selection), Names{secret.name});
+  EXPECT_TRUE(selection.explained);
+  ASSERT_EQ(selection.models.size(), 2u);
+  EXPECT_EQ(values_of(selection.models.front().fit), values_of(first));
+  for (const SelectionStep& model : selection.models) {
+    EXPECT_EQ(model.job.options.horizon, job.options.horizon);
+    EXPECT_EQ(model.job.options.observer, job.options.observer);
+  }
+  for (const auto& [name, value] : secret.strengths) expect_found(selection, name, value);
+  EXPECT_EQ(selection.result.fit.observer_gain, 0.0);
+}
+
 // The gate, and not only the size of the residual, keeps effects out.
 TEST(SelectEffects, AddsNothingForNoiseThatIsLargerThanStated) {
   Job job = two_recordings(slide(), slide(), {"M", "B_a"});
