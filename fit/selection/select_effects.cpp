@@ -675,32 +675,40 @@ void EffectSelector::decide() {
   }
 }
 
-/// What was found while the simulation tracked, with the fits that the job asks for.
-void refit_all(EffectSelection& selection, const SelectionStep& declared,
-               const RunContext& context) {
-  std::vector<SelectionStep> models{declared};
-  for (std::size_t i = 1; i < selection.models.size(); ++i) {
-    SelectionStep& model = models.emplace_back(selection.models[i]);
-    if (context.progress) context.progress({.phase = "fitting with " + model.added});
+/// What was found while the simulation tracked, with the fits in windows that the job asks for.
+EffectSelection in_windows(EffectSelection selection, const SelectionStep& declared,
+                           const RunContext& context) {
+  std::vector<SelectionStep>& models = selection.models;
+  SelectionStep& last = selection.result;
+  const auto report_progress = [&](const std::string& phase) {
+    if (context.progress) context.progress({.phase = phase});
+  };
+  last.job.options = declared.job.options;
+  report_progress("final fit");
+  last.fit = models.size() > 1 ? final_fit(last.job, values_of(last.fit), context) : declared.fit;
+  for (SelectionStep& model : models) {
     model.job.options = declared.job.options;
-    const std::vector<double> values = values_of(model.fit);
-    const bool is_last = i + 1 == selection.models.size();
-    model.fit =
-        is_last ? final_fit(model.job, values, context) : refit_from(model.job, values, context);
+    // Where blocks are held out, they are left out of these fits alone.
+    const bool is_known = !selection.held_out_blocks;
+    if (is_known && &model == &models.front()) {
+      model.fit = declared.fit;
+    } else if (is_known && &model == &models.back()) {
+      model.fit = last.fit;
+    } else {
+      report_progress(model.added.empty() ? "fitting" : "fitting with " + model.added);
+      model.fit = refit_from(model.job, values_of(model.fit), context);
+    }
   }
-  selection.models = std::move(models);
-  selection.result = selection.models.back();
   SelectionVerdict& verdict = selection.verdict;
-  if (selection.models.size() > 1)
-    verdict.validate_percent =
-        improvement(residual_series(declared.job, declared.fit),
-                    residual_series(selection.result.job, selection.result.fit))
-            .validate_percent;
+  if (models.size() > 1)
+    verdict.validate_percent = improvement(residual_series(models.front().job, models.front().fit),
+                                           residual_series(models.back().job, models.back().fit))
+                                   .validate_percent;
   using enum SelectionVerdict::Kind;
-  const SelectionStep& last = selection.result;
   selection.explained = last.fit.usable && explains(last) && verdict.small.empty();
   if (verdict.kind == nothing_missing && !selection.explained) verdict.kind = none_passes;
   if (verdict.kind == none_passes && selection.explained) verdict.kind = nothing_missing;
+  return selection;
 }
 
 }  // namespace
@@ -716,7 +724,7 @@ EffectSelection select_effects(const Job& job, const FitResult& first,
   const SelectionStep start = tracking(declared, context);
   EffectSelection selection = EffectSelector(start.job, start.fit, options, context).run();
   try {
-    if (!selection.interrupted) refit_all(selection, declared, context);
+    if (!selection.interrupted) selection = in_windows(selection, declared, context);
   } catch (const Interrupted&) {
     selection.interrupted = true;
   }

@@ -119,6 +119,21 @@ TEST(SelectEffects, FindsEffectsForAFitInWindows) {
   EXPECT_EQ(selection.result.fit.observer_gain, 0.0);
 }
 
+TEST(SelectEffects, FitsAllSamplesInWindowsWhereBlocksWereHeldOut) {
+  Job job = hidden_effect_named("stroke_spring").job();
+  job.recordings.resize(1);
+  job.options.horizon = 0.5;
+  const EffectSelection selection = select_effects(job, estimate(job));
+  ASSERT_TRUE(selection.held_out_blocks);
+  ASSERT_EQ(selection.models.size(), 2u);
+  for (const SelectionStep& model : selection.models)
+    EXPECT_FALSE(model.job.recordings[0].held_out.empty());
+  EXPECT_TRUE(selection.result.job.recordings[0].held_out.empty());
+  EXPECT_GT(selection.result.fit.degrees_of_freedom,
+            selection.models.back().fit.degrees_of_freedom);
+  EXPECT_GT(selection.verdict.validate_percent, 10.0);
+}
+
 // The gate, and not only the size of the residual, keeps effects out.
 TEST(SelectEffects, AddsNothingForNoiseThatIsLargerThanStated) {
   Job job = two_recordings(slide(), slide(), {"M", "B_a"});
