@@ -19,7 +19,8 @@ catalogue does not have is right if nothing is claimed.
 The error is the same for all: the rms of the force, up to 20 Hz, that the model lacks where the axis moves, in
 a recording that no method has seen: the drive force less inverse dynamics. The generator knows that motion
 exactly, so that the law itself has no error; signals of a measured machine are filtered first. It is shown
-over that of the declared model, fitted by least squares. Times are processor time of one thread.
+over that of the declared model, fitted by least squares. Times are processor time of one thread;
+with --threads N, which wants --jobs 1, those of axisfit are what N threads take.
 Needs python3-numpy, python3-scipy and python3-sklearn."""
 import argparse
 import concurrent.futures
@@ -71,8 +72,8 @@ def by_regression(recordings, free, methods, mass=0.0):
     return answers
 
 
-def by_axisfit(program, job, folder, test, limit, arguments=(), declared=None):
-    found = axisfit.run(program, job, folder, arguments, limit)
+def by_axisfit(options, job, folder, test, arguments=(), declared=None):
+    found = axisfit.run(options.program, job, folder, arguments, options.limit, options.threads)
     if found is None:
         return Answer([], np.nan, np.nan, note="failed")
     error = axisfit.held_out({**(declared or {}), **found.values}, test)
@@ -96,8 +97,7 @@ def answer(label, case, options):
 
         def work(folder):
             write(case, folder)
-            return by_axisfit(options.program, folder / "job.yaml", folder,
-                              case.recordings["test"], options.limit,
+            return by_axisfit(options, folder / "job.yaml", folder, case.recordings["test"],
                               declared={"M": case.base.mass})  # fmt: skip
 
         answers["axisfit"] = in_folder(options.keep, label, work)
@@ -177,7 +177,7 @@ def print_measured(options):
         answers = by_regression(case.recordings, case.free, others)
         if "axisfit" in options.methods:
             answers["axisfit"] = in_folder(options.keep, case.name, lambda folder: by_axisfit(
-                options.program, case.job(folder), folder, case.recordings["test"], options.limit,
+                options, case.job(folder), folder, case.recordings["test"],
                 case.arguments))  # fmt: skip
         unit = "N" if case.name == "EMPS" else "N m"
         print(f"## {case.name}\n\n| method | error, {unit} | s | claims |\n|---|---|---|---|")
@@ -197,6 +197,7 @@ def arguments():
     parser.add_argument("--methods", nargs="+", choices=methods, default=methods, metavar="METHOD")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="cases at the same time")
+    parser.add_argument("--threads", type=int, default=1, help="of each run of axisfit")
     parser.add_argument("--limit", type=int, default=900, help="s, of one run of axisfit")
     parser.add_argument("--keep", type=pathlib.Path, help="folder for the files of all cases")
     parser.add_argument("--no-measured", action="store_true", help="without EMPS and BAM")

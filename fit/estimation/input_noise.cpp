@@ -46,6 +46,14 @@ std::optional<InputNoise> input_noise(const Job& job, const ParameterSpace& spac
   };
   if (!at.finite || std::ranges::none_of(job.recordings, is_noisy)) return std::nullopt;
   const int draws = job.options.input_noise_draws;
+  // The error of longer steps is in the residuals with noise and without, unless they go astray.
+  Job coarse = job;
+  coarse.options.step *= 2.0;
+  Eigen::VectorXd without = residuals_at(coarse, space, u, observer_gain);
+  if (without.size() != at.residuals.size()) {
+    coarse.options.step = job.options.step;
+    without = at.residuals;
+  }
   InputNoise result;
   result.gradients.setZero(at.jacobian.cols(), draws);
   result.mean_squares.setZero(static_cast<Eigen::Index>(at.series.size()), draws);
@@ -53,10 +61,10 @@ std::optional<InputNoise> input_noise(const Job& job, const ParameterSpace& spac
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(at.jacobian *
                                                        length.cwiseInverse().asDiagonal());
   parallel_for(static_cast<std::size_t>(draws), [&](std::size_t draw) {
-    const Job noisy = with_input_noise(job, draw);
+    const Job noisy = with_input_noise(coarse, draw);
     const Eigen::VectorXd residuals = residuals_at(noisy, space, u, observer_gain);
-    if (residuals.size() != at.residuals.size()) return;  // it does not finish
-    const Eigen::VectorXd change = residuals - at.residuals;
+    if (residuals.size() != without.size()) return;  // it does not finish
+    const Eigen::VectorXd change = residuals - without;
     const auto column = static_cast<Eigen::Index>(draw);
     result.gradients.col(column) = at.jacobian.transpose() * change;
     const Eigen::VectorXd left =

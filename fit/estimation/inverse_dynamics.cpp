@@ -195,10 +195,11 @@ class BalanceCost : public ceres::CostFunction {
       return store(
           imbalance(values), [](double x) { return x; }, residuals, 1);
     std::fill_n(jacobians[0], path_.rows.size() * space_.size(), 0.0);
-    return evaluate_columns(applicable_, [&]<class Jet>(std::span<const std::size_t> columns) {
+    return evaluate_columns(applicable_, [&]<class Jet>(std::span<const std::size_t> columns,
+                                                        bool is_first) {
       const std::vector<Jet> balance = imbalance(with_derivatives<Jet>(values, space_, u, columns));
-      bool finite = store(
-          balance, [](const Jet& x) { return x.a; }, residuals, 1);
+      bool finite = !is_first || store(
+                                     balance, [](const Jet& x) { return x.a; }, residuals, 1);
       for (std::size_t k = 0; k < columns.size(); ++k)
         finite = store(
                      balance, [k](const Jet& x) { return x.v[static_cast<Eigen::Index>(k)]; },

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
+#include <vector>
 
+#include "base/parallel.h"
 #include "fit/estimation/parameters.h"
 #include "sim/scalar.h"
 
@@ -17,9 +19,6 @@ struct ScalarTraits<ceres::Jet<double, N>> {
   static double value(const ceres::Jet<double, N>& x) { return x.a; }
   static bool has_derivative(const ceres::Jet<double, N>& x) { return !x.v.isZero(0.0); }
 };
-
-/// The most dual parts that a number has here.
-inline constexpr int kWidestJet = 24;
 
 /// The model with the derivatives with respect to the u of the parameters `columns`, in this order.
 template <class Jet>
@@ -33,25 +32,27 @@ Model<Jet> with_derivatives(const Model<double>& model, const ParameterSpace& sp
   return differentiated;
 }
 
-/// Calls evaluate.operator()<Jet>(columns) for all columns: in one pass, with the narrowest dual
-/// number that holds them, and in several where the widest does not. Whether all passes returned
-/// true; none follows one that did not. With no columns at all there is one pass.
+/// Calls evaluate.operator()<Jet>(columns, is_first) for all columns: of up to eight in one pass,
+/// with the narrowest dual number that holds them, of more in several, side by side. (Two passes of
+/// eight take no longer than one of sixteen, one after the other.) Whether all passes returned true.
+/// With no columns at all there is one pass.
 template <class Evaluate>
 bool evaluate_columns(std::span<const std::size_t> all, Evaluate&& evaluate) {
-  do {
-    const auto columns = all.first(std::min<std::size_t>(all.size(), kWidestJet));
-    all = all.subspan(columns.size());
+  constexpr std::size_t kMost = 8;
+  const std::size_t passes = std::max<std::size_t>(1, (all.size() + kMost - 1) / kMost);
+  std::vector<char> finished(passes, 0);
+  parallel_for(passes, [&](std::size_t pass) {
+    const std::size_t first = pass * all.size() / passes, end = (pass + 1) * all.size() / passes;
+    const auto columns = all.subspan(first, end - first);
     const std::size_t n = columns.size();
-    const bool finished =
-        n <= 2    ? evaluate.template operator()<ceres::Jet<double, 2>>(columns)
-        : n <= 4  ? evaluate.template operator()<ceres::Jet<double, 4>>(columns)
-        : n <= 6  ? evaluate.template operator()<ceres::Jet<double, 6>>(columns)
-        : n <= 8  ? evaluate.template operator()<ceres::Jet<double, 8>>(columns)
-        : n <= 12 ? evaluate.template operator()<ceres::Jet<double, 12>>(columns)
-                  : evaluate.template operator()<ceres::Jet<double, kWidestJet>>(columns);
-    if (!finished) return false;
-  } while (!all.empty());
-  return true;
+    const bool is_first = pass == 0;
+    finished[pass] =
+        n <= 2   ? evaluate.template operator()<ceres::Jet<double, 2>>(columns, is_first)
+        : n <= 4 ? evaluate.template operator()<ceres::Jet<double, 4>>(columns, is_first)
+        : n <= 6 ? evaluate.template operator()<ceres::Jet<double, 6>>(columns, is_first)
+                 : evaluate.template operator()<ceres::Jet<double, kMost>>(columns, is_first);
+  });
+  return std::ranges::find(finished, 0) == finished.end();
 }
 
 }  // namespace axisfit

@@ -11,6 +11,9 @@
 namespace axisfit {
 namespace {
 
+/// The states that a simulation hands on and two disturbances, at most, and as many columns at once.
+constexpr int kWidestJet = 24;
+
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The measured values that an observer tracks: without the delay of the filter that they went
@@ -252,7 +255,7 @@ bool RecordingCost::compare(Recorder<T>& recorder, double* residuals,
       double r = (m.values[i] - value_of(simulated[i])) / m.sigma, weight = 1.0;
       if (job_.options.loss == Loss::huber)
         std::tie(r, weight) = robust(r, job_.options.huber_width);
-      residuals[row] = r;
+      if (residuals != nullptr) residuals[row] = r;
       finite = finite && std::isfinite(r);
       if constexpr (!std::is_same_v<T, double>) {
         for (std::size_t k = 0; k < derivatives.columns.size(); ++k) {
@@ -277,8 +280,9 @@ bool RecordingCost::Evaluate(double const* const* parameters, double* residuals,
     return evaluate<double>(u, states->starts(), residuals, nullptr, {});
   double* const jacobian = jacobians[0];
   std::fill_n(jacobian, static_cast<std::size_t>(num_residuals()) * space_.size(), 0.0);
-  if (!evaluate_columns(applicable_, [&]<class Jet>(std::span<const std::size_t> columns) {
-        return evaluate<Jet>(u, states->starts(), residuals, jacobian, columns);
+  if (!evaluate_columns(applicable_, [&]<class Jet>(std::span<const std::size_t> columns,
+                                                    bool is_first) {
+        return evaluate<Jet>(u, states->starts(), is_first ? residuals : nullptr, jacobian, columns);
       }))
     return false;
   states->eliminate_from(

@@ -88,12 +88,13 @@ class RecordingCost : public ceres::CostFunction {
     std::size_t stride = 0;
     std::span<const std::size_t> columns;
   };
+  /// Residuals and Jacobian where they are not null.
   template <class T>
   bool evaluate(const double* u, std::span<const WindowStart> starts, double* residuals,
                 double* jacobian, std::span<const std::size_t> columns) const;
   /// The states of the windows that suit the recording best; none where no simulation finishes.
   std::optional<WindowStates> window_states(const double* u) const;
-  /// From what the recorder was shown.
+  /// From what the recorder was shown; residuals may be null.
   template <class T>
   bool compare(Recorder<T>& recorder, double* residuals, const Derivatives& derivatives) const;
   struct Transitions;

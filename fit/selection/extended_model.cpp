@@ -12,8 +12,6 @@ FitResult refit(const Job& job, const RunContext& context, int max_iterations) {
   Job quick = job;
   quick.options = quick_fit(job.options);
   quick.options.max_iterations = std::min(job.options.max_iterations, max_iterations);
-  // Smooth effects are then a few parts in a hundred thousand off, and twice as quick.
-  quick.options.step = 2.0 * job.options.step;
   if (job.options.observer == ObserverMode::continuation)
     quick.options.observer_gain = score_gains(job).front();
   return estimate(quick, context.quiet());

@@ -43,8 +43,14 @@ void ModelChain::replace(SelectionStep declared, SelectionStep last) {
 ModelChain::Neighbours& ModelChain::neighbours() {
   std::vector<double> values = current().values();
   if (values != neighbours_.of || neighbours_.reduced.size() != accepted_.size())
-    neighbours_ = {std::move(values), {accepted_.size(), std::nullopt}, false, std::nullopt};
+    neighbours_ = {.of = std::move(values), .reduced = {accepted_.size(), std::nullopt}};
   return neighbours_;
+}
+
+bool ModelChain::explained() {
+  std::optional<bool>& known = neighbours().explained;
+  if (!known) known = explains(current());
+  return *known;
 }
 
 const SelectionStep& ModelChain::without(std::size_t place) {

@@ -38,8 +38,8 @@ struct AcceptedEffect {
   bool is_seen_elsewhere = false;  ///< it replicates, or held-out stretches show it
 };
 
-/// A value that may be copied, put aside and taken up again. What was fitted beside the last model
-/// (without one of its effects, or to other recordings) is kept until that changes. Not to be used
+/// A value that may be copied, put aside and taken up again. What was found beside the last model
+/// (fits without one of its effects, or to other recordings) is kept until that changes. Not to be used
 /// by several threads at once; its fits share the thread pool.
 class ModelChain {
  public:
@@ -80,18 +80,22 @@ class ModelChain {
   /// where effects were removed or exchanged.
   std::vector<SelectionStep> models() const;
 
+  /// Whether the last model leaves nothing but noise, see explains().
+  bool explained();
+
   /// The last model fitted to the recordings to validate alone, see fit_elsewhere().
   const std::optional<FitResult>& elsewhere();
   /// Whether it was already.
   bool has_elsewhere() { return neighbours().has_elsewhere; }
 
  private:
-  /// What was fitted beside the present model.
+  /// What was found beside the present model.
   struct Neighbours {
     std::vector<double> of;                             ///< values and gain of that model
+    std::optional<bool> explained{};                    ///< takes simulations
     std::vector<std::optional<SelectionStep>> reduced;  ///< without each of the accepted effects
     bool has_elsewhere = false;
-    std::optional<FitResult> elsewhere;
+    std::optional<FitResult> elsewhere{};
   };
   Neighbours& neighbours();
   SelectionStep reduce(std::size_t place) const;

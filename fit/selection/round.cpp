@@ -32,7 +32,7 @@ class RoundTrial {
         options_(options),
         memory_(memory),
         context_(context),
-        is_complete_(explains(model)),
+        is_complete_(options.explained),
         before_(residual_series(model.job, model.fit)) {
     std::vector<double> values = model.values();
     if (values != memory.of) memory = {.of = std::move(values)};

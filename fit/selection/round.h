@@ -18,6 +18,7 @@ struct RoundOptions {
   /// How probable it may be that an effect lowers the validation error by chance.
   double chance = kChance;
   bool held_out_blocks = false;       ///< no recording is to validate, see with_held_out_blocks()
+  bool explained = false;             ///< what explains() says of the model
   std::vector<Candidate> excluded{};  ///< not to be tried
 };
 

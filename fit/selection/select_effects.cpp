@@ -94,7 +94,7 @@ class EffectSelector {
 
   const SelectionStep& current() const { return chain_.current(); }
   const Job& declared_job() const { return chain_.declared().job; }
-  bool explained() const { return explains(current()); }
+  bool explained() { return chain_.explained(); }
 
   /// Adds named effects as long as one passes. If they do not suffice, tries again while the
   /// simulation tracks the data, and then with a curve first: named effects may have imitated part
@@ -244,6 +244,7 @@ class EffectSelector {
                                    .shortlist = options_.shortlist,
                                    .chance = chance,
                                    .held_out_blocks = result_.held_out_blocks,
+                                   .explained = explained(),
                                    .excluded = degenerate_},
                                   curves ? of_curves_ : of_names_, context_);
     tried_ = found.tried;
