@@ -11,7 +11,8 @@
 namespace axisfit {
 namespace {
 
-/// The states that a simulation hands on and two disturbances, at most, and as many columns at once.
+/// The states that a simulation hands on and two disturbances, at most, and as many columns at
+/// once.
 constexpr int kWidestJet = 24;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -280,10 +281,11 @@ bool RecordingCost::Evaluate(double const* const* parameters, double* residuals,
     return evaluate<double>(u, states->starts(), residuals, nullptr, {});
   double* const jacobian = jacobians[0];
   std::fill_n(jacobian, static_cast<std::size_t>(num_residuals()) * space_.size(), 0.0);
-  if (!evaluate_columns(applicable_, [&]<class Jet>(std::span<const std::size_t> columns,
-                                                    bool is_first) {
-        return evaluate<Jet>(u, states->starts(), is_first ? residuals : nullptr, jacobian, columns);
-      }))
+  if (!evaluate_columns(applicable_,
+                        [&]<class Jet>(std::span<const std::size_t> columns, bool is_first) {
+                          return evaluate<Jet>(u, states->starts(), is_first ? residuals : nullptr,
+                                               jacobian, columns);
+                        }))
     return false;
   states->eliminate_from(
       Eigen::Map<RowMajor>(jacobian, num_residuals(), static_cast<Eigen::Index>(space_.size())));

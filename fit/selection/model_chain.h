@@ -39,8 +39,8 @@ struct AcceptedEffect {
 };
 
 /// A value that may be copied, put aside and taken up again. What was found beside the last model
-/// (fits without one of its effects, or to other recordings) is kept until that changes. Not to be used
-/// by several threads at once; its fits share the thread pool.
+/// (fits without one of its effects, or to other recordings) is kept until that changes. Not to be
+/// used by several threads at once; its fits share the thread pool.
 class ModelChain {
  public:
   /// The context must outlive it.

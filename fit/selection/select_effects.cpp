@@ -12,11 +12,11 @@
 #include "base/parallel.h"
 #include "fit/estimation/parameters.h"
 #include "fit/estimation/windows.h"
-#include "fit/residuals/missing_force.h"
-#include "fit/selection/alternatives.h"
-#include "fit/selection/grade.h"
+#include "fit/selection/pruning.h"
+#include "fit/selection/rivals.h"
 #include "fit/selection/round.h"
 #include "fit/selection/score.h"
+#include "fit/selection/verdict.h"
 
 namespace axisfit {
 namespace {
@@ -46,55 +46,47 @@ class EffectSelector {
  public:
   EffectSelector(const Job& job, const FitResult& first, const SelectionOptions& options,
                  const RunContext& context)
-      : options_(options), first_(first), context_(context), chain_({"", job, first}, context) {
+      : options_(options),
+        first_(first),
+        context_(context),
+        state_{ModelChain({"", job, first}, context)} {
     if (std::ranges::none_of(job.recordings,
                              [](const Recording& r) { return r.role == Role::validate; })) {
       result_.held_out_blocks = true;
-      chain_.restart(with_held_out_blocks(chain_.declared(), context));
+      chain().restart(with_held_out_blocks(chain().declared(), context));
     }
   }
 
   EffectSelection run() {
-    last_valid_ = snapshot();
+    last_valid_ = state_;
     if (current().fit.usable) {
       try {
         search();
-        last_valid_ = snapshot();
-        eliminate_backward();
-        drop_imitators();
-        record_rivals();
-        drop_undecided();
-        drop_unreplicated_where_half_remains();
-        drop_other_periods();
-        record_replications();
+        last_valid_ = state_;
+        eliminate_backward(state_, context_);
+        drop_imitators(state_, context_);
+        find_equals();
+        drop_unreplicated_where_half_remains(state_, context_);
+        drop_other_periods(state_, context_);
+        record_replications(state_, context_);
       } catch (const Interrupted&) {
         result_.interrupted = true;
-        restore(std::move(*last_valid_));
-        if (const auto rejection = rejection_of_all()) drop_all(*rejection);
+        state_ = std::move(*last_valid_);
+        if (const auto rejection = rejection_of_all(state_)) state_.take_out_all(*rejection);
       }
-      drop_all_of_a_misfit();
+      if (!explained() && is_misfit(state_, result_.verdict))
+        state_.take_out_all({.test = Rejection::Test::misfit});
     }
     finish();
     return std::move(result_);
   }
 
  private:
-  /// An accepted effect (its place) and another that explains the data as well.
-  struct RivalPair {
-    std::size_t place = 0;
-    Candidate rival;
-    Model<double> model;  ///< fitted with the rival in its place
-  };
-
-  /// Where a search stands.
-  struct SearchState {
-    ModelChain chain;
-    Trials trials;
-  };
-
-  const SelectionStep& current() const { return chain_.current(); }
-  const Job& declared_job() const { return chain_.declared().job; }
-  bool explained() { return chain_.explained(); }
+  ModelChain& chain() { return state_.chain; }
+  const SelectionStep& current() const { return state_.current(); }
+  const std::vector<AcceptedEffect>& accepted() const { return state_.accepted(); }
+  const Job& declared_job() const { return state_.chain.declared().job; }
+  bool explained() { return state_.chain.explained(); }
 
   /// Adds named effects as long as one passes. If they do not suffice, tries again while the
   /// simulation tracks the data, and then with a curve first: named effects may have imitated part
@@ -102,34 +94,37 @@ class EffectSelector {
   void search() {
     search_named();
     if (explained()) return;
-    SearchState strict = snapshot();
+    SearchState strict = state_;
     provisional_ = true;
     search_together(strict.chain.accepted());
     provisional_ = false;
-    if (!is_better(current(), strict.chain.current())) restore(std::move(strict));
-    last_valid_ = snapshot();
+    if (!is_better(current(), strict.chain.current())) state_ = std::move(strict);
+    last_valid_ = state_;
     if (explained()) return;
-    const SearchState named = snapshot();
+    const SearchState named = state_;
     while (has_room() && round(true)) {
     }
-    const SearchState appended = snapshot();
-    const bool appends = chain_.accepted().size() > named.chain.accepted().size();
+    const SearchState appended = state_;
+    const bool appends = accepted().size() > named.chain.accepted().size();
     // A simulation that tracks the data shows a curve also beside effects that imitate a part of
     // it.
     const bool tracks = declared_job().options.observer == ObserverMode::fixed;
     if (named.chain.accepted().empty() || (tracks && !appends) || !can_gain_by_a_curve()) return;
     provisional_ = true;
-    restart(chain_.declared());
-    if (!round(true)) return restore(appended);
+    restart(chain().declared());
+    if (!round(true)) {
+      state_ = appended;
+      return;
+    }
     search_named();
-    eliminate_backward();
+    eliminate_backward(state_, context_);
     const SelectionStep& rival = appended.chain.current();
     const double loss = loss_of(rival, current());
     // A curve has a mean, too: what is not fitted must tell it from a named effect.
     const Improvement gain = improvement(residual_series(rival.job, rival.fit),
                                          residual_series(current().job, current().fit));
     const bool is_proven = gain.comparable && gain.p_value < kChance;
-    if (!is_proven || (loss > 0.0 && (appends || is_clearly_worse(loss)))) restore(appended);
+    if (!is_proven || (loss > 0.0 && (appends || is_clearly_worse(loss)))) state_ = appended;
   }
 
   /// Whether a model with a curve in the place of the accepted effects could explain the recordings
@@ -137,7 +132,7 @@ class EffectSelector {
   bool can_gain_by_a_curve() const {
     constexpr double kOfACurve = 14.0;  // coefficients, at least
     double more = kOfACurve;
-    for (const AcceptedEffect& a : chain_.accepted())
+    for (const AcceptedEffect& a : accepted())
       more -= static_cast<double>(a.candidate.parameters());
     return !is_clearly_worse(
         least_bic_difference(residual_series(current().job, current().fit), more));
@@ -160,67 +155,44 @@ class EffectSelector {
   /// been searched on from.
   void search_together(const std::vector<AcceptedEffect>& known) {
     constexpr double kProvisionalChance = 0.05;
-    const SelectionStep declared = chain_.declared();
+    const SelectionStep declared = chain().declared();
     const bool is_continued = declared.job.options.observer == ObserverMode::continuation;
     if (is_continued) restart(tracking(declared, context_));
     while (current().fit.usable && has_room() && !explained() && round(false, kProvisionalChance)) {
     }
-    const bool is_new = std::ranges::any_of(chain_.accepted(), [&](const AcceptedEffect& found) {
+    const bool is_new = std::ranges::any_of(accepted(), [&](const AcceptedEffect& found) {
       return std::ranges::none_of(known, [&](const AcceptedEffect& other) {
         return same_effect(found.candidate, other.candidate);
       });
     });
     if (!is_new) return restart(declared);
     if (is_continued) {
-      SelectionStep all = chain_.with_accepted(declared.job);
+      SelectionStep all = chain().with_accepted(declared.job);
       if (!all.fit.usable) return restart(declared);
-      chain_.replace(declared, std::move(all));
+      chain().replace(declared, std::move(all));
     }
     search_named();
-    eliminate_backward();
+    eliminate_backward(state_, context_);
   }
   bool has_room() const {
-    return chain_.accepted().size() < static_cast<std::size_t>(options_.max_effects);
+    return accepted().size() < static_cast<std::size_t>(options_.max_effects);
   }
 
   void search_named() {
     swapped_ = false;
+    std::optional<Candidate> degenerate;
     do {
       while (has_room())
         if (!round(false) && !try_swap()) break;
-    } while (drop_degenerate());
+      degenerate = drop_degenerate(state_);
+      if (degenerate) degenerate_.push_back(*degenerate);
+    } while (degenerate);
   }
 
-  /// Takes out what has become a simpler effect beside those accepted after it, and does not try it
-  /// again: the simpler one is in the catalogue. Returns whether there was one.
-  bool drop_degenerate() {
-    for (std::size_t a = 0; a < chain_.accepted().size(); ++a) {
-      const Candidate candidate = chain_.accepted()[a].candidate;
-      const std::string shape = shape_at_bound(current().job, current().fit, candidate);
-      if (shape.empty()) continue;
-      const SelectionStep& reduced = chain_.without(a);
-      if (!reduced.fit.usable) continue;
-      trials_.fail(candidate, {.test = Rejection::Test::bound, .parameter = shape});
-      degenerate_.push_back(candidate);
-      take_out(a, reduced);
-      return true;
-    }
-    return false;
-  }
-
-  SearchState snapshot() const { return {chain_, trials_}; }
-  void restore(SearchState state) {
-    chain_ = std::move(state.chain);
-    trials_ = std::move(state.trials);
-  }
   void restart(SelectionStep declared) {
-    chain_.restart(std::move(declared));
-    trials_ = {};
+    chain().restart(std::move(declared));
+    state_.trials = {};
     degenerate_.clear();
-  }
-
-  void report_progress(const std::string& phase, int done = 0, int of = 0) {
-    if (context_.progress) context_.progress({phase, done, of, current().fit.reduced_chi_square});
   }
 
   /// Adds the effect that explains the most, if one passes. Returns whether one did.
@@ -249,7 +221,7 @@ class EffectSelector {
                                   curves ? of_curves_ : of_names_, context_);
     tried_ = found.tried;
     ExtendedModel* best = found.best ? &found.models[*found.best] : nullptr;
-    for (const ExtendedModel& e : found.models) trials_.record(e, best, round_);
+    for (const ExtendedModel& e : found.models) state_.trials.record(e, best, round_);
     if (best == nullptr) {
       for (const ExtendedModel& e : found.models) note_relative(e);
       return false;
@@ -261,8 +233,8 @@ class EffectSelector {
       if (is_clearly_worse(bic_advantage(*best, e))) continue;
       accepted.rivals.push_back({e.candidate, candidate_values(e.job, e.fit, e.candidate)});
     }
-    chain_.append(std::move(accepted), std::move(best->job), std::move(best->fit));
-    if (!provisional_) last_valid_ = snapshot();
+    chain().append(std::move(accepted), std::move(best->job), std::move(best->fit));
+    if (!provisional_) last_valid_ = state_;
     return true;
   }
 
@@ -274,7 +246,7 @@ class EffectSelector {
     if (e.candidate.is_constant || !e.rejection ||
         std::ranges::find(kOfValidation, e.rejection->test) == kOfValidation.end())
       return;
-    for (AcceptedEffect& accepted : chain_.accepted()) {
+    for (AcceptedEffect& accepted : chain().accepted()) {
       const auto is_known = [&](const Rival& r) { return same_effect(r.candidate, e.candidate); };
       if (accepted.candidate.acts_on == e.candidate.acts_on &&
           std::ranges::none_of(accepted.rivals, is_known))
@@ -282,316 +254,55 @@ class EffectSelector {
     }
   }
 
-  /// Strikes an accepted effect off, for what its trial says already, and what is part of it.
-  void strike_off(std::size_t place) {
-    for (const Candidate& part : chain_.erase(place)) trials_.reject(part, Reason::not_needed);
-  }
-  /// Takes it out of the models; that without it is given.
-  void take_out(std::size_t place, SelectionStep reduced) {
-    strike_off(place);
-    chain_.set_last(std::move(reduced));
-  }
-
-  /// Takes away what is not needed any more, or never was but to a simulation that tracks. Where
-  /// the fit stays far from the noise, what the recordings to validate tell alike beside all other
-  /// effects is needed.
-  void eliminate_backward() {
-    const auto& accepted = chain_.accepted();
-    bool is_far = !explained();
-    const auto is_plain = [&](const AcceptedEffect& effect) {
-      return is_far && is_alike_elsewhere(effect.candidate);
-    };
-    for (std::size_t a = 0; a < accepted.size();) {
-      const Candidate& candidate = accepted[a].candidate;
-      if (is_plain(accepted[a])) {
-        ++a;
-        continue;
-      }
-      report_progress("is " + candidate.name + " necessary?");
-      std::vector<std::size_t> doubted;
-      for (std::size_t b = a; b < accepted.size(); ++b)
-        if (!is_plain(accepted[b])) doubted.push_back(b);
-      chain_.fit_without(doubted);
-      const SelectionStep& reduced = chain_.without(a);
-      const Improvement gain = improvement(residual_series(reduced.job, reduced.fit),
-                                           residual_series(current().job, current().fit));
-      if (!reduced.fit.usable ||
-          is_needed(gain, candidate.parameters(), accepted[a].is_seen_elsewhere)) {
-        ++a;
-        continue;
-      }
-      trials_.reject(candidate, Reason::not_needed);
-      take_out(a, reduced);
-      is_far = !explained();
-      a = 0;
-    }
-  }
-
-  /// Where the fit stays far from the noise, a flexible effect lowers every error a little,
-  /// whatever is missing: named is only what accounts for a good part of it, or what other
-  /// recordings show alike.
-  void drop_imitators() {
-    constexpr double kLeastPercent = 25.0;
-    const auto& accepted = chain_.accepted();
-    while (!accepted.empty() && !explained()) {
-      const auto now = residual_series(current().job, current().fit);
-      std::optional<std::size_t> least;
-      double percent = kLeastPercent;
-      for (std::size_t a = 0; a < accepted.size(); ++a) {
-        const Candidate& candidate = accepted[a].candidate;
-        if (candidate.is_curve || is_alike_elsewhere(candidate)) continue;
-        report_progress("what does " + candidate.name + " explain?");
-        const SelectionStep& reduced = chain_.without(a);
-        const Improvement gain = improvement(residual_series(reduced.job, reduced.fit), now);
-        if (!reduced.fit.usable || gain.missing_percent >= percent) continue;
-        percent = gain.missing_percent;
-        least = a;
-      }
-      if (!least) return;
-      trials_.fail(accepted[*least].candidate, {.test = Rejection::Test::share, .found = percent});
-      take_out(*least, chain_.without(*least));
-    }
-  }
-
-  const std::optional<FitResult>& elsewhere() {
-    if (!chain_.has_elsewhere()) report_progress("do the recordings to validate tell the same?");
-    return chain_.elsewhere();
-  }
-  /// What the recordings to validate, fitted by themselves, say of an effect; nothing where they
-  /// cannot be.
-  std::optional<Replication> found_elsewhere(const Candidate& candidate) {
-    const std::optional<FitResult>& other = elsewhere();
-    if (!other) return std::nullopt;
-    return replication(current().job, current().fit, *other, candidate);
-  }
-  bool is_alike_elsewhere(const Candidate& candidate) {
-    const auto found = found_elsewhere(candidate);
-    return found && found->is_alike;
-  }
-
-  /// What the recordings to validate, fitted by themselves, say of what was accepted.
-  void record_replications() {
-    for (const AcceptedEffect& a : chain_.accepted())
-      if (EffectTrial* trial = trials_.find(a.candidate))
-        if (auto found = found_elsewhere(a.candidate)) trial->replication = std::move(found);
-  }
-
-  /// Of a model with which most of the error remains, no part is named but what other recordings
-  /// show alike; and no instrument, which takes the blame for a part of the machine in all alike.
-  void drop_unreplicated_where_half_remains() {
-    const std::optional<Rejection> rejection = rejection_of_all();
-    for (std::size_t a = 0; rejection && a < chain_.accepted().size();) {
-      const Candidate candidate = chain_.accepted()[a].candidate;
-      if (!candidate.is_instrument() && is_alike_elsewhere(candidate)) {
-        ++a;
-        continue;
-      }
-      trials_.fail(candidate, *rejection);
-      take_out(a, chain_.without(a));
-    }
-  }
-  std::optional<Rejection> rejection_of_all() {
-    constexpr double kLeastPercent = 50.0;
-    if (chain_.accepted().empty() || explained()) return std::nullopt;
-    const double percent = of_all().missing_percent;
-    if (percent >= kLeastPercent) return std::nullopt;
-    return Rejection{.test = Rejection::Test::share, .found = percent};
-  }
-
-  /// A period is what an effect with a phase is known by.
-  void drop_other_periods() {
-    for (std::size_t a = 0; a < chain_.accepted().size();) {
-      const Candidate candidate = chain_.accepted()[a].candidate;
-      const auto found = candidate.has_phase ? found_elsewhere(candidate) : std::nullopt;
-      if (!found || !found->has_other_period) {
-        ++a;
-        continue;
-      }
-      trials_.fail(candidate,
-                   {.test = Rejection::Test::period, .found = found->parameters.back().value});
-      take_out(a, chain_.without(a));
-    }
-  }
-
-  /// A declared parameter at its bound makes up for what it is not, and where most of the drive
-  /// force is missing the simulation is elsewhere: effects then imitate what is wrong with the
-  /// model.
-  void drop_all_of_a_misfit() {
-    if (explained()) return;
-    SelectionVerdict& verdict = result_.verdict;
-    const SelectionStep& last = current();
-    for (std::size_t i = 0; i < declared_job().free.size() && verdict.at_bound.empty(); ++i)
-      if (is_stuck(last.job.free[i], last.fit.parameters[i]))
-        verdict.at_bound = last.fit.parameters[i].name;
-    for (std::size_t r = 0; r < last.job.recordings.size(); ++r) {
-      const double percent = percent_of_drive(missing_force(last.job, last.fit, r));
-      if (percent <= std::max(kLargestForcePercent, verdict.force_percent)) continue;
-      verdict.force_percent = percent;
-      verdict.recording = last.job.recordings[r].name;
-    }
-    if (verdict.at_bound.empty() && verdict.recording.empty()) return;
-    drop_all({.test = Rejection::Test::misfit});
-  }
-  void drop_all(const Rejection& rejection) {
-    for (const AcceptedEffect& a : chain_.accepted()) trials_.fail(a.candidate, rejection);
-    chain_.restart(chain_.declared());
-  }
-
-  /// At a bound that is not the natural end of the quantity, where it has no part in the axis.
-  bool is_stuck(const FreeParameter& free, const ParameterResult& found) const {
-    const double natural = declared_job().entry(free.quantity).quantity.lower;
-    const bool none = free.lower == natural && natural == 0.0 &&
-                      found.value - free.lower < 0.5 * (free.upper - free.lower);
-    return found.uncertainty.at_bound && !none;
-  }
-
-  /// By how much all accepted effects lower the validation error.
-  Improvement of_all() {
-    return improvement(residual_series(declared_job(), chain_.declared().fit),
-                       residual_series(current().job, current().fit));
-  }
-
-  /// Whether all that it does, to first order, is to act later: a delay or a lag.
-  static bool is_delay(const Candidate& candidate) {
-    return !candidate.is_constant && candidate.strengths.size() == 1 &&
-           quantity_list()[candidate.strengths.front()].quantity.unit == "s";
-  }
-  /// Which of two clocks is off matters little: without either, all that is estimated pays for it.
-  /// The chosen one stays, and the other is named beside it.
-  void keep_with_equal(const RivalPair& pair) {
-    trials_.reject(pair.rival, Reason::explains_equally,
-                   chain_.accepted()[pair.place].candidate.name);
-    add_pair(pair);
-  }
-  void add_pair(const RivalPair& pair) {
-    result_.rivals.push_back({chain_.accepted()[pair.place].candidate.name, pair.rival.name,
-                              fitted_model(current().job, current().fit), pair.model});
-  }
-
-  /// An effect that has an equal is not accepted: neither silently.
-  void drop_undecided() {
-    std::set<std::size_t, std::greater<>> places;
-    for (const RivalPair& r : rival_pairs_) {
-      const Candidate& chosen = chain_.accepted()[r.place].candidate;
-      trials_.leave_undecided(chosen, r.rival.name);
-      trials_.leave_undecided(r.rival, chosen.name);
-      add_pair(r);
-      places.insert(r.place);
-    }
-    for (const std::size_t place : places) take_out(place, chain_.without(place));
-  }
-
-  /// The constants that may be wrong in place of one that was corrected.
-  void add_alternatives(AcceptedEffect& accepted) {
-    if (!accepted.candidate.is_constant) return;
-    const Job& job = current().job;
-    for (Alternative& a :
-         alternatives(job, current().fit, accepted.candidate, catalogue(job, {}))) {
-      std::erase_if(accepted.rivals,
-                    [&](const Rival& r) { return same_effect(r.candidate, a.candidate); });
-      accepted.rivals.insert(accepted.rivals.begin(),
-                             {a.candidate, {{a.strength}, {}}, std::move(a.values)});
-    }
-  }
-
-  /// Fits those of an accepted effect's rivals that `counts` in its place, from where all else is.
-  template <class Counts>
-  std::vector<ExtendedModel> fit_rivals(std::size_t place, Counts&& counts) {
-    constexpr std::size_t kMost = 8;
-    std::vector<Rival> rivals = chain_.accepted()[place].rivals;
-    std::erase_if(rivals, [&](const Rival& rival) {
-      return !counts(rival.candidate) ||
-             std::ranges::any_of(chain_.accepted(), [&](const AcceptedEffect& other) {
-               return same_effect(other.candidate, rival.candidate);
-             });
-    });
-    std::vector<ExtendedModel> list(std::min(rivals.size(), kMost));
-    if (list.empty()) return list;
-    const Job others = chain_.job_with_accepted(declared_job(), place);
-    parallel_for(list.size(), [&](std::size_t i) {
-      const Rival& rival = rivals[i];
-      list[i] = fit_extended_model(others, rival.candidate,
-                                   rival.others.empty() ? initial_values(others) : rival.others,
-                                   rival.values.strengths, rival.values.shapes, context_);
-    });
-    std::erase_if(list, [](const ExtendedModel& e) { return !e.fit.usable; });
-    return list;
-  }
-
-  /// By how much it explains the recordings worse than the present model, with these residuals.
-  double loss_with(const ExtendedModel& e, const std::vector<ResidualSeries>& now) const {
-    return bic_difference(now, current().job.free.size(), e.residuals, e.job.free.size());
-  }
-
-  /// Replaces the first accepted effect that has a clearly better rival.
+  /// Exchanges the first accepted effect that has a clearly better rival.
   bool try_swap() {
-    if (chain_.accepted().empty() || swapped_) return false;
+    if (accepted().empty() || swapped_) return false;
     swapped_ = true;
-    const auto now = residual_series(current().job, current().fit);
-    for (std::size_t a = 0; a < chain_.accepted().size(); ++a) {
-      const AcceptedEffect& accepted = chain_.accepted()[a];
-      if (accepted.rivals.empty()) continue;
-      report_progress("any better than " + accepted.candidate.name + "?");
-      for (ExtendedModel& e : fit_rivals(a, [](const Candidate&) { return true; })) {
-        if (!is_clearly_worse(-loss_with(e, now))) continue;
-        const SelectionStep& reduced = chain_.without(a);
-        judge(e, residual_series(reduced.job, reduced.fit), tried_);
-        if (e.rejection) continue;
-        trials_.reject(accepted.candidate, Reason::replaced, e.candidate.name);
-        trials_.record(e, &e, round_);
-        // The exchanged effect goes last, where its parameters are.
-        strike_off(a);
-        chain_.accepted().push_back({e.candidate, {}});
-        chain_.set_last({e.candidate.name, std::move(e.job), std::move(e.fit)});
-        return true;
-      }
-    }
-    return false;
+    std::optional<Exchange> found = better_rival(state_, tried_, context_);
+    if (!found) return false;
+    ExtendedModel& better = found->with_other;
+    state_.trials.reject(accepted()[found->place].candidate, Reason::replaced,
+                         better.candidate.name);
+    state_.trials.record(better, &better, round_);
+    // The exchanged effect goes last, where its parameters are.
+    state_.strike_off(found->place);
+    chain().accepted().push_back({better.candidate, {}});
+    chain().set_last({better.candidate.name, std::move(better.job), std::move(better.fit)});
+    return true;
   }
 
-  /// Whether a rival explains the data as well as an accepted effect, now that all else is known.
-  void record_rivals() {
-    std::vector<AcceptedEffect>& accepted = chain_.accepted();
-    if (!accepted.empty()) report_progress("any equals?");
-    for (AcceptedEffect& effect : accepted) add_alternatives(effect);
-    std::vector<std::vector<ExtendedModel>> rivals(accepted.size());
-    parallel_for(accepted.size(), [&](std::size_t a) {
-      const Candidate& chosen = accepted[a].candidate;
-      rivals[a] = fit_rivals(a, [&](const Candidate& rival) {
-        // A clock that is off has precedence: no part of the machine is its equal.
-        const bool is_behind = chosen.is_timing && !rival.is_timing;
-        return !is_behind && rival.parameters() <= chosen.parameters();
-      });
-    });
-    const auto now = residual_series(current().job, current().fit);
-    for (std::size_t a = 0; a < accepted.size(); ++a) {
-      for (const ExtendedModel& e : rivals[a]) {
-        if (is_clearly_worse(loss_with(e, now))) continue;
-        if (trials_.find(e.candidate) == nullptr) trials_.record(e, &e, round_);
-        RivalPair pair{a, e.candidate, fitted_model(e.job, e.fit)};
-        if (is_delay(accepted[a].candidate) && is_delay(e.candidate))
-          keep_with_equal(pair);
-        else
-          rival_pairs_.push_back(std::move(pair));
+  /// An effect that has an equal is not accepted: neither silently. But which of two clocks is off
+  /// matters little, and without either, all that is estimated pays for it: the chosen one stays,
+  /// and the other is named beside it.
+  void find_equals() {
+    std::set<std::size_t, std::greater<>> undecided;
+    for (const RivalPair& pair : equal_rivals(state_, round_, context_)) {
+      const Candidate& chosen = accepted()[pair.place].candidate;
+      result_.rivals.push_back(
+          {chosen.name, pair.rival.name, fitted_model(current().job, current().fit), pair.model});
+      if (pair.are_delays) {
+        state_.trials.reject(pair.rival, Reason::explains_equally, chosen.name);
+        continue;
       }
+      state_.trials.leave_undecided(chosen, pair.rival.name);
+      state_.trials.leave_undecided(pair.rival, chosen.name);
+      undecided.insert(pair.place);
     }
+    for (const std::size_t place : undecided) state_.take_out(place, chain().without(place));
   }
 
   void finish();
   void propose_closed_forms();
   std::vector<std::string> small_effects() const;
-  void decide();
 
   const SelectionOptions options_;
   const FitResult& first_;
   const RunContext& context_;
   EffectSelection result_;
-  ModelChain chain_;
-  Trials trials_;
+  SearchState state_;
   std::optional<SearchState> last_valid_;  ///< the latest state that can be a result
   bool provisional_ = false;               ///< what is accepted has yet to prove better than that
-  std::vector<RivalPair> rival_pairs_;
-  std::vector<Candidate> degenerate_;  ///< not to be tried again
+  std::vector<Candidate> degenerate_;      ///< not to be tried again
   std::size_t tried_ = 1;
   RoundMemory of_names_, of_curves_;
   int round_ = 0;
@@ -600,15 +311,16 @@ class EffectSelector {
 
 void EffectSelector::finish() {
   result_.verdict.small = small_effects();
-  result_.explained = current().fit.usable && explained() && result_.verdict.small.empty();
+  const bool is_noise = current().fit.usable && explained();
+  result_.explained = is_noise && result_.verdict.small.empty();
   result_.result = current();
   // The refits on the way were content with less, and blocks that were held out count too.
   SelectionStep& last = result_.result;
   for (Recording& r : last.job.recordings) r.held_out.clear();
-  if (chain_.accepted().empty()) {
+  if (accepted().empty()) {
     last.fit = first_;
   } else if (!result_.interrupted) {
-    report_progress("final fit");
+    state_.report_progress(context_, "final fit");
     try {
       FitResult exact = final_fit(last.job, values_of(last.fit), context_);
       if (exact.usable) last.fit = std::move(exact);
@@ -616,25 +328,28 @@ void EffectSelector::finish() {
       result_.interrupted = true;
     }
   }
-  decide();
   try {
     propose_closed_forms();
-    result_.models = chain_.models();
+    result_.models = chain().models();
   } catch (const Interrupted&) {
     result_.interrupted = true;
-    result_.models = {chain_.declared(), current()};
+    result_.models = {chain().declared(), current()};
   }
-  result_.effects = trials_.list();
+  if (chain().declared().fit.usable) {
+    enter_effects(state_, result_.result, result_.verdict);
+    result_.verdict.kind = kind_of(result_, is_noise);
+  }
+  result_.effects = state_.trials.list();
 }
 
 /// For accepted curves, where they pass the test of the curve.
 void EffectSelector::propose_closed_forms() {
-  for (std::size_t a = 0; a < chain_.accepted().size(); ++a) {
-    const Candidate& curve = chain_.accepted()[a].candidate;
-    EffectTrial* trial = trials_.find(curve);
+  for (std::size_t a = 0; a < accepted().size(); ++a) {
+    const Candidate& curve = accepted()[a].candidate;
+    EffectTrial* trial = state_.trials.find(curve);
     if (trial == nullptr || !curve.is_curve) continue;
     auto form = closed_form(result_.result.job, result_.result.fit, curve);
-    if (form && is_confirmed(*form, curve, current(), chain_.without(a), context_))
+    if (form && is_confirmed(*form, curve, current(), chain().without(a), context_))
       trial->closed_form = std::move(form);
   }
 }
@@ -642,38 +357,10 @@ void EffectSelector::propose_closed_forms() {
 /// Effects that were rejected for their size alone, in the last round.
 std::vector<std::string> EffectSelector::small_effects() const {
   std::vector<std::string> names;
-  for (const EffectTrial& t : trials_.list())
+  for (const EffectTrial& t : state_.trials.list())
     if (t.round == round_ && t.rejection && t.rejection->test == Rejection::Test::validation_size)
       names.push_back(t.candidate.name);
   return names;
-}
-
-void EffectSelector::decide() {
-  using enum SelectionVerdict::Kind;
-  SelectionVerdict& verdict = result_.verdict;
-  if (!chain_.declared().fit.usable) return;
-  Model<double> last_model = fitted_model(result_.result.job, result_.result.fit);
-  for (const EffectTrial& t : trials_.list())
-    if (t.decision == Decision::undecided) verdict.undecided.push_back(t.candidate.name);
-  for (const AcceptedEffect& a : chain_.accepted()) {
-    verdict.accepted.push_back(a.candidate.name);
-    if (a.candidate.is_constant)
-      verdict.corrections.push_back({a.candidate.name, a.candidate.neutral.front(),
-                                     *members(last_model)[a.candidate.strengths.front()]});
-  }
-  if (!verdict.accepted.empty()) {
-    verdict.kind = effects_accepted;
-    verdict.validate_percent = of_all().validate_percent;
-  } else if (result_.explained && verdict.undecided.empty()) {
-    verdict.kind = nothing_missing;
-  } else if (!verdict.small.empty() && verdict.undecided.empty() && explained()) {
-    verdict.kind = hardly_anything;
-  } else if (result_.interrupted) {
-    verdict.kind = stopped;
-  } else {
-    const bool is_misfit = !verdict.at_bound.empty() || !verdict.recording.empty();
-    verdict.kind = is_misfit ? misfit : verdict.undecided.empty() ? none_passes : undecided;
-  }
 }
 
 /// What was found while the simulation tracked, with the fits in windows that the job asks for.
@@ -705,10 +392,10 @@ EffectSelection in_windows(EffectSelection selection, const SelectionStep& decla
     verdict.validate_percent = improvement(residual_series(models.front().job, models.front().fit),
                                            residual_series(models.back().job, models.back().fit))
                                    .validate_percent;
-  using enum SelectionVerdict::Kind;
-  selection.explained = last.fit.usable && explains(last) && verdict.small.empty();
-  if (verdict.kind == nothing_missing && !selection.explained) verdict.kind = none_passes;
-  if (verdict.kind == none_passes && selection.explained) verdict.kind = nothing_missing;
+  const bool is_noise = last.fit.usable && explains(last);
+  selection.explained = is_noise && verdict.small.empty();
+  if (verdict.kind != SelectionVerdict::Kind::no_usable_fit)
+    verdict.kind = kind_of(selection, is_noise);
   return selection;
 }
 

@@ -1,9 +1,9 @@
 // Effect selection: from the residual of a fit to the effects that the model lacks.
 //
 // Round by round: score every absent effect (score.h), refit with each of the few most likely ones,
-// apply the acceptance test (acceptance.h), keep the best. Then accepted effects are swapped on
-// trial for their rivals, and removed one by one on trial (backward elimination). What no effect of
-// the catalogue explains is fitted by a force curve.
+// apply the acceptance test (acceptance.h), keep the best (round.h). Then accepted effects are
+// swapped on trial for their rivals (rivals.h), and removed one by one on trial (backward
+// elimination, pruning.h). What no effect of the catalogue explains is fitted by a force curve.
 #pragma once
 
 #include <optional>
