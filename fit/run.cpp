@@ -70,7 +70,7 @@ std::vector<std::size_t> parameters_to_profile(const Job& job,
 void run_requested_analyses(RunResult& result, const RunContext& context) {
   const RunOptions& options = result.options;
   const auto report_progress = [&](const std::string& phase) {
-    if (context.progress) context.progress({phase, 0, 0, result.fit().reduced_chi_square});
+    context.report({phase, 0, 0, result.fit().reduced_chi_square});
   };
   if (options.select_effects && result.first.usable)
     result.selection = select_effects(result.baseline, result.first, {}, context);
@@ -191,7 +191,7 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
           {score_signals(model.job, model.fit), missing_forces(model.job, model.fit)});
   FitResult& last = result.selection ? result.selection->result.fit : result.first;
   if (!result.interrupted) {
-    if (context.progress) context.progress({.phase = "does the observer gain matter?"});
+    context.report({.phase = "does the observer gain matter?"});
     try {
       allow_for_observer_gain(result.job(), last, context);
     } catch (const Interrupted&) {

@@ -88,9 +88,8 @@ std::vector<Linearization> sensitivities_of(const std::vector<Experiment>& candi
       sensitivities[i].residuals.setZero();  // of rounding, which has a colour
     }
     const std::lock_guard lock(mutex);
-    if (context.progress)
-      context.progress(
-          {"trying motions", ++done, static_cast<int>(candidates.size()), fit.reduced_chi_square});
+    context.report(
+        {"trying motions", ++done, static_cast<int>(candidates.size()), fit.reduced_chi_square});
   });
   return sensitivities;
 }

@@ -185,7 +185,7 @@ HorizonChoice choose_horizon(const Job& job, const RunContext& context) {
         squares[i] = errors[stretch.part];
     const std::lock_guard lock(mutex);
     ++all.done;
-    if (context.progress) context.progress(all);
+    context.report(all);
   });
   for (std::size_t t = 0; t < choice.trials.size(); ++t) {
     double sum = 0.0;

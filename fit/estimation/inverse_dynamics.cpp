@@ -198,8 +198,10 @@ class BalanceCost : public ceres::CostFunction {
     return evaluate_columns(applicable_, [&]<class Jet>(std::span<const std::size_t> columns,
                                                         bool is_first) {
       const std::vector<Jet> balance = imbalance(with_derivatives<Jet>(values, space_, u, columns));
-      bool finite = !is_first || store(
-                                     balance, [](const Jet& x) { return x.a; }, residuals, 1);
+      bool finite = true;
+      if (is_first)
+        finite = store(
+            balance, [](const Jet& x) { return x.a; }, residuals, 1);
       for (std::size_t k = 0; k < columns.size(); ++k)
         finite = store(
                      balance, [k](const Jet& x) { return x.v[static_cast<Eigen::Index>(k)]; },

@@ -17,6 +17,10 @@ struct RunContext {
 
   /// The same without reports, for work within work.
   RunContext quiet() const { return {stop, journal, {}}; }
+  /// Informs whoever wants to know.
+  void report(const Progress& now) const {
+    if (progress) progress(now);
+  }
   /// Throws Interrupted when the stop flag is set.
   void check_stop() const {
     if (is_set(stop)) throw Interrupted();

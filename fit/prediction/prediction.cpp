@@ -243,7 +243,7 @@ std::vector<RecordingPrediction> predict_recordings(const Job& job, const FitRes
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     if (job.recordings[r].role != Role::validate || !fit.recordings[r].free_running.finished)
       continue;
-    if (context.progress) context.progress({.phase = "predicting " + job.recordings[r].name});
+    context.report({.phase = "predicting " + job.recordings[r].name});
     predictions.push_back(predict_recording(job, fit, r, uncertainty, context));
   }
   return predictions;

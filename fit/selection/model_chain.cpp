@@ -15,6 +15,11 @@ std::vector<double> SelectionStep::values() const {
   return values;
 }
 
+Improvement improvement(const SelectionStep& before, const SelectionStep& after) {
+  return improvement(residual_series(before.job, before.fit),
+                     residual_series(after.job, after.fit));
+}
+
 bool explains(const SelectionStep& model) {
   auto series = residual_series(model.job, model.fit);
   if (std::ranges::all_of(series, is_explained)) return !series.empty();

@@ -21,6 +21,9 @@ struct SelectionStep {
   std::vector<double> values() const;
 };
 
+/// By how much the second lowers the errors of the first, see acceptance.h.
+Improvement improvement(const SelectionStep& before, const SelectionStep& after);
+
 /// Whether the model leaves nothing but noise in any signal.
 bool explains(const SelectionStep& model);
 

@@ -22,13 +22,6 @@ bool is_alike_elsewhere(SearchState& state, const Candidate& candidate, const Ru
   return found && found->is_alike;
 }
 
-/// What an accepted effect adds to the fit without it.
-Improvement improvement_by(SearchState& state, std::size_t place) {
-  const SelectionStep& reduced = state.chain.without(place);
-  return improvement(residual_series(reduced.job, reduced.fit),
-                     residual_series(state.current().job, state.current().fit));
-}
-
 }  // namespace
 
 std::optional<Candidate> drop_degenerate(SearchState& state) {
@@ -62,8 +55,8 @@ void eliminate_backward(SearchState& state, const RunContext& context) {
       if (!is_plain(state.accepted()[b])) doubted.push_back(b);
     state.chain.fit_without(doubted);
     const SelectionStep& reduced = state.chain.without(a);
-    if (!reduced.fit.usable || is_needed(improvement_by(state, a), effect.candidate.parameters(),
-                                         effect.is_seen_elsewhere)) {
+    if (!reduced.fit.usable || is_needed(improvement(reduced, state.current()),
+                                         effect.candidate.parameters(), effect.is_seen_elsewhere)) {
       ++a;
       continue;
     }
@@ -83,8 +76,9 @@ void drop_imitators(SearchState& state, const RunContext& context) {
       const Candidate& candidate = state.accepted()[a].candidate;
       if (candidate.is_curve || is_alike_elsewhere(state, candidate, context)) continue;
       state.report_progress(context, "what does " + candidate.name + " explain?");
-      const double explained = improvement_by(state, a).missing_percent;
-      if (!state.chain.without(a).fit.usable || explained >= percent) continue;
+      const SelectionStep& reduced = state.chain.without(a);
+      const double explained = improvement(reduced, state.current()).missing_percent;
+      if (!reduced.fit.usable || explained >= percent) continue;
       percent = explained;
       least = a;
     }
@@ -126,7 +120,7 @@ void drop_other_periods(SearchState& state, const RunContext& context) {
 std::optional<Rejection> rejection_of_all(SearchState& state) {
   constexpr double kLeastPercent = 50.0;
   if (state.accepted().empty() || state.chain.explained()) return std::nullopt;
-  const double percent = improvement_by_all(state).missing_percent;
+  const double percent = improvement(state.chain.declared(), state.current()).missing_percent;
   if (percent >= kLeastPercent) return std::nullopt;
   return Rejection{.test = Rejection::Test::share, .found = percent};
 }

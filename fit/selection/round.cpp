@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <mutex>
 #include <numeric>
 #include <span>
@@ -32,7 +33,6 @@ class RoundTrial {
         options_(options),
         memory_(memory),
         context_(context),
-        is_complete_(options.explained),
         before_(residual_series(model.job, model.fit)) {
     std::vector<double> values = model.values();
     if (values != memory.of) memory = {.of = std::move(values)};
@@ -42,7 +42,7 @@ class RoundTrial {
     refit_in_turns(choice());
     keep_the_best_setting();
     // Where nothing but noise is left, what lowers no error elsewhere is chance.
-    if (!is_complete_ && !options_.held_out_blocks && all_are_rejected(result_.models))
+    if (!options_.explained && !options_.held_out_blocks && all_are_rejected(result_.models))
       try_elsewhere();
     choose();
     return std::move(result_);
@@ -50,7 +50,7 @@ class RoundTrial {
 
  private:
   void report_progress(const std::string& phase, int done = 0, int of = 0) const {
-    if (context_.progress) context_.progress({phase, done, of, model_.fit.reduced_chi_square});
+    context_.report({phase, done, of, model_.fit.reduced_chi_square});
   }
 
   /// A simulation that is far from the data must track them to be scored. Of one that is close, the
@@ -58,7 +58,7 @@ class RoundTrial {
   std::vector<double> gains_to_score() const {
     constexpr double kClose = 25.0;
     const bool is_free = model_.job.options.observer != ObserverMode::fixed;
-    if (is_free && is_complete_) return {0.0};
+    if (is_free && options_.explained) return {0.0};
     std::vector<double> gains = score_gains(model_.job);
     if (is_free && model_.fit.reduced_chi_square < kClose) gains.push_back(0.0);
     return gains;
@@ -91,7 +91,7 @@ class RoundTrial {
   bool is_hopeless(const ShortlistEntry& entry) const {
     constexpr double kPart = 0.4, kMuch = 10.0;
     const double least = least_gain(entry.candidate, samples_of(before_), result_.tried);
-    if (is_complete_) return entry.gain < least;
+    if (options_.explained) return entry.gain < least;
     return entry.promise < kPart * least && entry.gain < kMuch * least;
   }
 
@@ -201,10 +201,11 @@ class RoundTrial {
       if (best != nullptr && is_clearly_worse(bic_advantage(*best, *next.front()))) return;
       report_progress("does " + next.front()->candidate.name + " replicate?");
       parallel_for(next.size(), [&](std::size_t i) { try_to_replicate(*next[i]); });
-      for (ExtendedModel* e : next) {
-        try_on_stretches(*e);
+      std::vector<ExtendedModel*> asked;
+      std::ranges::copy_if(next, std::back_inserter(asked), wants_stretches);
+      try_on_stretches(asked);
+      for (const ExtendedModel* e : next)
         if (best == nullptr && !e->rejection) best = e;
-      }
     }
   }
 
@@ -239,13 +240,9 @@ class RoundTrial {
 
   /// What the recordings to validate could not have shown is judged by stretches of the fitted
   /// ones, held out from both fits.
-  void try_on_stretches(ExtendedModel& e) {
-    if (!e.rejection || e.rejection->test != Rejection::Test::power) return;
-    // A disturbance goes on from one stretch to the next: only another recording tells it from a
-    // law.
-    static const std::size_t kOverTime = *effect_named(ForceOverTime<double>::name);
-    if (quantity_list()[e.candidate.strengths.front()].effect == kOverTime) return;
-    report_progress("do held-out stretches show " + e.candidate.name + "?");
+  void try_on_stretches(const std::vector<ExtendedModel*>& asked) {
+    if (asked.empty()) return;
+    report_progress("do held-out stretches show " + asked.front()->candidate.name + "?");
     const auto held_out = [&](SelectionStep model) {
       model = with_held_out_blocks(std::move(model), context_);
       auto series = residual_series(model.job, model.fit);
@@ -254,14 +251,31 @@ class RoundTrial {
       });
       return series;
     };
-    if (!memory_.on_stretches) memory_.on_stretches = held_out(model_);
-    Improvement gain = improvement(*memory_.on_stretches, held_out({"", e.job, e.fit}));
-    gain.fit_gain = e.gain.fit_gain;
-    gain.samples = e.gain.samples;
-    if (rejection_of(e.candidate, gain, determined(e), result_.tried)) return;
-    e.rejection.reset();
-    e.gain = gain;
-    e.on_stretches = true;
+    std::vector<std::vector<ResidualSeries>> with(asked.size());
+    parallel_for(asked.size() + 1, [&](std::size_t i) {
+      if (i > 0)
+        with[i - 1] = held_out({"", asked[i - 1]->job, asked[i - 1]->fit});
+      else if (!memory_.on_stretches)
+        memory_.on_stretches = held_out(model_);
+    });
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      ExtendedModel& e = *asked[i];
+      Improvement gain = improvement(*memory_.on_stretches, with[i]);
+      gain.fit_gain = e.gain.fit_gain;
+      gain.samples = e.gain.samples;
+      if (rejection_of(e.candidate, gain, determined(e), result_.tried)) continue;
+      e.rejection.reset();
+      e.gain = gain;
+      e.on_stretches = true;
+    }
+  }
+
+  /// Whether the recordings to validate could not have shown it and stretches could: a disturbance
+  /// goes on from one stretch to the next, and only another recording tells it from a law.
+  static bool wants_stretches(const ExtendedModel* e) {
+    static const std::size_t kOverTime = *effect_named(ForceOverTime<double>::name);
+    return e->rejection && e->rejection->test == Rejection::Test::power &&
+           quantity_list()[e->candidate.strengths.front()].effect != kOverTime;
   }
 
   void choose() {
@@ -286,7 +300,6 @@ class RoundTrial {
   RoundMemory& memory_;
   std::mutex elsewhere_;  // of the memory
   const RunContext& context_;
-  const bool is_complete_;
   const std::vector<ResidualSeries> before_;
   RoundResult result_;
 };

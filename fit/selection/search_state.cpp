@@ -19,13 +19,7 @@ void SearchState::take_out_all(const Rejection& rejection) {
 }
 
 void SearchState::report_progress(const RunContext& context, const std::string& phase) const {
-  if (context.progress) context.progress({phase, 0, 0, current().fit.reduced_chi_square});
-}
-
-Improvement improvement_by_all(const SearchState& state) {
-  const SelectionStep& declared = state.chain.declared();
-  return improvement(residual_series(declared.job, declared.fit),
-                     residual_series(state.current().job, state.current().fit));
+  context.report({phase, 0, 0, current().fit.reduced_chi_square});
 }
 
 }  // namespace axisfit

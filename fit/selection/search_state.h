@@ -29,7 +29,4 @@ struct SearchState {
   void report_progress(const RunContext& context, const std::string& phase) const;
 };
 
-/// By how much all accepted effects lower the errors.
-Improvement improvement_by_all(const SearchState& state);
-
 }  // namespace axisfit

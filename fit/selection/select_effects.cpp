@@ -121,8 +121,7 @@ class EffectSelector {
     const SelectionStep& rival = appended.chain.current();
     const double loss = loss_of(rival, current());
     // A curve has a mean, too: what is not fitted must tell it from a named effect.
-    const Improvement gain = improvement(residual_series(rival.job, rival.fit),
-                                         residual_series(current().job, current().fit));
+    const Improvement gain = improvement(rival, current());
     const bool is_proven = gain.comparable && gain.p_value < kChance;
     if (!is_proven || (loss > 0.0 && (appends || is_clearly_worse(loss)))) state_ = appended;
   }
@@ -200,13 +199,11 @@ class EffectSelector {
     const auto begin = std::chrono::steady_clock::now();
     ++round_;
     const bool passed = add_best(curves, chance);
-    if (context_.progress) {
-      const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
-      context_.progress({.phase = "search",
-                         .best = current().fit.reduced_chi_square,
-                         .finished = fmt::format("round {}, {:.1f} s: {}", round_, time.count(),
-                                                 passed ? current().added : "none")});
-    }
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+    context_.report({.phase = "search",
+                     .best = current().fit.reduced_chi_square,
+                     .finished = fmt::format("round {}, {:.1f} s: {}", round_, time.count(),
+                                             passed ? current().added : "none")});
     return passed;
   }
 
@@ -368,11 +365,8 @@ EffectSelection in_windows(EffectSelection selection, const SelectionStep& decla
                            const RunContext& context) {
   std::vector<SelectionStep>& models = selection.models;
   SelectionStep& last = selection.result;
-  const auto report_progress = [&](const std::string& phase) {
-    if (context.progress) context.progress({.phase = phase});
-  };
   last.job.options = declared.job.options;
-  report_progress("final fit");
+  context.report({.phase = "final fit"});
   last.fit = models.size() > 1 ? final_fit(last.job, values_of(last.fit), context) : declared.fit;
   for (SelectionStep& model : models) {
     model.job.options = declared.job.options;
@@ -383,15 +377,13 @@ EffectSelection in_windows(EffectSelection selection, const SelectionStep& decla
     } else if (is_known && &model == &models.back()) {
       model.fit = last.fit;
     } else {
-      report_progress(model.added.empty() ? "fitting" : "fitting with " + model.added);
+      context.report({.phase = model.added.empty() ? "fitting" : "fitting with " + model.added});
       model.fit = refit_from(model.job, values_of(model.fit), context);
     }
   }
   SelectionVerdict& verdict = selection.verdict;
   if (models.size() > 1)
-    verdict.validate_percent = improvement(residual_series(models.front().job, models.front().fit),
-                                           residual_series(models.back().job, models.back().fit))
-                                   .validate_percent;
+    verdict.validate_percent = improvement(models.front(), models.back()).validate_percent;
   const bool is_noise = last.fit.usable && explains(last);
   selection.explained = is_noise && verdict.small.empty();
   if (verdict.kind != SelectionVerdict::Kind::no_usable_fit)

@@ -46,7 +46,8 @@ void enter_effects(const SearchState& state, const SelectionStep& result,
                                      *members(model)[a.candidate.strengths.front()]});
   }
   if (!verdict.accepted.empty())
-    verdict.validate_percent = improvement_by_all(state).validate_percent;
+    verdict.validate_percent =
+        improvement(state.chain.declared(), state.current()).validate_percent;
 }
 
 SelectionVerdict::Kind kind_of(const EffectSelection& selection, bool is_noise) {
