@@ -319,8 +319,7 @@ std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
       const double before = std::pow(known.standard_error / slope, 2),
                    after = std::min(before, inside[k]) + added[k];
       found.within = std::sqrt(std::min(before, inside[k])) * slope;
-      // As many degrees of freedom as the scatter has, which is most of what is not known: groups
-      // that tell the parameter.
+      // The scatter is as well known as the groups that tell the parameter are many.
       double weight = 0.0, square = 0.0;
       for (const Alone& group : fitted) {
         const double w = 1.0 / (group.covariance(k, k) + variances[k]);
@@ -328,7 +327,9 @@ std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
         square += w * w;
       }
       found.freedom = std::max(1.0, weight * weight / square - 1.0);
-      const double half = student_95(found.freedom) * std::sqrt(after);
+      // And the errors within are known well, of which the sum has its share (Satterthwaite).
+      const double half =
+          student_95(found.freedom * std::pow(after / added[k], 2)) * std::sqrt(after);
       known.inflation *= std::sqrt(after / before);
       known.standard_error = std::sqrt(after) * slope;
       known.lower = std::max(space[i].lower, space.value(i, here - half));

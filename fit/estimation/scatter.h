@@ -10,10 +10,13 @@
 // residual (uncertainty.h). d_i is normal about the machine's with C_i + T, and T maximises the
 // restricted likelihood. A standard deviation counts where its likelihood ratio is significant at
 // 20 %. The estimate of all recordings together is the mean of d_i with the weights P_i = (J'J)^-1
-// J_i'J_i, whose variance grows by the sum of P_i T P_i'.
+// J_i'J_i, whose variance grows by the sum of P_i T P_i'. Of that variance the part of T is known
+// as well as groups are many, the rest well: the interval has Student's quantile for the degrees of
+// freedom of their sum.
 //
 // Literature: D. A. Harville, Journal of the American Statistical Association 72 (1977), for
-// restricted likelihood.
+// restricted likelihood; F. E. Satterthwaite, Biometrics Bulletin 2 (1946), for the degrees of
+// freedom of a sum.
 #pragma once
 
 #include <cstddef>
