@@ -191,8 +191,7 @@ WorkSummary work_on(const Plan& plan, const Shard& shard, const RunContext& cont
     write_whole(path, to_json(night).dump() + "\n");
     failures += night.status == "failed";
     const std::size_t so_far = ++done;
-    if (context.progress)
-      context.progress({.phase = fmt::format("{} of {} items", so_far, open.size())});
+    context.report({.phase = fmt::format("{} of {} items", so_far, open.size())});
   });
   summary.done = done;
   summary.failed = failures;

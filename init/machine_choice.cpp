@@ -60,7 +60,7 @@ struct Trial {
   double error() const { return result.error.value_or(std::numeric_limits<double>::infinity()); }
 
   void fit(int attempts, const RunContext& context) {
-    if (context.progress) context.progress({.phase = "trying " + result.name});
+    context.report({.phase = "trying " + result.name});
     Job tried = read;
     tried.options.attempts = attempts;
     result.error = error_of(tried, estimate(tried, context.quiet()));

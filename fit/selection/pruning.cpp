@@ -77,8 +77,9 @@ void drop_imitators(SearchState& state, const RunContext& context) {
       if (candidate.is_curve || is_alike_elsewhere(state, candidate, context)) continue;
       state.report_progress(context, "what does " + candidate.name + " explain?");
       const SelectionStep& reduced = state.chain.without(a);
+      if (!reduced.fit.usable) continue;
       const double explained = improvement(reduced, state.current()).missing_percent;
-      if (!reduced.fit.usable || explained >= percent) continue;
+      if (explained >= percent) continue;
       percent = explained;
       least = a;
     }
