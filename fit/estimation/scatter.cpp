@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/convolution.h"
 #include "base/distributions.h"
 #include "fit/estimation/parameters.h"
+#include "fit/estimation/residual_colour.h"
 #include "fit/estimation/solve.h"
 #include "fit/estimation/windows.h"
-#include "fit/residuals/autocovariance.h"
 
 namespace axisfit {
 namespace {
@@ -28,40 +27,25 @@ struct Alone {
 /// Rows of a group in the linearisation: those of each of its series.
 using Rows = std::vector<SeriesRows>;
 
-/// Autocovariances of a residual, never of less than the stated noise.
-std::vector<double> autocovariance_of(const VectorXd& residual) {
-  std::vector<double> g =
-      modelled_autocovariance({residual.data(), static_cast<std::size_t>(residual.size())});
-  const double scale = g[0] > 0.0 ? std::max(1.0, 1.0 / g[0]) : 1.0;
-  for (double& x : g) x *= scale;
-  if (!(g[0] > 0.0)) g[0] = 1.0;
-  return g;
-}
-
 /// What a group says alone: by the colour of the residual that it would leave alone, for what it
 /// leaves of the others' estimates is what is looked for. Directions that it leaves open have the
 /// variance of a range of e^20.
-Alone alone(const Linearization& at, const Rows& rows, const std::vector<Index>& columns) {
-  const auto n = static_cast<Index>(columns.size());
+Alone alone(const VectorXd& residuals, const MatrixXd& jacobian, const Rows& rows) {
+  const Index n = jacobian.cols();
   Alone found{VectorXd::Zero(n), MatrixXd::Zero(n, n), MatrixXd::Zero(n, n)};
-  std::vector<MatrixXd> jacobians;
   VectorXd gradient = VectorXd::Zero(n);
   for (const SeriesRows& s : rows) {
-    const MatrixXd& j =
-        jacobians.emplace_back(at.jacobian(Eigen::all, columns).middleRows(s.first, s.count));
+    const auto j = jacobian.middleRows(s.first, s.count);
     found.information += j.transpose() * j;
-    gradient += j.transpose() * at.residuals.segment(s.first, s.count);
+    gradient += j.transpose() * residuals.segment(s.first, s.count);
   }
   constexpr double kWide = 10.0;
   const MatrixXd ridge = MatrixXd::Identity(n, n) / (kWide * kWide);
   const Eigen::LLT<MatrixXd> normal(found.information + ridge);
   found.step = -normal.solve(gradient);
-  MatrixXd middle = ridge;
-  for (std::size_t s = 0; s < rows.size(); ++s) {
-    const MatrixXd& j = jacobians[s];
-    const VectorXd left = at.residuals.segment(rows[s].first, rows[s].count) + j * found.step;
-    middle += j.transpose() * toeplitz_product(autocovariance_of(left), j);
-  }
+  const MatrixXd middle = ridge + residual_colour(residuals + jacobian * found.step, jacobian, rows,
+                                                  normal.solve(MatrixXd::Identity(n, n)))
+                                      .middle;
   found.covariance = normal.solve(normal.solve(middle).transpose());
   return found;
 }
@@ -248,11 +232,12 @@ std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
   const std::vector<Rows> groups = group(job, at, scatter);
   if (of_machine.empty() || scatter.fitted_groups() < 2) return std::nullopt;
 
+  const MatrixXd jacobian = at.jacobian(Eigen::all, columns);
   std::vector<Alone> each, fitted;
   MatrixXd information =
       MatrixXd::Zero(static_cast<Index>(columns.size()), static_cast<Index>(columns.size()));
   for (std::size_t k = 0; k < groups.size(); ++k) {
-    each.push_back(alone(at, groups[k], columns));
+    each.push_back(alone(at.residuals, jacobian, groups[k]));
     if (!scatter.groups[k].fitted) continue;
     information += each.back().information;
     fitted.push_back(
@@ -316,9 +301,13 @@ std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
           {space.value(i, here + each[g].step[place]), error * slope, error < kKnown});
     }
     if (variances[k] > 0.0 && slope > 0.0) {
-      const double before = std::pow(known.standard_error / slope, 2),
-                   after = std::min(before, inside[k]) + added[k];
-      found.within = std::sqrt(std::min(before, inside[k])) * slope;
+      const std::optional<GainShift>& shift = fit.parameters[i].gain_shift;
+      const double moved =
+          shift ? std::pow((shift->value - fit.parameters[i].value) / slope, 2) : 0.0;
+      const double before = std::pow(known.standard_error / slope, 2);
+      const double of_one = std::min(before, inside[k] + moved);
+      const double after = of_one + added[k];
+      found.within = std::sqrt(of_one) * slope;
       // The scatter is as well known as the groups that tell the parameter are many.
       double weight = 0.0, square = 0.0;
       for (const Alone& group : fitted) {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <span>
 
-#include "base/convolution.h"
 #include "base/distributions.h"
 #include "base/linear_algebra.h"
-#include "fit/residuals/autocovariance.h"
+#include "fit/estimation/residual_colour.h"
 
 namespace axisfit {
 namespace {
@@ -17,6 +17,7 @@ namespace {
 class NormalInverse {
  public:
   explicit NormalInverse(const Eigen::MatrixXd& j) : length_(j.colwise().norm()) {
+    if (j.cols() == 0) return;
     // Columns of equal length: the rank must not depend on units. A column of zeros stays one.
     Eigen::MatrixXd scaled = j;
     for (Eigen::Index k = 0; k < j.cols(); ++k)
@@ -50,55 +51,6 @@ class NormalInverse {
   std::vector<bool> undetermined_;
 };
 
-/// Autocovariances of the residuals of every series.
-struct Autocovariances {
-  std::vector<std::vector<double>> autocovariance;
-  double independent = 0.0;  ///< samples
-  double autocorrelation_time = 1.0;
-  double inflation = 1.0;  ///< of what white noise of the stated size contributes, at most
-};
-
-Autocovariances autocovariances_of(const Linearization& at, std::size_t parameters) {
-  Autocovariances result;
-  double samples = 0.0;
-  for (const SeriesRows& rows : at.series) samples += static_cast<double>(rows.count);
-  const double spent = samples / std::max(1.0, samples - static_cast<double>(parameters));
-  for (const SeriesRows& rows : at.series) {
-    std::vector<double> g = modelled_autocovariance(
-        {at.residuals.data() + rows.first, static_cast<std::size_t>(rows.count)});
-    // Less than the stated noise is chance, or a statement that errs to the safe side.
-    const double scale = std::max(spent, g[0] > 0.0 ? 1.0 / g[0] : 0.0);
-    for (double& x : g) x *= scale;
-    if (!(g[0] > 0.0)) g[0] = 1.0;
-    const double sum = std::accumulate(g.begin() + 1, g.end(), 0.0);
-    const double autocorrelation_time = std::max(1.0, 1.0 + 2.0 * sum / g[0]);
-    result.autocorrelation_time = std::max(result.autocorrelation_time, autocorrelation_time);
-    result.inflation = std::max(result.inflation, std::sqrt(g[0] * autocorrelation_time));
-    result.independent += static_cast<double>(rows.count) / autocorrelation_time;
-    result.autocovariance.push_back(std::move(g));
-  }
-  return result;
-}
-
-/// J'G J; the rows after the last series are those of priors, whose variance is one.
-Eigen::MatrixXd sandwich_middle(const Linearization& at, const Autocovariances& autocovariances,
-                                const Eigen::MatrixXd& j) {
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(j.cols(), j.cols());
-  Eigen::Index end = 0;
-  for (std::size_t s = 0; s < at.series.size(); ++s) {
-    const SeriesRows& rows = at.series[s];
-    const auto block = j.middleRows(rows.first, rows.count);
-    const std::vector<double>& g = autocovariances.autocovariance[s];
-    if (g.size() == 1)
-      sum += g[0] * (block.transpose() * block);
-    else
-      sum += block.transpose() * toeplitz_product(g, block);
-    end = rows.first + rows.count;
-  }
-  const auto priors = j.bottomRows(j.rows() - end);
-  return sum + priors.transpose() * priors;
-}
-
 /// Covariance of the estimates of the parameters `chosen`, and the factors of their standard errors
 /// that make half of a 95 % interval.
 struct Spread {
@@ -107,16 +59,19 @@ struct Spread {
   double input_part = 0.0;  ///< of the variances, the largest that noise of the input makes
 };
 
-Spread spread_of(const Linearization& at, const Autocovariances& autocovariances,
+/// The rows after the last series are those of priors, whose variance is one.
+Spread spread_of(const Linearization& at, const ResidualColour& colour,
                  const std::vector<Eigen::Index>& chosen, const NormalInverse& inverse, double t) {
-  const Eigen::MatrixXd j = at.jacobian(Eigen::all, chosen);
+  Eigen::Index end = 0;
+  for (const SeriesRows& rows : at.series) end = rows.first + rows.count;
+  const Eigen::MatrixXd priors = at.jacobian(Eigen::seqN(end, at.jacobian.rows() - end), chosen);
   const Eigen::MatrixXd& n = inverse.matrix();
-  Spread found{n * sandwich_middle(at, autocovariances, j) * n,
-               Eigen::VectorXd::Constant(j.cols(), t)};
+  Spread found{n * (colour.middle + priors.transpose() * priors) * n,
+               Eigen::VectorXd::Constant(n.cols(), t)};
   if (!at.input_noise) return found;
   const Eigen::MatrixXd steps = n * at.input_noise->gradients(chosen, Eigen::all);
   const auto draws = static_cast<double>(steps.cols());
-  for (Eigen::Index k = 0; k < j.cols(); ++k) {
+  for (Eigen::Index k = 0; k < n.cols(); ++k) {
     const double of_input = steps.row(k).squaredNorm() / draws;
     const double implied = n(k, k) + of_input;
     found.input_part = std::max(found.input_part, of_input / implied);
@@ -127,6 +82,22 @@ Spread spread_of(const Linearization& at, const Autocovariances& autocovariances
     found.student[k] = student_95(draws);
   }
   return found;
+}
+
+/// Puts the independent samples and the autocorrelation time into `result`; returns the factor of
+/// what white noise of the stated size contributes to standard errors, at most.
+double add_colour(std::span<const SeriesRows> series,
+                  std::span<const std::vector<double>> autocovariance, Uncertainty& result) {
+  double most = 1.0;
+  for (std::size_t s = 0; s < series.size(); ++s) {
+    const std::vector<double>& g = autocovariance[s];
+    const double time =
+        std::max(1.0, 1.0 + 2.0 * std::accumulate(g.begin() + 1, g.end(), 0.0) / g[0]);
+    result.degrees_of_freedom += static_cast<double>(series[s].count) / time;
+    result.autocorrelation_time = std::max(result.autocorrelation_time, time);
+    most = std::max(most, std::sqrt(g[0] * time));
+  }
+  return most;
 }
 
 }  // namespace
@@ -152,16 +123,21 @@ Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
   }
   if (!at_solution.finite) return result;
 
-  const Autocovariances autocovariances = autocovariances_of(at_solution, inside.size());
-  result.autocorrelation_time = autocovariances.autocorrelation_time;
-  result.degrees_of_freedom = autocovariances.independent - static_cast<double>(inside.size());
-  for (ParameterUncertainty& p : result.parameters) p.inflation = autocovariances.inflation;
+  const auto colour_by = [&](const std::vector<Eigen::Index>& chosen,
+                             const NormalInverse& inverse) {
+    return residual_colour(at_solution.residuals, at_solution.jacobian(Eigen::all, chosen),
+                           at_solution.series, inverse.matrix());
+  };
+  const NormalInverse inverse(at_solution.jacobian(Eigen::all, inside));
+  const ResidualColour colour = colour_by(inside, inverse);
+  const double inflation = add_colour(at_solution.series, colour.autocovariance, result);
+  result.degrees_of_freedom -= static_cast<double>(inside.size());
+  for (ParameterUncertainty& p : result.parameters) p.inflation = inflation;
   const double t = student_95(result.degrees_of_freedom);
 
   if (!inside.empty()) {
-    const NormalInverse inverse(at_solution.jacobian(Eigen::all, inside));
     const auto [covariance, student, input_part] =
-        spread_of(at_solution, autocovariances, inside, inverse, t);
+        spread_of(at_solution, colour, inside, inverse, t);
     result.input_part = input_part;
     for (Eigen::Index k = 0; k < covariance.cols(); ++k) {
       if (inverse.is_undetermined(k)) continue;
@@ -193,20 +169,20 @@ Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
   }
 
   if (inside.size() == space.size()) return result;
-  const NormalInverse inverse(at_solution.jacobian);
-  if (inverse.has_undetermined()) return result;
+  const NormalInverse inverse_of_all(at_solution.jacobian);
+  if (inverse_of_all.has_undetermined()) return result;
   std::vector<Eigen::Index> all(space.size());
   std::iota(all.begin(), all.end(), Eigen::Index{0});
   const auto [covariance, student, input_part] =
-      spread_of(at_solution, autocovariances, all, inverse, t);
+      spread_of(at_solution, colour_by(all, inverse_of_all), all, inverse_of_all, t);
   // Where the minimum would be if there were no bounds.
   const Eigen::VectorXd step =
-      -inverse.matrix() * (at_solution.jacobian.transpose() * at_solution.residuals);
+      -inverse_of_all.matrix() * (at_solution.jacobian.transpose() * at_solution.residuals);
   for (std::size_t i = 0; i < space.size(); ++i) {
     ParameterUncertainty& p = result.parameters[i];
     if (!p.at_bound) continue;
     const auto k = static_cast<Eigen::Index>(i);
-    p.inflation = std::sqrt(covariance(k, k) / inverse.matrix()(k, k));
+    p.inflation = std::sqrt(covariance(k, k) / inverse_of_all.matrix()(k, k));
     const double inwards = u[k] - lower(i) < upper(i) - u[k] ? 1.0 : -1.0;
     const double beyond = std::max(0.0, -inwards * step[k]);
     const double variance = student[k] * student[k] * covariance(k, k);

@@ -71,7 +71,8 @@ double student_95(double degrees_of_freedom);
 
 /// Assumes a model that is linear over the intervals, and residuals that are, signal by signal,
 /// stationary with the variance and the autocorrelation that they show, never less than the stated
-/// noise: with J the whitened Jacobian and G the modelled autocovariance of the residuals,
+/// noise: with J the whitened Jacobian and G the autocovariance of the residuals (see
+/// residual_colour.h),
 ///
 ///   covariance = (J'J)^-1 J'G J (J'J)^-1
 ///
@@ -79,9 +80,8 @@ double student_95(double degrees_of_freedom);
 /// count as one more measurement each. Where the inputs are noisy, no standard error is smaller
 /// than white noise of the stated sizes, in readings and inputs, makes it (see input_noise.h): a
 /// residual that drifts as slowly as that of a noisy input shows too little of itself in one
-/// recording.
-///  A parameter at its bound has the interval inside it whose
-/// likelihood ratio is not significant, with the others free; the others have theirs with it fixed.
+/// recording. A parameter at its bound has the interval inside it whose likelihood ratio is not
+/// significant, with the others free; the others have theirs with it fixed.
 ///
 /// Literature: E. A. Morelli and V. Klein, Journal of Aircraft 34 (1997), for coloured residuals;
 /// G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989, sections 2.1 and 5.1.
