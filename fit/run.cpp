@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "fit/estimation/gain_sensitivity.h"
 #include "fit/estimation/guesses.h"
+#include "fit/selection/equals.h"
 
 namespace axisfit {
 namespace {
@@ -213,6 +214,8 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
                          result.diagnosis ? std::span<const MissingForce>(result.diagnosis->forces)
                                           : std::span<const MissingForce>());
     if (options.predict) predict(result, context);
+    // Not in the bands: what explains the recordings equally well predicts alike.
+    if (result.selection) allow_for_equals(*result.selection);
   }
   if (options.compare && !result.interrupted && !result.fit().recordings.empty()) {
     try {

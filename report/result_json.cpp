@@ -134,6 +134,10 @@ Json estimate_json(const ParameterResult& p, Vocabulary vocabulary) {
   if (p.gain_shift)
     estimate["at_other_gain"] = {{"observer_gain", p.gain_shift->observer_gain},
                                  {"value", p.gain_shift->value}};
+  if (p.equal_shift)
+    estimate["with_equal"] = {{"in_place_of", p.equal_shift->chosen},
+                              {"effect", p.equal_shift->other},
+                              {"value", p.equal_shift->value}};
   return estimate;
 }
 
@@ -409,6 +413,7 @@ Json effect_json(const EffectTrial& t, Vocabulary vocabulary) {
             {"meaning", t.candidate.meaning},
             {"decision", decision_name(t.decision)},
             {"accepted", t.decision == Decision::accepted},
+            {"in_model", t.in_model},
             {"reason", reason_text(t, vocabulary)},
             {"round", t.round},
             {"score", t.score},

@@ -58,6 +58,12 @@ struct GainShift {
   double value = 0.0;
 };
 
+/// What it is with another effect in the place of one that explains the recordings equally well.
+struct EqualShift {
+  std::string chosen, other;
+  double value = 0.0;
+};
+
 struct ParameterResult {
   std::string name;
   double value = 0.0;
@@ -66,6 +72,7 @@ struct ParameterResult {
   /// Where it differs by more than the errors say, which then count that in; see
   /// gain_sensitivity.h.
   std::optional<GainShift> gain_shift{};
+  std::optional<EqualShift> equal_shift{};  ///< counted in the errors, too; see selection/equals.h
 };
 
 /// How one start of a multistart ended.

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <functional>
 #include <optional>
-#include <set>
 
 #include "base/parallel.h"
 #include "fit/estimation/parameters.h"
@@ -65,17 +63,18 @@ class EffectSelector {
         last_valid_ = state_;
         eliminate_backward(state_, context_);
         drop_imitators(state_, context_);
-        find_equals();
         drop_unreplicated_where_half_remains(state_, context_);
         drop_other_periods(state_, context_);
+        drop_all_of_a_misfit();
+        find_equals();
         record_replications(state_, context_);
       } catch (const Interrupted&) {
         result_.interrupted = true;
+        result_.rivals.clear();
         state_ = std::move(*last_valid_);
         if (const auto rejection = rejection_of_all(state_)) state_.take_out_all(*rejection);
+        drop_all_of_a_misfit();
       }
-      if (!explained() && is_misfit(state_, result_.verdict))
-        state_.take_out_all({.test = Rejection::Test::misfit});
     }
     finish();
     return std::move(result_);
@@ -268,24 +267,26 @@ class EffectSelector {
     return true;
   }
 
-  /// An effect that has an equal is not accepted: neither silently. But which of two clocks is off
-  /// matters little, and without either, all that is estimated pays for it: the chosen one stays,
-  /// and the other is named beside it.
+  void drop_all_of_a_misfit() {
+    if (!explained() && is_misfit(state_, result_.verdict))
+      state_.take_out_all({.test = Rejection::Test::misfit});
+  }
+
+  /// An effect that has an equal is not accepted: neither silently. But without either, all that is
+  /// estimated pays for it: it stays in the model. Which of two clocks is off matters little: there
+  /// the chosen one is accepted, and the other named beside it.
   void find_equals() {
-    std::set<std::size_t, std::greater<>> undecided;
     for (const RivalPair& pair : equal_rivals(state_, round_, context_)) {
-      const Candidate& chosen = accepted()[pair.place].candidate;
-      result_.rivals.push_back(
-          {chosen.name, pair.rival.name, fitted_model(current().job, current().fit), pair.model});
+      AcceptedEffect& chosen = chain().accepted()[pair.place];
+      result_.rivals.push_back({chosen.candidate.name, pair.rival.name,
+                                fitted_model(current().job, current().fit), pair.model});
       if (pair.are_delays) {
-        state_.trials.reject(pair.rival, Reason::explains_equally, chosen.name);
-        continue;
+        state_.trials.reject(pair.rival, Reason::explains_equally, chosen.candidate.name);
+      } else {
+        state_.trials.leave_undecided(chosen.candidate, pair.rival);
+        chosen.has_equal = true;
       }
-      state_.trials.leave_undecided(chosen, pair.rival.name);
-      state_.trials.leave_undecided(pair.rival, chosen.name);
-      undecided.insert(pair.place);
     }
-    for (const std::size_t place : undecided) state_.take_out(place, chain().without(place));
   }
 
   void finish();

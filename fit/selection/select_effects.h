@@ -20,8 +20,8 @@ struct SelectionOptions {
   int max_effects = 6;
 };
 
-/// Two effects that explain the recordings equally well: both undecided, or of two clocks that may
-/// be off the chosen one accepted.
+/// Two effects that explain the recordings equally well, of which the chosen one is in the model:
+/// both undecided, or of two clocks that may be off the chosen one accepted.
 struct UndecidedPair {
   std::string chosen, rival;
   Model<double> with_chosen, with_rival;  ///< fitted
@@ -35,7 +35,7 @@ struct SelectionVerdict {
     hardly_anything,   ///< it does, but for effects that are significant and hardly matter
     effects_accepted,  ///< one or more
     stopped,           ///< before an effect was accepted
-    undecided,         ///< no effect was accepted, some explain the recordings equally well
+    undecided,         ///< none was accepted, but some that explain the recordings equally well
     none_passes,       ///< something is missing, but every effect was rejected
     misfit,            ///< the declared model does not fit, so that nothing can be said of effects
   };
@@ -54,7 +54,7 @@ struct SelectionVerdict {
   /// of the drive force is missing.
   std::string at_bound{}, recording{};
   double force_percent = 0.0;
-  /// Fall of the root mean square of what was not fitted, by the accepted effects together.
+  /// Fall of the root mean square of what was not fitted, by the effects in the model together.
   double validate_percent = 0.0;
 
   bool operator==(const SelectionVerdict&) const = default;

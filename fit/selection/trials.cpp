@@ -17,6 +17,7 @@ void Trials::record(const ExtendedModel& e, const ExtendedModel* best, int round
                           e.fit.parameters.end());
   if (&e == best) {
     trial.decision = Decision::accepted;
+    trial.in_model = true;
     trial.reason = e.replication    ? Reason::replicates
                    : e.on_stretches ? Reason::shown_by_stretches
                                     : Reason::explains_best;
@@ -39,14 +40,16 @@ EffectTrial* Trials::find(const Candidate& candidate) {
   return found == list_.end() ? nullptr : &*found;
 }
 
-void Trials::decide(const Candidate& candidate, Decision decision, Reason reason,
-                    std::optional<Rejection> rejection, const std::string& other) {
+EffectTrial* Trials::decide(const Candidate& candidate, Decision decision, Reason reason,
+                            std::optional<Rejection> rejection, const std::string& other) {
   EffectTrial* trial = find(candidate);
-  if (trial == nullptr) return;
+  if (trial == nullptr) return nullptr;
   trial->decision = decision;
   trial->reason = reason;
   trial->rejection = std::move(rejection);
   trial->other = other;
+  trial->in_model = false;
+  return trial;
 }
 
 void Trials::reject(const Candidate& candidate, Reason reason, const std::string& other) {
@@ -57,8 +60,12 @@ void Trials::fail(const Candidate& candidate, Rejection rejection) {
   decide(candidate, Decision::rejected, Reason::failed_test, std::move(rejection), "");
 }
 
-void Trials::leave_undecided(const Candidate& candidate, const std::string& other) {
-  decide(candidate, Decision::undecided, Reason::explains_equally, std::nullopt, other);
+void Trials::leave_undecided(const Candidate& chosen, const Candidate& rival) {
+  constexpr auto kUndecided = Decision::undecided;
+  decide(rival, kUndecided, Reason::explains_equally, std::nullopt, chosen.name);
+  if (EffectTrial* trial =
+          decide(chosen, kUndecided, Reason::explains_equally, std::nullopt, rival.name))
+    trial->in_model = true;
 }
 
 }  // namespace axisfit

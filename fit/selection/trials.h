@@ -12,7 +12,7 @@ namespace axisfit {
 
 enum class Decision {
   accepted,
-  undecided,  ///< explains the data as well as another effect
+  undecided,  ///< explains the data as well as another effect: one of them is in the model
   rejected,
 };
 
@@ -36,6 +36,7 @@ struct EffectTrial {
   Reason reason = Reason::failed_test;
   std::optional<Rejection> rejection;       ///< of failed_test
   std::string other;                        ///< effect that it was compared with, see reason
+  bool in_model = false;                    ///< accepted, or that of the undecided which stays
   double score = 0.0;                       ///< gain that the score test promised
   std::vector<ParameterResult> parameters;  ///< its own
   Improvement improvement;                  ///< against the model before it
@@ -56,11 +57,12 @@ class Trials {
   /// Writes down that an effect is out, and why; does nothing where it has no trial.
   void reject(const Candidate& candidate, Reason reason, const std::string& other = "");
   void fail(const Candidate& candidate, Rejection rejection);
-  void leave_undecided(const Candidate& candidate, const std::string& other);
+  /// Writes down that two explain the recordings equally well; the first stays in the model.
+  void leave_undecided(const Candidate& chosen, const Candidate& rival);
 
  private:
-  void decide(const Candidate& candidate, Decision decision, Reason reason,
-              std::optional<Rejection> rejection, const std::string& other);
+  EffectTrial* decide(const Candidate& candidate, Decision decision, Reason reason,
+                      std::optional<Rejection> rejection, const std::string& other);
 
   std::vector<EffectTrial> list_;
 };

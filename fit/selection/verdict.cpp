@@ -40,12 +40,13 @@ void enter_effects(const SearchState& state, const SelectionStep& result,
   for (const EffectTrial& t : state.trials.list())
     if (t.decision == Decision::undecided) verdict.undecided.push_back(t.candidate.name);
   for (const AcceptedEffect& a : state.accepted()) {
+    if (a.has_equal) continue;
     verdict.accepted.push_back(a.candidate.name);
     if (a.candidate.is_constant)
       verdict.corrections.push_back({a.candidate.name, a.candidate.neutral.front(),
                                      *members(model)[a.candidate.strengths.front()]});
   }
-  if (!verdict.accepted.empty())
+  if (!state.accepted().empty())
     verdict.validate_percent =
         improvement(state.chain.declared(), state.current()).validate_percent;
 }

@@ -40,7 +40,7 @@ std::string correlation_text(const FitResult& result) {
 }
 
 /// The estimates whose error bars leave out that a value beneath them is a guess, or allow for what
-/// another observer gain makes of them.
+/// another observer gain or another effect makes of them.
 std::string remarks_text(const Job& job, const FitResult& result) {
   std::string text;
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
@@ -50,6 +50,9 @@ std::string remarks_text(const Job& job, const FitResult& result) {
     if (p.gain_shift)
       text += paragraph(
           fmt::format("{}: {}.", p.name, gain_shift_text(*p.gain_shift, unit_of(job, i))), 2);
+    if (p.equal_shift)
+      text += paragraph(
+          fmt::format("{}: {}.", p.name, equal_shift_text(*p.equal_shift, unit_of(job, i))), 2);
   }
   if (const std::string better = better_gain_text(result); !better.empty())
     text += paragraph(better + ".", 2);

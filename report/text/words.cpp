@@ -149,6 +149,38 @@ std::string lacked_text(const SelectionVerdict& verdict) {
   return text;
 }
 
+bool is_accepted(const SelectionVerdict& verdict, const std::string& effect) {
+  return std::ranges::find(verdict.accepted, effect) != verdict.accepted.end();
+}
+
+/// Every undecided effect that is in the model, with those that would do as well: "spring or bump".
+std::vector<std::string> undecided_list(const EffectSelection& selection) {
+  std::vector<std::string> list;
+  const std::string* chosen = nullptr;
+  for (const UndecidedPair& pair : selection.rivals) {
+    if (is_accepted(selection.verdict, pair.chosen)) continue;
+    if (chosen == nullptr || *chosen != pair.chosen) list.push_back(pair.chosen);
+    list.back() += " or " + pair.rival;
+    chosen = &pair.chosen;
+  }
+  return list;
+}
+
+/// What was added, and what it does: "it" or "them" where all was named as accepted.
+std::string gain_text(const EffectSelection& selection) {
+  const SelectionVerdict& verdict = selection.verdict;
+  std::vector<std::string> added;
+  for (const SelectionStep& model : selection.models)
+    if (!model.added.empty()) added.push_back(model.added);
+  const std::string with = !verdict.undecided.empty()    ? fmt::format("{}", fmt::join(added, ", "))
+                           : verdict.accepted.size() > 1 ? "them"
+                                                         : "it";
+  return fmt::format("With {}, the validation error falls by {:.3g} %{}", with,
+                     verdict.validate_percent,
+                     selection.explained ? ", and every signal is explained down to its noise."
+                                         : ", but not down to the noise.");
+}
+
 /// What a simulation does with a signal, to follow it as the subject.
 std::string followed_text(double percent, const std::string& signal) {
   return percent > 0.0 ? fmt::format("follows {} to only {:.2g} %", signal, percent)
@@ -253,17 +285,18 @@ std::string verdict_text(const EffectSelection& selection) {
           "Hardly anything is missing: {} {} significant, but hardly lowers the validation error.",
           fmt::join(verdict.small, ", "), verdict.small.size() > 1 ? "are" : "is");
     case effects_accepted:
-      text =
-          fmt::format("{}With {}, the validation error falls by {:.3g} %{}", lacked_text(verdict),
-                      verdict.accepted.size() > 1 ? "them" : "it", verdict.validate_percent,
-                      selection.explained ? ", and every signal is explained down to its noise."
-                                          : ", but not down to the noise.");
+    case undecided:
+      text = lacked_text(verdict);
+      if (const auto equals = undecided_list(selection); !equals.empty())
+        text += fmt::format("Undecided: {}; these recordings do not tell which. ",
+                            fmt::join(equals, ", "));
+      text += gain_text(selection);
       for (const EffectTrial& t : selection.effects)
         if (t.closed_form)
           text += fmt::format(" {} is explained as well by {}.", t.candidate.name,
                               closed_form_text(*t.closed_form));
       for (const UndecidedPair& pair : selection.rivals)
-        if (std::ranges::find(verdict.accepted, pair.chosen) != verdict.accepted.end())
+        if (is_accepted(verdict, pair.chosen))
           text += fmt::format(" These recordings do not tell {} from {}.", pair.chosen, pair.rival);
       break;
     case misfit:
@@ -277,12 +310,7 @@ std::string verdict_text(const EffectSelection& selection) {
                        "The declared model does not fit: {} is at its bound. Nothing can be said "
                        "about effects yet.",
                        verdict.at_bound);
-    case undecided:
-      break;
   }
-  if (!verdict.undecided.empty())
-    text += fmt::format("{}Undecided: {}; none of them was added.", text.empty() ? "" : " ",
-                        fmt::join(verdict.undecided, ", "));
   return text;
 }
 
@@ -320,7 +348,8 @@ std::string reason_text(const EffectTrial& trial, Vocabulary vocabulary) {
     case Reason::replaced:
       return fmt::format("explains less than {}, which replaced it", trial.other);
     case Reason::explains_equally:
-      return "explains these recordings as well as " + trial.other;
+      return fmt::format("explains these recordings as well as {}{}", trial.other,
+                         trial.in_model ? "; one of them stays in the model" : "");
     case Reason::not_needed:
       return "no longer needed with the effects accepted after it";
   }
@@ -361,6 +390,12 @@ std::string simulation_name(const FitOptions& options, bool tracks) {
 std::string gain_shift_text(const GainShift& shift, std::string_view unit) {
   return fmt::format("{} at an observer gain of {:.3g} 1/s, which its error allows for",
                      with_unit(fmt::format("{:.4g}", shift.value), unit), shift.observer_gain);
+}
+
+std::string equal_shift_text(const EqualShift& shift, std::string_view unit) {
+  return fmt::format("{} with {} in place of {}, which its error allows for",
+                     with_unit(fmt::format("{:.4g}", shift.value), unit), shift.other,
+                     shift.chosen);
 }
 
 std::string better_gain_text(const FitResult& fit) {

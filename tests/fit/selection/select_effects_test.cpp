@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "fit/design/discrimination.h"
+#include "fit/selection/equals.h"
 #include "tests/fit/selection/selection.h"
+
 namespace axisfit {
 namespace {
 
@@ -43,7 +45,7 @@ TEST_P(SelectEffectsTwin, IsLeftUndecided) {
   const HiddenEffect& secret = GetParam();
   Job job = secret.job();
   job.limits = {-0.5, 0.5, 1.0, 10.0};
-  const EffectSelection selection = close(job);
+  EffectSelection selection = close(job);
   EXPECT_EQ(undecided(selection), (Names{secret.name, secret.twin}));
   EXPECT_EQ(selection.verdict.kind, SelectionVerdict::Kind::undecided);
   for (const EffectTrial& trial : selection.effects)
@@ -52,16 +54,28 @@ TEST_P(SelectEffectsTwin, IsLeftUndecided) {
       EXPECT_EQ(trial.other, trial.candidate.name == secret.name ? secret.twin : secret.name);
     }
   EXPECT_EQ(accepted(selection), Names{});
-  EXPECT_FALSE(selection.explained);
+  EXPECT_TRUE(selection.verdict.accepted.empty());
+  EXPECT_TRUE(selection.explained);
   ASSERT_EQ(selection.rivals.size(), 1u);
   EXPECT_EQ((Names{selection.rivals[0].chosen, selection.rivals[0].rival}),
             (Names{secret.name, secret.twin}));
   const Discrimination advice = discriminate(selection, selection.rivals[0], true);
   EXPECT_EQ((Names{advice.chosen, advice.rival}), (Names{secret.name, secret.twin}));
   EXPECT_EQ(advice.signal.has_value(), advice.size >= 0.1);
-  // Neither is added: the result is the model as declared.
-  ASSERT_EQ(selection.models.size(), 1u);
-  EXPECT_EQ(selection.result.job.free.size(), secret.free.size());
+  // One of them is in the model, for without either the other estimates would pay for it.
+  ASSERT_EQ(selection.models.size(), 2u);
+  EXPECT_EQ(selection.models[1].added, advice.chosen);
+  EXPECT_TRUE(trial_of(selection, advice.chosen)->in_model);
+  EXPECT_FALSE(trial_of(selection, advice.rival)->in_model);
+  // And they hold the truth, whichever it is.
+  allow_for_equals(selection);
+  Model<double> declared = secret.declared();
+  for (const ParameterResult& p : selection.result.fit.parameters)
+    for (const char* name : secret.free)
+      if (p.name == name) {
+        EXPECT_LT(p.uncertainty.lower, *members(declared)[find_quantity(name)->index]) << name;
+        EXPECT_GT(p.uncertainty.upper, *members(declared)[find_quantity(name)->index]) << name;
+      }
 }
 
 INSTANTIATE_TEST_SUITE_P(EverySlot, SelectEffectsTwin, testing::ValuesIn(hidden_effects(true)),

@@ -90,10 +90,14 @@ TEST(WordsTest, OfWhatASearchComesTo) {
                        .undecided = {"spring", "position.gain"},
                        .validate_percent = 99.96};
   selection.explained = true;
+  selection.rivals = {{"spring", "position.gain", {}, {}}};
+  for (const char* added : {"", "added_mass", "spring", "drive_lag"})
+    selection.models.push_back({added, {}, {}});
   EXPECT_EQ(verdict_text(selection),
-            "The model lacked added_mass, drive_lag. With them, the validation error falls by 100 "
-            "%, and every signal is explained down to its noise. Undecided: spring, position.gain; "
-            "none of them was added.");
+            "The model lacked added_mass, drive_lag. Undecided: spring or position.gain; these "
+            "recordings do not tell which. With added_mass, spring, drive_lag, the validation "
+            "error falls by 100 %, and every signal is explained down to its noise.");
+  selection.rivals.clear();
   selection.verdict = {.kind = effects_accepted,
                        .accepted = {"T_z", "spring"},
                        .corrections = {{"T_z", 7.05e-3, 7.9989e-3}},
@@ -119,8 +123,15 @@ TEST(WordsTest, OfWhatASearchComesTo) {
             "every signal is explained down to its noise. friction_over_velocity is explained as "
             "well by (5.03 +- 0.18) N exp(-|v| / 0.2 m/s) + (-8.20 +- 0.42) N s^2/m^2 |v|^2.");
   selection.effects.clear();
-  selection.verdict = {.kind = undecided, .undecided = {"spring", "position.gain"}};
-  EXPECT_EQ(verdict_text(selection), "Undecided: spring, position.gain; none of them was added.");
+  selection.verdict = {.kind = undecided,
+                       .undecided = {"spring", "position.gain", "stroke_friction"},
+                       .validate_percent = 50.0};
+  selection.rivals = {{"spring", "position.gain", {}, {}}, {"spring", "stroke_friction", {}, {}}};
+  selection.models = {{"", {}, {}}, {"spring", {}, {}}};
+  selection.explained = false;
+  EXPECT_EQ(verdict_text(selection),
+            "Undecided: spring or position.gain or stroke_friction; these recordings do not tell "
+            "which. With spring, the validation error falls by 50 %, but not down to the noise.");
 }
 
 TEST(WordsTest, OfARunNameTheFitOnce) {
