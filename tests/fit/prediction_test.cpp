@@ -11,35 +11,11 @@
 #include "fit/data/noise.h"
 #include "fit/prediction/comparison.h"
 #include "fit/run.h"
+#include "tests/fit/predicted.h"
 #include "tests/fit/scattering.h"
 
 namespace axisfit {
 namespace {
-
-/// The last of the recordings is to be predicted.
-RunResult predicted(double scatter, std::uint64_t seed) {
-  Job job = scattering_machine(6, scatter, seed);
-  job.recordings.back().role = Role::validate;
-  return run(std::move(job), {.predict = true});
-}
-
-TEST(Prediction, BandsHoldWhatWasNotFitted) {
-  constexpr int kMachines = 20;
-  double inside = 0.0;
-  int whole = 0;
-  for (std::uint64_t seed = 1; seed <= kMachines; ++seed) {
-    const RunResult result = predicted(0.05, seed);
-    ASSERT_EQ(result.predictions.size(), 1u);
-    const RecordingPrediction& prediction = result.predictions.front();
-    EXPECT_EQ(prediction.recording, 5u);
-    EXPECT_EQ(prediction.draws, AxisEnsemble::kDraws);
-    ASSERT_EQ(prediction.signals.size(), 1u);
-    inside += prediction.signals.front().inside_percent / kMachines;
-    whole += prediction.signals.front().is_whole_inside;
-  }
-  EXPECT_GE(inside, 87.0);  // 95 of as many cases, with two standard deviations
-  EXPECT_GE(whole, 16);
-}
 
 TEST(Prediction, UncertaintyIsThatOfTheTableAndItsScatter) {
   const RunResult result = predicted(0.05, 3);

@@ -168,7 +168,7 @@ TEST(SelectEffects, AddsNothingForNoiseThatIsLargerThanStated) {
 // A mass that may not be as large as it is: what is left looks like this effect or that.
 TEST(SelectEffects, SaysNothingOfEffectsWhileADeclaredParameterIsAtItsBound) {
   const Model<double> truth = slide();
-  Job job = two_recordings(truth, truth, {"M", "B_a"});
+  Job job = two_recordings(truth, truth, {"M", "B_a"}, 6.0, {Signal::velocity});
   FreeParameter& mass = job.free.front();
   mass.upper = 0.8 * truth.axis.M;
   mass.lower = 0.1 * truth.axis.M;
