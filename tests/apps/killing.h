@@ -44,6 +44,8 @@ class Killing {
     EXPECT_EQ(whole.exit_code, 0) << whole.err;
     wanted_ = contents();
     EXPECT_GE(wanted_.size(), 4u);
+    for (const auto& [name, text] : wanted_)
+      older_[name] = folder_.read("results/" + name) + "<!-- old -->";
   }
 
   /// Kills it `times` times, and lets it end after every third time. Whatever the instant, the
@@ -84,7 +86,7 @@ class Killing {
     old_.clear();
     if (!with_old_result) return;
     std::filesystem::create_directory(folder_.path("results"));
-    for (const auto& [name, text] : wanted_) folder_.write("results/" + name, "old");
+    for (const auto& [name, text] : older_) folder_.write("results/" + name, text);
     old_ = contents();
   }
 
@@ -92,6 +94,7 @@ class Killing {
   const std::string command_;
   double longest_ = 0.0;  ///< s, of the run that is not killed
   Contents wanted_, old_;
+  Contents older_;  ///< files of another result, as they stand
 };
 
 }  // namespace axisfit
