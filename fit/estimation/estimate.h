@@ -58,7 +58,7 @@ struct GainShift {
   double value = 0.0;
 };
 
-/// What it is with another effect in the place of one that explains the recordings equally well.
+/// What an estimate is with another effect in the place of one that explains as much.
 struct EqualShift {
   std::string chosen, other;
   double value = 0.0;

@@ -349,7 +349,7 @@ std::string reason_text(const EffectTrial& trial, Vocabulary vocabulary) {
       return fmt::format("explains less than {}, which replaced it", trial.other);
     case Reason::explains_equally:
       return fmt::format("explains these recordings as well as {}{}", trial.other,
-                         trial.in_model ? "; one of them stays in the model" : "");
+                         trial.in_model ? "; this one stays in the model" : "");
     case Reason::not_needed:
       return "no longer needed with the effects accepted after it";
   }
