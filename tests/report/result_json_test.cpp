@@ -705,9 +705,10 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
     std::vector<std::string> known = keys(effect);
     EXPECT_EQ(std::erase(known, "elsewhere") == 1, effect.at("accepted").get<bool>());
     EXPECT_EQ(known, (std::vector<std::string>{"name", "acts_on", "meaning", "decision", "accepted",
-                                               "reason", "round", "score", "parameters", "p_value",
-                                               "validation_improvement_percent"}));
+                                               "in_model", "reason", "round", "score", "parameters",
+                                               "p_value", "validation_improvement_percent"}));
     EXPECT_EQ(effect.at("accepted"), effect.at("decision") == "accepted");
+    EXPECT_EQ(effect.at("in_model"), effect.at("accepted"));
     EXPECT_NE(effect.at("reason"), "");
     if (!effect.at("accepted").get<bool>()) continue;
     ++accepted;
