@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 #include "fit/estimation/gain_sensitivity.h"
 #include "fit/estimation/guesses.h"
-#include "fit/selection/equals.h"
+#include "fit/selection/rival_shift.h"
 
 namespace axisfit {
 namespace {
@@ -215,7 +215,7 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
                                           : std::span<const MissingForce>());
     if (options.predict) predict(result, context);
     // Not in the bands: what explains the recordings equally well predicts alike.
-    if (result.selection) allow_for_equals(*result.selection);
+    if (result.selection) allow_for_rivals(*result.selection);
   }
   if (options.compare && !result.interrupted && !result.fit().recordings.empty()) {
     try {

@@ -134,10 +134,10 @@ Json estimate_json(const ParameterResult& p, Vocabulary vocabulary) {
   if (p.gain_shift)
     estimate["at_other_gain"] = {{"observer_gain", p.gain_shift->observer_gain},
                                  {"value", p.gain_shift->value}};
-  if (p.equal_shift)
-    estimate["with_equal"] = {{"in_place_of", p.equal_shift->chosen},
-                              {"effect", p.equal_shift->other},
-                              {"value", p.equal_shift->value}};
+  if (p.rival_shift)
+    estimate["with_rival"] = {{"in_place_of", p.rival_shift->chosen},
+                              {"effect", p.rival_shift->rival},
+                              {"value", p.rival_shift->value}};
   return estimate;
 }
 

@@ -58,9 +58,9 @@ struct GainShift {
   double value = 0.0;
 };
 
-/// What an estimate is with another effect in the place of one that explains as much.
-struct EqualShift {
-  std::string chosen, other;
+/// What an estimate is with a rival in the place of an effect, see selection/rivals.h.
+struct RivalShift {
+  std::string chosen, rival;
   double value = 0.0;
 };
 
@@ -72,7 +72,7 @@ struct ParameterResult {
   /// Where it differs by more than the errors say, which then count that in; see
   /// gain_sensitivity.h.
   std::optional<GainShift> gain_shift{};
-  std::optional<EqualShift> equal_shift{};  ///< counted in the errors, too; see selection/equals.h
+  std::optional<RivalShift> rival_shift{};  ///< counted, too; see selection/rival_shift.h
 };
 
 /// How one start of a multistart ended.

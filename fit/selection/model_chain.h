@@ -39,7 +39,6 @@ struct AcceptedEffect {
   Candidate candidate;
   std::vector<Rival> rivals;
   bool is_seen_elsewhere = false;  ///< it replicates, or held-out stretches show it
-  bool has_equal = false;          ///< another explains as much, so that nobody claims it
 };
 
 /// A value that may be copied, put aside and taken up again. What was found beside the last model

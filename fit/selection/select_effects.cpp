@@ -272,20 +272,18 @@ class EffectSelector {
       state_.take_out_all({.test = Rejection::Test::misfit});
   }
 
-  /// An effect that has an equal is not accepted: neither silently. But without either, all that is
-  /// estimated pays for it: it stays in the model. Which of two clocks is off matters little: there
-  /// the chosen one is accepted, and the other named beside it.
+  /// An effect that has an equal is not accepted, for it may be the other. But without either, all
+  /// that is estimated pays for it: it stays in the model. Which of two clocks is off matters
+  /// little: there the chosen one is accepted, and the other named beside it.
   void find_equals() {
+    const Model<double> with_chosen = fitted_model(current().job, current().fit);
     for (const RivalPair& pair : equal_rivals(state_, round_, context_)) {
-      AcceptedEffect& chosen = chain().accepted()[pair.place];
-      result_.rivals.push_back({chosen.candidate.name, pair.rival.name,
-                                fitted_model(current().job, current().fit), pair.model});
-      if (pair.are_delays) {
-        state_.trials.reject(pair.rival, Reason::explains_equally, chosen.candidate.name);
-      } else {
-        state_.trials.leave_undecided(chosen.candidate, pair.rival);
-        chosen.has_equal = true;
-      }
+      const Candidate& chosen = accepted()[pair.place].candidate;
+      result_.rivals.push_back({chosen.name, pair.rival.name, with_chosen, pair.model});
+      if (pair.are_delays)
+        state_.trials.reject(pair.rival, Reason::explains_equally, chosen.name);
+      else
+        state_.trials.leave_undecided(chosen, pair.rival);
     }
   }
 

@@ -40,7 +40,7 @@ void enter_effects(const SearchState& state, const SelectionStep& result,
   for (const EffectTrial& t : state.trials.list())
     if (t.decision == Decision::undecided) verdict.undecided.push_back(t.candidate.name);
   for (const AcceptedEffect& a : state.accepted()) {
-    if (a.has_equal) continue;
+    if (std::ranges::find(verdict.undecided, a.candidate.name) != verdict.undecided.end()) continue;
     verdict.accepted.push_back(a.candidate.name);
     if (a.candidate.is_constant)
       verdict.corrections.push_back({a.candidate.name, a.candidate.neutral.front(),

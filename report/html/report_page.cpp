@@ -258,7 +258,7 @@ class Page {
         html(R"(<span class="badge {}">{}</span>)", kind(), std::string(verdict_name(u.verdict())));
     if (!p.rests_on.empty()) all += html(" <small>{}</small>", guesses_text(p.rests_on));
     if (p.gain_shift) all += html(" <small>{}</small>", gain_shift_text(*p.gain_shift, unit));
-    if (p.equal_shift) all += html(" <small>{}</small>", equal_shift_text(*p.equal_shift, unit));
+    if (p.rival_shift) all += html(" <small>{}</small>", rival_shift_text(*p.rival_shift, unit));
     return all;
   }
 

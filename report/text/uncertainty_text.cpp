@@ -50,9 +50,9 @@ std::string remarks_text(const Job& job, const FitResult& result) {
     if (p.gain_shift)
       text += paragraph(
           fmt::format("{}: {}.", p.name, gain_shift_text(*p.gain_shift, unit_of(job, i))), 2);
-    if (p.equal_shift)
+    if (p.rival_shift)
       text += paragraph(
-          fmt::format("{}: {}.", p.name, equal_shift_text(*p.equal_shift, unit_of(job, i))), 2);
+          fmt::format("{}: {}.", p.name, rival_shift_text(*p.rival_shift, unit_of(job, i))), 2);
   }
   if (const std::string better = better_gain_text(result); !better.empty())
     text += paragraph(better + ".", 2);

@@ -153,15 +153,14 @@ bool is_accepted(const SelectionVerdict& verdict, const std::string& effect) {
   return std::ranges::find(verdict.accepted, effect) != verdict.accepted.end();
 }
 
-/// Every undecided effect that is in the model, with those that would do as well: "spring or bump".
+/// Every undecided effect that is in the model, with its rivals: "spring or bump".
 std::vector<std::string> undecided_list(const EffectSelection& selection) {
   std::vector<std::string> list;
-  const std::string* chosen = nullptr;
+  std::string chosen;
   for (const UndecidedPair& pair : selection.rivals) {
     if (is_accepted(selection.verdict, pair.chosen)) continue;
-    if (chosen == nullptr || *chosen != pair.chosen) list.push_back(pair.chosen);
+    if (list.empty() || chosen != pair.chosen) list.push_back(chosen = pair.chosen);
     list.back() += " or " + pair.rival;
-    chosen = &pair.chosen;
   }
   return list;
 }
@@ -392,9 +391,9 @@ std::string gain_shift_text(const GainShift& shift, std::string_view unit) {
                      with_unit(fmt::format("{:.4g}", shift.value), unit), shift.observer_gain);
 }
 
-std::string equal_shift_text(const EqualShift& shift, std::string_view unit) {
+std::string rival_shift_text(const RivalShift& shift, std::string_view unit) {
   return fmt::format("{} with {} in place of {}, which its error allows for",
-                     with_unit(fmt::format("{:.4g}", shift.value), unit), shift.other,
+                     with_unit(fmt::format("{:.4g}", shift.value), unit), shift.rival,
                      shift.chosen);
 }
 

@@ -44,7 +44,7 @@ std::string simulation_name(const FitOptions& options, bool tracks);
 /// "157 N s/m at an observer gain of 100 1/s, which its error allows for".
 std::string gain_shift_text(const GainShift& shift, std::string_view unit);
 /// "17.6 N s/m with added_mass in place of velocity.gain, which its error allows for".
-std::string equal_shift_text(const EqualShift& shift, std::string_view unit);
+std::string rival_shift_text(const RivalShift& shift, std::string_view unit);
 /// What to do where another observer gain predicts better; empty where none does.
 std::string better_gain_text(const FitResult& fit);
 

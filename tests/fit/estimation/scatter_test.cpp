@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "fit/estimation/gain_sensitivity.h"
 #include "tests/fit/scattering.h"
 
 namespace axisfit {
@@ -79,6 +80,21 @@ TEST(Scatter, TellsWhatEachRecordingSays) {
                   0.2 * group.standard_error);
     }
   }
+}
+
+TEST(Scatter, AddsToWhatAnotherObserverGainMakesOfAnEstimate) {
+  const Job job = scattering_machine(6, 0.05, 3);
+  FitResult plain = estimate(job), moved = plain;
+  ParameterResult& p = moved.parameters[1];
+  const double move = 3.0 * p.uncertainty.standard_error;
+  p.gain_shift = GainShift{1.0, p.value + move};
+  p.uncertainty = widened(p.uncertainty, p.value, job.free[1], move);
+  const auto scatter = allow_for_scatter(job, plain);
+  ASSERT_TRUE(scatter);
+  ASSERT_GT(scatter->parameters[1].deviation, 0.0);
+  ASSERT_TRUE(allow_for_scatter(job, moved));
+  EXPECT_NEAR(p.uncertainty.standard_error,
+              std::hypot(plain.parameters[1].uncertainty.standard_error, move), 1e-9 * p.value);
 }
 
 TEST(Scatter, OfRecordingsToValidateIsShownOnly) {

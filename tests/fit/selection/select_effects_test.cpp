@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "fit/design/discrimination.h"
-#include "fit/selection/equals.h"
+#include "fit/selection/rival_shift.h"
 #include "tests/fit/selection/selection.h"
 
 namespace axisfit {
@@ -68,7 +68,7 @@ TEST_P(SelectEffectsTwin, IsLeftUndecided) {
   EXPECT_TRUE(trial_of(selection, advice.chosen)->in_model);
   EXPECT_FALSE(trial_of(selection, advice.rival)->in_model);
   // And they hold the truth, whichever it is.
-  allow_for_equals(selection);
+  allow_for_rivals(selection);
   Model<double> declared = secret.declared();
   for (const ParameterResult& p : selection.result.fit.parameters)
     for (const char* name : secret.free)

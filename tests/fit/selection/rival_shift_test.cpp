@@ -1,4 +1,4 @@
-#include "fit/selection/equals.h"
+#include "fit/selection/rival_shift.h"
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ EffectSelection undecided_mass() {
                                      estimate_of("added_mass.dM", 1.0, 0.1)};
   EffectTrial trial;
   trial.candidate.name = "added_mass";
-  trial.candidate.strengths = {find_quantity("added_mass.dM")->index};
+  trial.parameters = {selection.result.fit.parameters.back()};
   selection.effects = {trial};
   const auto with = [](double friction, double mass, double added) {
     Model<double> model = slide();
@@ -46,24 +46,24 @@ EffectSelection undecided_mass() {
   return selection;
 }
 
-TEST(AllowForEquals, CountsTheLargestMoveAsAFurtherError) {
+TEST(AllowForRivals, CountsTheLargestMoveAsAFurtherError) {
   EffectSelection selection = undecided_mass();
-  allow_for_equals(selection);
+  allow_for_rivals(selection);
   const ParameterResult& friction = selection.result.fit.parameters[0];
-  ASSERT_TRUE(friction.equal_shift);
-  EXPECT_EQ(friction.equal_shift->chosen, "added_mass");
-  EXPECT_EQ(friction.equal_shift->other, "position.gain");
-  EXPECT_DOUBLE_EQ(friction.equal_shift->value, 9.5);
+  ASSERT_TRUE(friction.rival_shift);
+  EXPECT_EQ(friction.rival_shift->chosen, "added_mass");
+  EXPECT_EQ(friction.rival_shift->rival, "position.gain");
+  EXPECT_DOUBLE_EQ(friction.rival_shift->value, 9.5);
   EXPECT_DOUBLE_EQ(friction.uncertainty.standard_error, std::hypot(0.3, 0.5));
   EXPECT_DOUBLE_EQ(friction.uncertainty.lower, 10.0 - 2.0 * std::hypot(0.3, 0.5));
 }
 
-TEST(AllowForEquals, LeavesWhatHardlyMovesAndTheEffectItself) {
+TEST(AllowForRivals, LeavesWhatHardlyMovesAndTheEffectItself) {
   EffectSelection selection = undecided_mass();
-  allow_for_equals(selection);
+  allow_for_rivals(selection);
   for (const std::size_t i : {1u, 2u}) {
     const ParameterResult& p = selection.result.fit.parameters[i];
-    EXPECT_FALSE(p.equal_shift) << p.name;
+    EXPECT_FALSE(p.rival_shift) << p.name;
     EXPECT_EQ(p.uncertainty.standard_error, i == 1 ? 0.3 : 0.1);
   }
 }
