@@ -328,7 +328,10 @@ Outcome run(const Case& one, const Rig& paper, std::uint64_t seed) {
   outcome.reached = fit.reduced_chi_square;
   const EffectSelection selection = select_effects(job, fit);
   for (const EffectTrial& trial : selection.effects) {
-    if (trial.decision == Decision::accepted) outcome.accepted.insert(trial.candidate.name);
+    const Candidate& c = trial.candidate;
+    const bool is_more_of_it = !c.extends.empty() && c.name.starts_with(c.extends + ".");
+    if (trial.decision == Decision::accepted)
+      outcome.accepted.insert(is_more_of_it ? c.extends : c.name);
     if (trial.decision == Decision::undecided) outcome.undecided.insert(trial.candidate.name);
     outcome.story += fmt::format("    round {} {}: {} (score {:.4g}, {:.3g} %)\n", trial.round,
                                  trial.candidate.name, reason_text(trial), trial.score,

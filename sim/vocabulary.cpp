@@ -34,6 +34,7 @@ constexpr auto kUnits = std::to_array<UnitPair>({
     {"N/m^3", "N m/rad^3"},
     {"m/N", "rad/(N m)", 1.0, 1e3},
     {"1/N", "1/(N m)", 1.0, 1e3},
+    {"1/N^2", "1/(N m)^2", 1.0, 1e6},
     {"1/m", "1/rad"},
     {"V s/m", "V s/rad", 1e-3, 1.0},
     {"A s/m", "A s/rad", 1e-3, 1.0},

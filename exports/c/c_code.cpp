@@ -172,7 +172,8 @@ class Filling {
     flag("needs_exp", has_any({"dahl_friction", "second_dahl_friction", "warming_grease",
                                "stribeck_friction", "friction_bump", "stribeck_load_friction",
                                "warming_friction", "running_in_friction"}));
-    flag("needs_pow", has("stribeck_friction"));
+    flag("needs_pow",
+         has_any({"stribeck_friction", "quadratic_drag", "torque_droop", "force_droop"}));
     flag("needs_sin",
          has_any({"cogging_torque", "torque_ripple", "pendulum_gravity", "periodic_force"}));
     flag("needs_floor", has("force_over_motor_angle"));
@@ -216,6 +217,8 @@ class Filling {
         const std::string symbol(entry.quantity.symbol),
             member = "parameters." + names[entry.index];
         one.set(symbol, member);
+        if (symbol == "n" && *values_[entry.index] != entry.quantity.default_value)
+          one.set("has_exponent", true);
         if (const auto channel = entry.quantity.channel) {
           data term = object();
           term.set("k", member);
@@ -226,9 +229,6 @@ class Filling {
         }
       }
       one.set("terms", terms);
-      if (effect == "stribeck_friction" &&
-          std::get<StribeckFriction<double>>(model_.effects).n != 1.0)
-        one.set("has_exponent", true);
       all_.set(effect, one);
       if (effect.find("_over_") != std::string::npos)
         add_curve(effect, names, coefficients,

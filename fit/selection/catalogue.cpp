@@ -75,9 +75,10 @@ Candidate candidate_of(const EffectInfo& effect, SearchEntry entry, Vocabulary v
   candidate.extends = words_on(vocabulary, entry.extends);
   candidate.is_curve = entry.is_curve;
   candidate.has_phase = entry.has_phase;
+  // Of one effect there is one for each channel, and some are more of an effect that is there.
   if (const QuantityEntry& first = quantity_list(vocabulary)[candidate.strengths.front()];
-      first.quantity.channel)
-    candidate.name = first.name;  // of one effect there is one for each channel
+      first.quantity.channel || entry.extends == effect.name)
+    candidate.name = first.name;
   return candidate;
 }
 

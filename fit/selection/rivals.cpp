@@ -16,6 +16,14 @@ bool is_delay(const Candidate& candidate) {
          quantity_list()[candidate.strengths.front()].quantity.unit == "s";
 }
 
+/// Whether they say the same of the machine, with other numbers: a drive's droop that is linear or
+/// quadratic. Two channels are two causes.
+bool is_form_of_same_effect(const Candidate& a, const Candidate& b) {
+  const QuantityEntry& p = quantity_list()[a.strengths.front()];
+  const QuantityEntry& q = quantity_list()[b.strengths.front()];
+  return p.effect && p.effect == q.effect && p.quantity.channel == q.quantity.channel;
+}
+
 /// The constants that may be wrong in place of one that was corrected become its rivals.
 void add_alternatives(AcceptedEffect& accepted, const SelectionStep& model) {
   if (!accepted.candidate.is_constant) return;
@@ -92,7 +100,8 @@ std::vector<RivalPair> equal_rivals(SearchState& state, int round, const RunCont
     const auto counts = [&](const Candidate& rival) {
       // A clock that is off has precedence: no part of the machine is its equal.
       const bool is_behind = chosen.is_timing && !rival.is_timing;
-      return !is_behind && rival.parameters() <= chosen.parameters();
+      return !is_behind && !is_form_of_same_effect(chosen, rival) &&
+             rival.parameters() <= chosen.parameters();
     };
     rivals[a] = fit_rivals(state, a, counts, context);
   });

@@ -111,6 +111,16 @@ std::vector<LawCase> laws() {
   add(
       "quadratic_drag", [](auto& m) { add_effect<QuadraticDrag>(m).c = 40.0; },
       [](double, double, double v) { return -40.0 * v * std::abs(v); });
+  for (const double n : {1.3, 3.0})
+    add(
+        "quadratic_drag.n",
+        [=](auto& m) {
+          add_effect<QuadraticDrag>(m) = {40.0, n};
+        },
+        [=](double, double, double v) {
+          return -40.0 * v * std::abs(v) * std::pow(v * v + 1e-6, 0.5 * (n - 2.0));
+        },
+        n < 2.0 ? 1e-7 : 1e-9);
   add(
       "directional_friction.dB_a",
       [](auto& m) {
@@ -158,6 +168,15 @@ std::vector<LawCase> laws() {
       [](double t, double, double) {
         const double force = pushing(three_pushes(), t);
         return -4e-3 * force * std::abs(force);
+      });
+  add(
+      "force_droop.c_q",
+      [](auto& m) {
+        add_effect<ForceDroop>(m) = {1e-3, 2e-5};
+      },
+      [](double t, double, double) {
+        const double force = pushing(three_pushes(), t);
+        return force * (1.0 / std::sqrt(1.0 + 4e-5 * force * force) - 1e-3 * std::abs(force) - 1.0);
       });
   add(
       "force_over_velocity",
@@ -333,6 +352,17 @@ TEST(ForceLaw, OfStribeckFrictionHoldsAndSlides) {
       }
     }
   }
+}
+
+TEST(ForceLaw, OfDragHasAnExponent) {
+  Instant<double> at{};
+  for (const double n : {1.2, 1.7, 2.0, 2.5, 4.0})
+    for (const double v : {-2.0, -0.3, 0.02, 0.5}) {
+      at.velocity = v;
+      const double drag = 60.0 * std::pow(std::abs(v), n);
+      EXPECT_NEAR(QuadraticDrag<double>({60.0, n}).arm_force(at), -sign(v) * drag, 0.01 * drag)
+          << n << ' ' << v;
+    }
 }
 
 TEST(ForceLaw, OfStribeckFrictionHasAnExponent) {
@@ -736,6 +766,14 @@ TEST(ForceLaw, OfTorquesIsInTheForceOfTheDrive) {
   compare(
       "torque_droop", [](auto& m) { add_effect<TorqueDroop>(m).c_i = 0.02; },
       [](double i, double, double) { return 1.0 - 0.02 * std::abs(i); });
+  compare(
+      "torque_droop.c_q",
+      [](auto& m) {
+        add_effect<TorqueDroop>(m) = {0.01, 2e-3};
+      },
+      [](double i, double, double) {
+        return 1.0 / std::sqrt(1.0 + 4e-3 * i * i) - 0.01 * std::abs(i);
+      });
   compare(
       "torque_fade", [](auto& m) { add_effect<TorqueFade>(m).c_t = 0.3; },
       [](double, double, double t) { return 1.0 / (1.0 + 0.3 * t); });

@@ -145,13 +145,13 @@ Names operator-(Names a, const Names& b) {
 TEST(IsUsed, FollowsTheStructure) {
   const Names selection{"R", "L", "K_e", "V_s", "K_v", "initial.y6"};
   const Names soft{"soft_transmission.c_g", "soft_transmission.H_g"};
-  const Names supply{"supply_resistance.R_v"}, force{"force_droop.c_f"};
+  const Names supply{"supply_resistance.R_v"}, force{"force_droop.c_f", "force_droop.c_q"};
   const Names gear{"H", "b_g", "k_g", "initial.x", "initial.dx"};
   const Names electric{"K_m", "K_t", "T_z", "T_p",        "T_r",       "K_1",
                        "K_2", "K_i", "V_L", "initial.y4", "initial.y5"};
   const Names motor{"J_m", "B_m", "r_g"};
   Names of_electric{"torque_ripple.r_s", "torque_ripple.r_c", "torque_ripple.order",
-                    "torque_droop.c_i"};
+                    "torque_droop.c_i", "torque_droop.c_q"};
   Names of_motor{"cogging_torque.T_s", "cogging_torque.T_c", "cogging_torque.order"};
   for (int k = 1; k <= 16; ++k) of_motor.insert("force_over_motor_angle.c" + std::to_string(k));
   const EffectSet none, all = EffectSet().set();

@@ -247,23 +247,31 @@ TEST(Catalogue, OffersASecondHarmonicOnlyBesideTheFirst) {
   EXPECT_FALSE(offers(list, "periodic_force.F_s1"));
 }
 
-TEST(Catalogue, OffersAnExponentOnlyBesideStribeckFriction) {
+/// That the catalogue offers the exponent of an effect beside that effect alone.
+template <template <class> class Effect>
+void expect_exponent(double neutral, const Effect<double>& effect, double declared) {
   Job job = job_with({Signal::velocity});
+  const std::string name = std::string(Effect<double>::name) + ".n";
   const auto exponent_in = [&] {
     const auto list = catalogue(job, scales());
-    const auto found = std::ranges::find_if(list, [](const Candidate& c) {
-      return c.strengths == std::vector{find_quantity("stribeck_friction.n")->index};
+    const auto found = std::ranges::find_if(list, [&](const Candidate& c) {
+      return c.strengths == std::vector{find_quantity(name)->index};
     });
     return found == list.end() ? std::optional<Candidate>() : *found;
   };
   EXPECT_FALSE(exponent_in());
-  add_effect<StribeckFriction>(job.model) = {12.0, 0.05};
+  add_effect<Effect>(job.model) = effect;
   const std::optional<Candidate> exponent = exponent_in();
   ASSERT_TRUE(exponent);
-  EXPECT_EQ(exponent->neutral, std::vector{1.0});
+  EXPECT_EQ(exponent->neutral, std::vector{neutral});
   EXPECT_EQ(exponent->parameters(), 1u);
-  std::get<StribeckFriction<double>>(job.model.effects).n = 2.0;  // declared: nothing is missing
+  std::get<Effect<double>>(job.model.effects).n = declared;  // nothing is missing
   EXPECT_FALSE(exponent_in());
+}
+
+TEST(Catalogue, OffersAnExponentOnlyBesideItsEffect) {
+  expect_exponent<StribeckFriction>(1.0, {12.0, 0.05}, 2.0);
+  expect_exponent<QuadraticDrag>(2.0, {60.0}, 1.5);
 }
 
 TEST(Catalogue, OffersASecondDahlElementOnlyBesideTheFirst) {
@@ -459,6 +467,7 @@ TEST_F(WithCandidate, OfNeutralStrengthPredictsTheSameBitForBit) { expect_the_sa
 TEST_F(WithCandidate, ThatExtendsAnEffectPredictsTheSameAtNeutralStrength) {
   add_effect<StribeckFriction>(job_.model) = {12.0, 0.05};
   add_effect<DahlFriction>(job_.model) = {5.0, 1e-3};
+  add_effect<QuadraticDrag>(job_.model).c = 60.0;
   auto& force = add_effect<PeriodicForce>(job_.model);
   force.F_s1 = 5.0;
   force.period = 0.05;
@@ -468,8 +477,8 @@ TEST_F(WithCandidate, ThatExtendsAnEffectPredictsTheSameAtNeutralStrength) {
              return old.strengths == c.strengths;
            });
   });
-  // Exponent, damping, second element, second harmonic; and two changes of dry friction.
-  EXPECT_EQ(extensions.size(), 6u);
+  // Two exponents, damping, second element, second harmonic; and two changes of dry friction.
+  EXPECT_EQ(extensions.size(), 7u);
   expect_the_same(extensions);
 }
 
