@@ -75,6 +75,7 @@ void run_requested_analyses(RunResult& result, const RunContext& context) {
   };
   if (options.select_effects && result.first.usable)
     result.selection = select_effects(result.baseline, result.first, {}, context);
+  if (result.selection && result.selection->horizon) result.horizon = result.selection->horizon;
   if (result.selection && result.selection->interrupted) throw Interrupted();
   if (result.selection && has_noise_from(result.baseline, NoiseSource::fit) &&
       !result.selection->effects.empty())
@@ -202,7 +203,8 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   result.grade = grade_of(result.job(), last, result.diagnosis);
   // Something is missing, though it cannot be told what.
   if (result.grade.grade == Grade::explained && result.selection &&
-      !result.selection->verdict.undecided.empty())
+      (!result.selection->verdict.undecided.empty() ||
+       result.selection->verdict.kind == SelectionVerdict::Kind::none_passes))
     result.grade = {.grade = Grade::usable, .reason = FitGrade::Reason::residual};
   if (result.grade.grade == Grade::model_wrong)
     for (ParameterResult& p : last.parameters)

@@ -126,7 +126,6 @@ std::vector<HorizonTrial> criteria_for(const Job& job, const std::vector<Stretch
 }  // namespace
 
 void set_criterion(FitOptions& options, const HorizonTrial& criterion) {
-  options.choose_horizon = false;
   options.horizon = criterion.horizon;
   if (criterion.observer_gain > 0.0) {
     options.observer = ObserverMode::fixed;

@@ -356,7 +356,8 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
 
 std::vector<double> score_gains(const Job& job) {
   const double first = initial_observer_gain(job);
-  if (job.options.observer == ObserverMode::fixed || !std::isfinite(first)) return {first};
+  const bool is_given = job.options.observer == ObserverMode::fixed && !job.options.choose_horizon;
+  if (is_given || !std::isfinite(first)) return {first};
   return {first / 30.0, first / 100.0};
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/parallel.h"
+#include "fit/estimation/horizon.h"
 #include "fit/estimation/parameters.h"
 #include "fit/estimation/windows.h"
 #include "fit/selection/pruning.h"
@@ -26,6 +27,7 @@ SelectionStep tracking(SelectionStep model, const RunContext& context) {
   options.observer = ObserverMode::fixed;
   options.observer_gain = gain;
   options.horizon = 0.0;
+  options.choose_horizon = false;
   model.fit = refit_from(model.job, values_of(model.fit), context);
   return model;
 }
@@ -359,20 +361,21 @@ std::vector<std::string> EffectSelector::small_effects() const {
   return names;
 }
 
-/// What was found while the simulation tracked, with the fits in windows that the job asks for.
-EffectSelection in_windows(EffectSelection selection, const SelectionStep& declared,
-                           const RunContext& context) {
+/// What was found by another criterion, with the fits that these options ask for. Of the declared
+/// model such a fit may be known.
+EffectSelection refitted(EffectSelection selection, const FitOptions& options,
+                         const FitResult* declared, const RunContext& context) {
   std::vector<SelectionStep>& models = selection.models;
   SelectionStep& last = selection.result;
-  last.job.options = declared.job.options;
+  last.job.options = options;
   context.report({.phase = "final fit"});
-  last.fit = models.size() > 1 ? final_fit(last.job, values_of(last.fit), context) : declared.fit;
+  last.fit = models.size() > 1 ? final_fit(last.job, values_of(last.fit), context) : *declared;
   for (SelectionStep& model : models) {
-    model.job.options = declared.job.options;
+    model.job.options = options;
     // Where blocks are held out, they are left out of these fits alone.
     const bool is_known = !selection.held_out_blocks;
-    if (is_known && &model == &models.front()) {
-      model.fit = declared.fit;
+    if (is_known && declared != nullptr && &model == &models.front()) {
+      model.fit = *declared;
     } else if (is_known && &model == &models.back()) {
       model.fit = last.fit;
     } else {
@@ -383,11 +386,17 @@ EffectSelection in_windows(EffectSelection selection, const SelectionStep& decla
   SelectionVerdict& verdict = selection.verdict;
   if (models.size() > 1)
     verdict.validate_percent = improvement(models.front(), models.back()).validate_percent;
-  const bool is_noise = last.fit.usable && explains(last);
+  // Windows, and a gain that follows the noise, show less than the search has seen.
+  const bool is_noise =
+      (selection.explained || !verdict.small.empty()) && last.fit.usable && explains(last);
   selection.explained = is_noise && verdict.small.empty();
   if (verdict.kind != SelectionVerdict::Kind::no_usable_fit)
     verdict.kind = kind_of(selection, is_noise);
   return selection;
+}
+
+bool is_same_criterion(const FitOptions& a, const FitOptions& b) {
+  return a.observer == b.observer && a.observer_gain == b.observer_gain && a.horizon == b.horizon;
 }
 
 }  // namespace
@@ -395,15 +404,27 @@ EffectSelection in_windows(EffectSelection selection, const SelectionStep& decla
 EffectSelection select_effects(const Job& job, const FitResult& first,
                                const SelectionOptions& options, const RunContext& context) {
   const ThreadPool pool(job.options.threads);
-  if (window_states(job) == 0 || !first.usable)
-    return EffectSelector(job, first, options, context).run();
-  // The states with which windows begin take part of what is missing upon themselves, and every
-  // fit with them takes minutes.
   const SelectionStep declared{"", job, first};
-  const SelectionStep start = tracking(declared, context);
+  const bool is_chosen = job.options.choose_horizon;
+  // The states with which windows begin take part of what is missing upon themselves, and every
+  // fit with them takes minutes. A simulation that was chosen to track may follow the noise.
+  const bool tracks = first.usable && (window_states(job) > 0 ||
+                                       (is_chosen && job.options.observer == ObserverMode::fixed));
+  const SelectionStep start = tracks ? tracking(declared, context) : declared;
   EffectSelection selection = EffectSelector(start.job, start.fit, options, context).run();
   try {
-    if (!selection.interrupted) selection = in_windows(selection, declared, context);
+    FitOptions criterion = job.options;
+    // What predicts best changes with the model.
+    if (is_chosen && !selection.interrupted && selection.models.size() > 1) {
+      Job extended = selection.result.job;
+      extended.options = job.options;
+      set_initial_values(extended, values_of(selection.result.fit));
+      selection.horizon = choose_horizon(extended, context);
+      set_criterion(criterion, selection.horizon->trials[selection.horizon->chosen]);
+    }
+    const bool is_other = !is_same_criterion(criterion, job.options);
+    if (!selection.interrupted && (tracks || is_other))
+      selection = refitted(selection, criterion, is_other ? nullptr : &first, context);
   } catch (const Interrupted&) {
     selection.interrupted = true;
   }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "fit/estimation/horizon.h"
 #include "fit/selection/model_chain.h"
 #include "fit/selection/trials.h"
 
@@ -67,6 +68,8 @@ struct EffectSelection {
   bool held_out_blocks = false;       ///< no recording to validate: blocks of the fitted were kept
   bool explained = false;             ///< nothing but noise is left, and no small effect
   bool interrupted = false;           ///< the search was not finished
+  /// Where the job lets it be chosen and effects were accepted: by the model with them.
+  std::optional<HorizonChoice> horizon;
   SelectionVerdict verdict;
   std::vector<UndecidedPair> rivals;
 };

@@ -208,7 +208,7 @@ TEST(ChooseHorizon, IsWhatFitsGoByThen) {
   FitOptions options;
   options.choose_horizon = true;
   set_criterion(options, {.observer_gain = 60.0});
-  EXPECT_FALSE(options.choose_horizon);
+  EXPECT_TRUE(options.choose_horizon);
   EXPECT_EQ(options.observer, ObserverMode::fixed);
   EXPECT_EQ(options.observer_gain, 60.0);
   set_criterion(options, {.horizon = 0.5});

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "fit/design/discrimination.h"
+#include "fit/estimation/continuation.h"
+#include "fit/estimation/horizon.h"
 #include "fit/selection/rival_shift.h"
 #include "tests/fit/selection/selection.h"
 
@@ -131,6 +133,33 @@ TEST(SelectEffects, FindsEffectsForAFitInWindows) {
   }
   for (const auto& [name, value] : secret.strengths) expect_found(selection, name, value);
   EXPECT_EQ(selection.result.fit.observer_gain, 0.0);
+}
+
+// One that predicts one step ahead follows the noise of the velocity, and would see nothing.
+TEST(SelectEffects, SeesWhatAHorizonThatWasChosenHides) {
+  Model<double> truth = slide();
+  add_effect<ConstantForce>(truth).F_0 = 1.0;
+  Job job = two_recordings(truth, slide(), {"M", "B_a"}, 6.0, {Signal::velocity});
+  set_criterion(job.options, {.observer_gain = initial_observer_gain(job)});
+  const FitResult first = estimate(job);
+  const EffectSelection as_given = select_effects(job, first);
+  EXPECT_EQ(accepted(as_given), Names{});
+  EXPECT_FALSE(as_given.horizon);
+
+  job.options.choose_horizon = true;
+  const EffectSelection selection = select_effects(job, first);
+  EXPECT_EQ(accepted(selection), Names{"constant_force"});
+  expect_found(selection, "constant_force.F_0", 1.0);
+  // With the effect another horizon may be best: all models are fitted by that.
+  ASSERT_TRUE(selection.horizon);
+  FitOptions chosen = job.options;
+  set_criterion(chosen, selection.horizon->trials[selection.horizon->chosen]);
+  ASSERT_EQ(selection.models.size(), 2u);
+  for (const SelectionStep& model : selection.models) {
+    EXPECT_EQ(model.job.options.observer, chosen.observer);
+    EXPECT_EQ(model.job.options.observer_gain, chosen.observer_gain);
+    EXPECT_EQ(model.job.options.horizon, chosen.horizon);
+  }
 }
 
 TEST(SelectEffects, FitsAllSamplesInWindowsWhereBlocksWereHeldOut) {
