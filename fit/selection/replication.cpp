@@ -92,17 +92,17 @@ Replication replication(const Job& job, const FitResult& fit, const FitResult& e
     neutral.erase(neutral.begin());
   }
   bool far_here = false, far_there = false;
-  result.is_alike = true;
+  result.is_near = true;
   for (std::size_t i = 0; i < here.size(); ++i) {
     // A ripple is known by its period: with another one it is another ripple.
     constexpr double kPart = 0.1, kPartOfPeriod = 0.02;
     const double part = candidate.has_phase && i > 0 ? kPartOfPeriod : kPart;
-    result.is_alike = result.is_alike && is_near(here[i], there[i], neutral[i], part);
+    result.is_near = result.is_near && is_near(here[i], there[i], neutral[i], part);
     if (i + (candidate.has_phase ? 1 : 0) >= strengths) continue;
     far_here = far_here || is_far_from_zero(here[i], neutral[i]);
     far_there = far_there || is_far_from_zero(there[i], neutral[i]);
   }
-  result.is_alike = result.is_alike && far_here && far_there;
+  result.is_alike = result.is_near && far_here && far_there;
   if (candidate.has_phase && here.size() == 2)
     result.has_other_period = far_here && far_there && is_far_apart(here[1], there[1]);
   return result;

@@ -20,6 +20,7 @@ std::optional<FitResult> fit_elsewhere(const Job& job, const FitResult& fit,
 struct Replication {
   std::vector<ParameterResult> parameters;  ///< of the effect, as found elsewhere
   bool is_alike = false;
+  bool is_near = false;  ///< alike but for the distance from zero: neither proof nor objection
   /// Of an effect with a phase: it is beyond doubt in both, and has another period there. A slow
   /// disturbance looks like part of a period, of another one in every recording.
   bool has_other_period = false;

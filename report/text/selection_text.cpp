@@ -46,8 +46,11 @@ Tone tone_of(Decision decision) {
 /// What other recordings say of an accepted effect.
 std::string elsewhere_text(const EffectTrial& t, Vocabulary vocabulary) {
   if (!t.replication || t.candidate.is_curve) return "";
+  const Replication& found = *t.replication;
   return fmt::format("; the recordings to validate, fitted by themselves, {}: {}",
-                     t.replication->is_alike ? "tell alike" : "tell otherwise",
+                     found.is_alike  ? "tell alike"
+                     : found.is_near ? "agree, but do not prove it"
+                                     : "tell otherwise",
                      estimates_text(t.replication->parameters, false, vocabulary));
 }
 
