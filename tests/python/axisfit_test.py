@@ -257,23 +257,5 @@ class Stubs(unittest.TestCase):
         self.assertEqual(found.returncode, 0, found.stdout + found.stderr)
 
 
-class Notebooks(unittest.TestCase):
-    def test_run_from_top_to_bottom(self):
-        try:
-            import nbclient
-            import nbformat
-        except ImportError:
-            self.skipTest("python3-nbclient is not installed")
-        notebooks = sorted((PROJECT / "examples" / "notebooks").glob("*.ipynb"))
-        self.assertGreaterEqual(len(notebooks), 3)
-        os.environ["PYTHONPATH"] = str(MODULES)
-        for path in notebooks:
-            with self.subTest(path.name):
-                notebook = nbformat.read(path, as_version=4)
-                self.assertTrue(all(not cell.get("outputs") for cell in notebook.cells), "commit it without output")
-                nbclient.NotebookClient(notebook, timeout=600, kernel_name="python3",
-                                        resources={"metadata": {"path": str(path.parent)}}).execute()
-
-
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

@@ -19,6 +19,7 @@ const axe = readFileSync(packages.resolve("axe-core/axe.min.js"), "utf8");
 
 const folder = mkdtempSync(join(tmpdir(), "axisfit-report-"));
 const own = !AXISFIT_REPORT_PAGE;
+const any = !own && "the script does so in any page";
 const data = pageData();
 const asset = (kind) => readFileSync(`${AXISFIT_REPORT_ASSETS}.${kind}`, "utf8");
 const path = AXISFIT_REPORT_PAGE ?? join(folder, "report.html");
@@ -112,7 +113,7 @@ describe("any report", () => {
     assert.deepEqual(await charts(), before);
   });
 
-  test("reading values moves nothing", async () => {
+  test("reading values moves nothing", {skip: any}, async () => {
     for (const {id} of (await charts()).filter((c) => c.time).slice(0, 6)) {
       const over = page.locator(`${selectorOf(id)} .over`);
       await over.scrollIntoViewIfNeeded();
@@ -123,7 +124,7 @@ describe("any report", () => {
     }
   });
 
-  test("a double click resets", async () => {
+  test("a double click resets", {skip: any}, async () => {
     const before = await charts();
     const first = before.find((c) => c.time);
     await drag(first.id, 0.3, 0.5);
@@ -132,7 +133,7 @@ describe("any report", () => {
     assert.deepEqual(await charts(), before);
   });
 
-  test("keys move the cursor, zoom and reset", async () => {
+  test("keys move the cursor, zoom and reset", {skip: any}, async () => {
     const {id, x} = (await charts()).find((c) => c.time);
     await page.locator(`${selectorOf(id)} .plot`).focus();
     const read = () => page.locator(`${selectorOf(id)} .at`).textContent();
@@ -173,7 +174,7 @@ describe("any report", () => {
           violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.html).join(" ")}`), []);
     });
 
-  test("the button changes the colours", async () => {
+  test("the button changes the colours", {skip: any}, async () => {
     const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
     const light = await paper();
     await page.locator(".controls button", {hasText: "Dark"}).click();
@@ -208,7 +209,7 @@ describe("any report", () => {
     assert.deepEqual(broken, []);
   });
 
-  test("texts of charts are filled, not outlined", async () => {
+  test("texts of charts are filled, not outlined", {skip: any}, async () => {
     const strokes = await page.evaluate(() => [...new Set(
         [...document.querySelectorAll(".chart text")].map((e) => getComputedStyle(e).stroke))]);
     assert.deepEqual(strokes, ["none"]);
@@ -292,7 +293,7 @@ describe("any report", () => {
     assert.ok((await page.pdf()).length > 20000);
   });
 
-  test("a chart is saved as SVG and PNG", async () => {
+  test("a chart is saved as SVG and PNG", {skip: any}, async () => {
     const {id} = (await charts())[0];
     const svg = (await saved(id, "SVG")).toString();
     const [error, names, labels] = await page.evaluate(([text, id]) => {
