@@ -422,6 +422,7 @@ Json effect_json(const EffectTrial& t, Vocabulary vocabulary) {
             {"validation_improvement_percent", optional(judged, t.improvement.validate_percent)}};
   if (t.replication)
     json["elsewhere"] = {{"alike", t.replication->is_alike},
+                         {"agree", t.replication->is_near},
                          {"parameters", estimates_json(t.replication->parameters, vocabulary)}};
   if (t.closed_form)
     json["closed_form"] = {{"text", closed_form_text(*t.closed_form)},

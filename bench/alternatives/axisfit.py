@@ -93,7 +93,7 @@ def dahl(k, p):
 LAWS = {
     "coulomb_friction": lambda k, p: p["F_c"] * k.direction,
     "constant_force": lambda k, p: -p["F_0"] * np.ones_like(k.v),
-    "quadratic_drag": lambda k, p: p["c"] * k.v * np.abs(k.v),
+    "quadratic_drag": lambda k, p: p["c"] * k.direction * np.abs(k.v) ** p.get("n", 2.0),
     "directional_friction": lambda k, p: p.get("dB_a", 0.0) * np.abs(k.v)
     + p.get("dF_c", 0.0) * np.abs(k.direction),
     "stribeck_friction": lambda k, p: p["F_st"] * k.direction
@@ -200,7 +200,9 @@ def lacking(values, recording):
     if "torque_fade" in groups:
         force = force / (1.0 + groups["torque_fade"]["c_t"] * k.time)
     if "force_droop" in groups:
-        force = force * (1.0 - groups["force_droop"]["c_f"] * np.abs(force))
+        droop = groups["force_droop"]
+        force = force * (1.0 / np.sqrt(1.0 + 2.0 * droop.get("c_q", 0.0) * force**2)
+                         - droop.get("c_f", 0.0) * np.abs(force))  # fmt: skip
     if "drive_lag" in groups and groups["drive_lag"]["T_l"] > 0.0:
         follow = signal.cont2discrete(([1.0], [groups["drive_lag"]["T_l"], 1.0]), 1.0 / k.rate,
                                       "bilinear")  # fmt: skip

@@ -4,7 +4,8 @@ A case has three recordings of different motions: `fit`, `validate`, and `test`,
 and on which all are judged. That one has neither noise nor disturbance, and its motion is known exactly,
 so that its error is the model's. Half of the machines are driven by a servo with a position encoder and
 fitted with an observer, as --init and the EMPS job do; the others by levels of force, with a recorded
-velocity and a free run. All but the clean ones with white noise may have a coloured disturbance too.
+velocity and a free run, or with the horizon that `--horizon` of run.py says. All but the clean ones
+with white noise may have a coloured disturbance too.
 
 The strength of a law is such that the reduced chi-square of the best fit without it is about 3 or 10. It
 is found without the project: the force that the base model lacks, sent through the linear response of
@@ -199,8 +200,9 @@ def make(names, count, seed):
     return cases
 
 
-def write(case, folder):
-    """axis.yaml, job.yaml and the two recordings that a method may see."""
+def write(case, folder, horizon):
+    """axis.yaml, job.yaml and the two recordings that a method may see. The horizon is that of a fit
+    without an observer."""
     signal_name, unit = ("position", "m") if case.setup == "servo" else ("velocity", "m/s")
     for role in ("fit", "validate"):
         r = case.recordings[role]
@@ -224,7 +226,7 @@ def write(case, folder):
                      signal_name: {"column": signal_name, "unit": unit,
                                    "sigma": f"{case.sigma:.6g} {unit}"}}}
         for role in ("fit", "validate")]}  # fmt: skip
-    if case.setup == "servo":
-        job["fit"] = {"observer": {"fixed": f"{case.observer:g} 1/s"}}
+    servo = {"observer": {"fixed": f"{case.observer:g} 1/s"}}
+    job["fit"] = servo if case.setup == "servo" else {"horizon": horizon}
     (folder / "axis.yaml").write_text(json.dumps(axis, indent=1) + "\n")
     (folder / "job.yaml").write_text(json.dumps(job, indent=1) + "\n")

@@ -718,6 +718,7 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
     EXPECT_LT(effect.at("p_value"), 1e-3);
     EXPECT_GT(effect.at("validation_improvement_percent"), 50.0);
     EXPECT_EQ(effect.at("elsewhere").at("alike"), true);
+    EXPECT_EQ(effect.at("elsewhere").at("agree"), true);
     EXPECT_NEAR(effect.at("elsewhere").at("parameters")[0].at("value"), 6.0, 0.2);
   }
   EXPECT_EQ(accepted, 1);

@@ -66,6 +66,12 @@ TEST(ReplicationTest, BothMustBeFarFromZeroAndOfOneSign) {
   EXPECT_FALSE(of_friction(20.0, -20.0, 3.0).is_alike);
 }
 
+TEST(ReplicationTest, EstimatesThatProveNothingMayAgree) {
+  EXPECT_TRUE(of_friction(6.0, 3.5, 1.0).is_near);
+  EXPECT_FALSE(of_friction(20.0, 29.0, 2.0).is_near);
+  EXPECT_FALSE(of_friction(20.0, -20.0, 3.0).is_near);
+}
+
 TEST(ReplicationTest, NeedsStandardErrors) { EXPECT_FALSE(of_friction(20.0, 20.0, 0.0).is_alike); }
 
 TEST(ReplicationTest, AShapeMustBeAlikeToo) {
