@@ -152,7 +152,7 @@ struct FitOptions {
   /// s, of the windows in which a fit without observer runs free, each from a state that is fitted,
   /// see windows.h; zero: the whole recording is one.
   double horizon = 0.0;
-  bool choose_horizon = false;  ///< the criterion is chosen, see horizon.h
+  bool choose_horizon = false;  ///< the criterion is or was chosen, see horizon.h
   Loss loss = Loss::squares;
   double huber_width = 3.0;  ///< residuals above this many sigma count linearly
   int max_iterations = 50;   ///< of each stage of the continuation

@@ -35,7 +35,7 @@ struct HorizonChoice {
 /// Interrupted after a stop.
 HorizonChoice choose_horizon(const Job& job, const RunContext& context = {});
 
-/// Lets fits go by that criterion; that it was chosen remains to be seen (FitOptions).
+/// Lets fits go by that criterion. `choose_horizon` stays, to say that it was chosen.
 void set_criterion(FitOptions& options, const HorizonTrial& criterion);
 
 }  // namespace axisfit

@@ -387,8 +387,9 @@ EffectSelection refitted(EffectSelection selection, const FitOptions& options,
   if (models.size() > 1)
     verdict.validate_percent = improvement(models.front(), models.back()).validate_percent;
   // Windows, and a gain that follows the noise, show less than the search has seen.
-  const bool is_noise =
-      (selection.explained || !verdict.small.empty()) && last.fit.usable && explains(last);
+  const bool was_noise =
+      selection.explained || verdict.kind == SelectionVerdict::Kind::hardly_anything;
+  const bool is_noise = was_noise && last.fit.usable && explains(last);
   selection.explained = is_noise && verdict.small.empty();
   if (verdict.kind != SelectionVerdict::Kind::no_usable_fit)
     verdict.kind = kind_of(selection, is_noise);
