@@ -80,6 +80,9 @@ struct RunResult {
   std::vector<RecordingCheck> checks;                    ///< of each recording
   /// None unless it was asked for and the first fit is usable.
   std::optional<EffectSelection> selection;
+  /// The loop found something only with the roles of the recordings exchanged: with them
+  /// `baseline`, `first` and all that follows are.
+  bool roles_exchanged = false;
   std::vector<ModelScore> scores;                ///< of the loop's models
   std::optional<Diagnosis> diagnosis;            ///< of the final model; none unless that is usable
   FitGrade grade;                                ///< of the final model

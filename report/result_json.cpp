@@ -486,6 +486,7 @@ Json selection_json(const RunResult& run_result) {
   json["selection"] = {{"verdict", verdict_text(selection)},
                        {"explained", selection.explained},
                        {"held_out_blocks", selection.held_out_blocks},
+                       {"roles_exchanged", run_result.roles_exchanged},
                        {"hints", list(run_result.discriminations, [&](const Discrimination& d) {
                           return discrimination_text(d, vocabulary);
                         })}};

@@ -73,4 +73,15 @@ FreeParameter free_parameter(const QuantityEntry& entry, double initial) {
   return p;
 }
 
+std::optional<Job> with_exchanged_roles(Job job) {
+  if (std::ranges::find(job.recordings, Role::validate, &Recording::role) == job.recordings.end() ||
+      std::ranges::any_of(job.free, [](const FreeParameter& p) { return p.recording.has_value(); }))
+    return std::nullopt;
+  for (Recording& r : job.recordings) {
+    r.role = r.role == Role::fit ? Role::validate : Role::fit;
+    r.held_out.clear();
+  }
+  return job;
+}
+
 }  // namespace axisfit

@@ -190,4 +190,8 @@ struct Job {
   }
 };
 
+/// The job with the roles of its recordings exchanged: those to validate are fitted, all samples of
+/// them. None where nothing validates, or where a parameter is one recording's own.
+std::optional<Job> with_exchanged_roles(Job job);
+
 }  // namespace axisfit

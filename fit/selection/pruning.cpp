@@ -90,8 +90,9 @@ void drop_imitators(SearchState& state, const RunContext& context) {
   }
 }
 
-void drop_unreplicated_where_half_remains(SearchState& state, const RunContext& context) {
-  const std::optional<Rejection> rejection = rejection_of_all(state);
+void drop_unreplicated_of_a_poor_model(SearchState& state, double least_share,
+                                       const RunContext& context) {
+  const std::optional<Rejection> rejection = rejection_of_all(state, least_share);
   for (std::size_t a = 0; rejection && a < state.accepted().size();) {
     const Candidate candidate = state.accepted()[a].candidate;
     if (!candidate.is_instrument() && is_alike_elsewhere(state, candidate, context)) {
@@ -118,11 +119,10 @@ void drop_other_periods(SearchState& state, const RunContext& context) {
   }
 }
 
-std::optional<Rejection> rejection_of_all(SearchState& state) {
-  constexpr double kLeastPercent = 50.0;
+std::optional<Rejection> rejection_of_all(SearchState& state, double least_share) {
   if (state.accepted().empty() || state.chain.explained()) return std::nullopt;
   const double percent = improvement(state.chain.declared(), state.current()).missing_percent;
-  if (percent >= kLeastPercent) return std::nullopt;
+  if (percent >= least_share) return std::nullopt;
   return Rejection{.test = Rejection::Test::share, .found = percent};
 }
 

@@ -21,16 +21,18 @@ void eliminate_backward(SearchState& state, const RunContext& context);
 /// alike.
 void drop_imitators(SearchState& state, const RunContext& context);
 
-/// Of a model with which most of the error remains, no part is named but what other recordings show
-/// alike; and no instrument, which takes the blame for a part of the machine in all alike.
-void drop_unreplicated_where_half_remains(SearchState& state, const RunContext& context);
+/// Of a model that takes less than this share of the error away, in per cent, no part is named but
+/// what other recordings show alike; and no instrument, which takes the blame for a part of the
+/// machine in all alike.
+void drop_unreplicated_of_a_poor_model(SearchState& state, double least_share,
+                                       const RunContext& context);
 
 /// Drops effects with another period elsewhere: a period is what an effect with a phase is known
 /// by.
 void drop_other_periods(SearchState& state, const RunContext& context);
 
-/// Why no effect is named of a model with which most of the error remains; none where less does.
-std::optional<Rejection> rejection_of_all(SearchState& state);
+/// Why no effect is named of a model that takes less than this share of the error away.
+std::optional<Rejection> rejection_of_all(SearchState& state, double least_share);
 
 /// Enters in the trials what the recordings to validate, fitted by themselves, say of what was
 /// accepted.

@@ -46,16 +46,9 @@ Estimate amplitude(const Estimate& sine, const Estimate& cosine) {
 
 std::optional<FitResult> fit_elsewhere(const Job& job, const FitResult& fit,
                                        const RunContext& context) {
-  Job other = job;
-  bool any = false;
-  for (Recording& r : other.recordings) {
-    any = any || r.role == Role::validate;
-    r.role = r.role == Role::fit ? Role::validate : Role::fit;
-    r.held_out.clear();
-  }
-  if (!any || std::ranges::any_of(job.free, [](const auto& p) { return p.recording.has_value(); }))
-    return std::nullopt;
-  FitResult result = refit_from(std::move(other), values_of(fit), context);
+  std::optional<Job> other = with_exchanged_roles(job);
+  if (!other) return std::nullopt;
+  FitResult result = refit_from(*std::move(other), values_of(fit), context);
   if (!result.usable) return std::nullopt;
   return result;
 }

@@ -65,7 +65,7 @@ class EffectSelector {
         last_valid_ = state_;
         eliminate_backward(state_, context_);
         drop_imitators(state_, context_);
-        drop_unreplicated_where_half_remains(state_, context_);
+        drop_unreplicated_of_a_poor_model(state_, options_.least_share, context_);
         drop_other_periods(state_, context_);
         drop_all_of_a_misfit();
         find_equals();
@@ -74,7 +74,8 @@ class EffectSelector {
         result_.interrupted = true;
         result_.rivals.clear();
         state_ = std::move(*last_valid_);
-        if (const auto rejection = rejection_of_all(state_)) state_.take_out_all(*rejection);
+        if (const auto rejection = rejection_of_all(state_, options_.least_share))
+          state_.take_out_all(*rejection);
         drop_all_of_a_misfit();
       }
     }

@@ -19,6 +19,9 @@ namespace axisfit {
 struct SelectionOptions {
   int shortlist = 6;  ///< effects that are refitted in each round
   int max_effects = 6;
+  /// Per cent of the error beyond the noise that must go where a search ends far from it, for an
+  /// effect to be named that other recordings do not show alike.
+  double least_share = 50.0;
 };
 
 /// Two effects that explain the recordings equally well, of which the chosen one is in the model:

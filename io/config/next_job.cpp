@@ -47,7 +47,10 @@ std::string next_job_text(const JobFile& declared, const Job& reached, const std
   job["axis"] = axis_name;
   // The axis has them, with their values.
   job.remove("effects");
-  for (YAML::Node recording : job["recordings"]) {
+  for (std::size_t r = 0; r < reached.recordings.size(); ++r) {
+    YAML::Node recording = job["recordings"][r];
+    if (const Role role = reached.recordings[r].role; role != declared.job.recordings[r].role)
+      recording["role"] = role == Role::fit ? "fit" : "validate";
     recording["file"] = moved(recording["file"].Scalar(), data, folder);
     for (const char* columns : {"signals", "channels"})
       if (recording[columns])

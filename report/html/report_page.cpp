@@ -399,10 +399,8 @@ class Page {
                after_round(trials));
     }
     Html all = paragraph_of(verdict_text(selection));
-    if (selection.held_out_blocks)
-      all += paragraph_of(
-          "No recording has the role validate: every second tenth of each recording was held out "
-          "to validate the effects.");
+    if (const std::string judges = judges_text(run_result_); !judges.empty())
+      all += paragraph_of(judges);
     return all + html(R"(<ol class="rounds">{}</ol>)", rounds);
   }
 

@@ -125,12 +125,8 @@ std::string forces_text(const RunResult& run_result) {
 
 std::string selection_text(const RunResult& run_result, bool colour) {
   std::string text = effects_text(*run_result.selection, colour) + errors_text(run_result) + "\n";
-  if (run_result.selection->held_out_blocks)
-    text += paragraph(
-                "No recording has the role validate: every second tenth of each recording was held "
-                "out to validate the effects.",
-                2) +
-            "\n";
+  if (const std::string judges = judges_text(run_result); !judges.empty())
+    text += paragraph(judges, 2) + "\n";
   return text + forces_text(run_result);
 }
 

@@ -313,6 +313,17 @@ std::string verdict_text(const EffectSelection& selection) {
   return text;
 }
 
+std::string judges_text(const RunResult& run_result) {
+  if (run_result.selection->held_out_blocks)
+    return "No recording has the role validate: every second tenth of each recording was held out "
+           "to "
+           "validate the effects.";
+  if (run_result.roles_exchanged)
+    return "With the roles that the job gives to the recordings, no effect passes. Here they are "
+           "exchanged: those to validate are fitted, and those to fit validate.";
+  return "";
+}
+
 std::string overall_verdict(const RunResult& run_result, bool colour) {
   const FitGrade& grade = run_result.grade;
   const Vocabulary vocabulary = run_result.job().vocabulary();

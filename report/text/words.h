@@ -18,6 +18,8 @@ std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour 
 
 /// What a search for effects comes to, a sentence or a few.
 std::string verdict_text(const EffectSelection& selection);
+/// By which samples the effects were judged, where that needs a word.
+std::string judges_text(const RunResult& run_result);
 
 /// How far the final model can be relied on, and what a search for effects comes to.
 std::string overall_verdict(const RunResult& run_result, bool colour = false);

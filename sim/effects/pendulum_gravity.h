@@ -35,8 +35,7 @@ struct PendulumGravity {
     // Over less it is a constant force and a spring.
     constexpr double kLeastTurn = 0.5;  // rad
     const bool turns = scales.position_high - scales.position_low > kLeastTurn;
-    return {
-        {.strengths = {"G_s", "G_c"}, .settings = ShapeSettings(turns ? 1 : 0), .has_phase = true}};
+    return {{.strengths = {"G_s", "G_c"}, .settings = ShapeSettings(turns ? 1 : 0)}};
   }
 
   T arm_force(const Instant<T>& at) const {

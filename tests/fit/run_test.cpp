@@ -39,5 +39,46 @@ TEST(Run, TellsNothingOfTheParametersOfAWrongModel) {
   for (const ParameterResult& p : result.first.parameters) EXPECT_TRUE(p.rests_on.empty());
 }
 
+/// The recording to fit moves less than that to validate: it never reaches a place where friction
+/// is higher.
+Job with_a_short_recording_to_fit() {
+  Model<double> declared = slide();
+  const auto put = [](Model<double>& model, const char* name, double value) {
+    const QuantityEntry& entry = *find_quantity(name);
+    model.structure.effects.set(*effect_named(entry.group));
+    *members(model)[entry.index] = value;
+  };
+  put(declared, "coulomb_friction.F_c", 5.0);
+  Model<double> truth = declared;
+  put(truth, "friction_bump.F_b", 12.0);
+  put(truth, "friction_bump.y_b", 0.2);
+  put(truth, "friction_bump.w_b", 0.01);
+  const std::vector<Signal> signals{Signal::position, Signal::velocity};
+  Job job = two_recordings(truth, declared, {"M", "B_a"}, 6.0, signals);
+  job.recordings[0] = recorded(truth, fit_motion(3.0), 1.2, 2, signals);
+  return job;
+}
+
+TEST(Run, ExchangesTheRolesWhereOnlyTheRecordingToValidateShowsAnEffect) {
+  const RunResult result = run(with_a_short_recording_to_fit(), {.select_effects = true});
+  ASSERT_TRUE(result.selection);
+  EXPECT_TRUE(result.roles_exchanged);
+  EXPECT_EQ(accepted(*result.selection), std::set<std::string>{"friction_bump"});
+  EXPECT_TRUE(result.selection->explained);
+  EXPECT_EQ(result.baseline.recordings[0].role, Role::validate);
+  EXPECT_EQ(result.job().recordings[1].role, Role::fit);
+  expect_found(*result.selection, "friction_bump.F_b", 12.0);
+}
+
+TEST(Run, KeepsTheRolesWhereTheRecordingsDoNotShowTheSame) {
+  Job job = with_a_short_recording_to_fit();
+  job.recordings[1].measurements.pop_back();
+  const RunResult result = run(job, {.select_effects = true});
+  ASSERT_TRUE(result.selection);
+  EXPECT_FALSE(result.roles_exchanged);
+  EXPECT_EQ(result.selection->verdict.kind, SelectionVerdict::Kind::none_passes);
+  EXPECT_EQ(result.baseline.recordings[0].role, Role::fit);
+}
+
 }  // namespace
 }  // namespace axisfit

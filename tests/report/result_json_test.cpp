@@ -697,7 +697,8 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
                                                   "seed",
                                                   "wall_time_s"}));
   EXPECT_EQ(keys(json.at("selection")),
-            (std::vector<std::string>{"verdict", "explained", "held_out_blocks", "hints"}));
+            (std::vector<std::string>{"verdict", "explained", "held_out_blocks", "roles_exchanged",
+                                      "hints"}));
   EXPECT_EQ(json.at("selection").at("explained"), true);
   EXPECT_EQ(json.at("selection").at("held_out_blocks"), false);
   int accepted = 0;
@@ -793,6 +794,18 @@ TEST(ResultTest, BlocksHeldOutAreScoredApart) {
   EXPECT_EQ(roles, (std::set<std::string>{"fit", "held_out"}));
   EXPECT_NE(found.text.find("fitted, held_out: velocity"), std::string::npos);
   EXPECT_NE(found.text.find("No recording has the role validate"), std::string::npos);
+}
+
+TEST(ResultTest, TellsThatTheRolesAreExchanged) {
+  Found found(rubbing_job(true), true);
+  EXPECT_EQ(found.json.at("selection").at("roles_exchanged"), false);
+  const auto tells = [&] {
+    return report_text(found.run_result).find("exchanged") != std::string::npos;
+  };
+  EXPECT_FALSE(tells());
+  found.run_result.roles_exchanged = true;
+  EXPECT_TRUE(tells());
+  EXPECT_EQ(result_json(found.run_result).at("selection").at("roles_exchanged"), true);
 }
 
 }  // namespace

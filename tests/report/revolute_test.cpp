@@ -121,6 +121,20 @@ TEST_F(RevoluteAxis, IsFittedAndToldInItsOwnWords) {
   expect_turning("report.html", read);
 }
 
+TEST_F(RevoluteAxis, GoesOnWithTheRolesOfTheResult) {
+  const JobFile file = read_job_file(folder_.write("job.yaml", job_));
+  const auto roles_after = [&](const Job& reached) {
+    const std::string text = next_job_text(file, reached, folder_.path("job.yaml"), "",
+                                           folder_.path(), "axis.yaml", "Goes on.");
+    std::string roles;
+    for (const Recording& r : read_job_file(folder_.write("next.yaml", text)).job.recordings)
+      roles += r.role == Role::fit ? "fit " : "validate ";
+    return roles;
+  };
+  EXPECT_EQ(roles_after(file.job), "fit validate ");
+  EXPECT_EQ(roles_after(*with_exchanged_roles(file.job)), "validate fit ");
+}
+
 TEST_F(RevoluteAxis, RefusesTheWordsOfALoadThatSlides) {
   const auto error = [&](const std::string& from, const std::string& to) {
     std::string changed = job_;
