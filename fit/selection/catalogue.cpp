@@ -62,7 +62,8 @@ std::vector<std::size_t> quantities_of(std::string_view effect,
   return quantities;
 }
 
-Candidate candidate_of(const EffectInfo& effect, SearchEntry entry, Vocabulary vocabulary) {
+Candidate candidate_of(const EffectInfo& effect, SearchEntry entry, bool is_in_model,
+                       Vocabulary vocabulary) {
   Candidate candidate;
   candidate.name = words_on(vocabulary, effect.name);
   candidate.acts_on = words_on(vocabulary, name_of(effect.acts_on));
@@ -77,7 +78,7 @@ Candidate candidate_of(const EffectInfo& effect, SearchEntry entry, Vocabulary v
   candidate.has_phase = entry.has_phase;
   // Of one effect there is one for each channel, and some are more of an effect that is there.
   if (const QuantityEntry& first = quantity_list(vocabulary)[candidate.strengths.front()];
-      first.quantity.channel || entry.extends == effect.name)
+      first.quantity.channel || is_in_model)
     candidate.name = first.name;
   return candidate;
 }
@@ -161,7 +162,8 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
         if (entry.is_curve == curves && is_used(entry.used_by, structure) &&
             (entry.extends.empty() || structure.effects[*effect_named(entry.extends)]) &&
             (!entry.changes_dry_friction || rubs))
-          add_if_absent(candidate_of(kEffectTable[e], std::move(entry), vocabulary));
+          add_if_absent(
+              candidate_of(kEffectTable[e], std::move(entry), structure.effects[e], vocabulary));
     }
   };
   for (const ActsOn place : kPlacesToAct) add_effects(place, false);

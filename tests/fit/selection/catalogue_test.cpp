@@ -274,6 +274,17 @@ TEST(Catalogue, OffersAnExponentOnlyBesideItsEffect) {
   expect_exponent<QuadraticDrag>(2.0, {60.0}, 1.5);
 }
 
+// "The model lacked position_friction, position_friction" tells nobody what was added.
+TEST(Catalogue, NamesMoreOfAnEffectByItsQuantity) {
+  Job job = job_with({Signal::velocity});
+  EXPECT_EQ(find(catalogue(job, scales()), "position_friction.G_b"), nullptr);
+  add_effect<PositionFriction>(job.model).G_c = 5.0;
+  const auto list = catalogue(job, scales());
+  EXPECT_EQ(find(list, "position_friction"), nullptr);
+  EXPECT_NE(find(list, "position_friction.G_q"), nullptr);
+  EXPECT_NE(find(list, "position_friction.G_b"), nullptr);
+}
+
 TEST(Catalogue, OffersASecondDahlElementOnlyBesideTheFirst) {
   Job job = job_with({Signal::velocity});
   EXPECT_FALSE(offers(catalogue(job, scales()), "second_dahl_friction.F_d"));
