@@ -115,7 +115,7 @@ LAWS = {
     "stroke_spring": lambda k, p: p["k_s"] * k.y,
     "periodic_force": lambda k, p: -sum(
         p.get(f"F_{part}{n}", 0.0) * of(2 * np.pi * n * k.y / p["period"])
-        for part, of in (("s", np.sin), ("c", np.cos)) for n in (1, 2)),
+        for part, of in (("s", np.sin), ("c", np.cos)) for n in (1, 2, 3)),
     "added_mass": lambda k, p: p["dM"] * k.a,
     "elastic_mode": elastic,
     "force_over_velocity": curve(lambda k: k.v),

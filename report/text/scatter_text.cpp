@@ -63,10 +63,10 @@ std::string scatter_text(const RunResult& run_result) {
   }
   using enum Alignment;
   const std::size_t groups = scatter.fitted_groups();
-  const std::string of = scatter.of_stretches
-                             ? fmt::format("{} stretches of {}", groups,
-                                           job.recordings[scatter.groups.front().recording].name)
-                             : fmt::format("{} recordings", groups);
+  const auto fitted = std::ranges::find(scatter.groups, true, &Scatter::Group::fitted);
+  const std::string of = scatter.of_stretches ? fmt::format("{} stretches of {}", groups,
+                                                            job.recordings[fitted->recording].name)
+                                              : fmt::format("{} recordings", groups);
   std::string text = fmt::format("Scatter between {}\n{}", of,
                                  format_table(rows, {left, right, right, right, right, left}));
   if (!scattered.empty())

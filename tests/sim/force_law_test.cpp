@@ -142,13 +142,11 @@ std::vector<LawCase> laws() {
       [](double, double y, double) { return -25.0 * std::sin(y) + 9.0 * std::cos(y); });
   add(
       "periodic_force",
-      [](auto& m) {
-        add_effect<PeriodicForce>(m) = {12.0, -7.0, 4.0, 3.0, 0.05};
-      },
+      [](auto& m) { add_effect<PeriodicForce>(m) = {12.0, -7.0, 4.0, 3.0, 2.0, -1.5, 0.05}; },
       [](double, double y, double) {
         const double q = 2.0 * kPi * y / 0.05;
         return 12.0 * std::sin(q) - 7.0 * std::cos(q) + 4.0 * std::sin(2.0 * q) +
-               3.0 * std::cos(2.0 * q);
+               3.0 * std::cos(2.0 * q) + 2.0 * std::sin(3.0 * q) - 1.5 * std::cos(3.0 * q);
       });
   add(
       "cogging_torque",

@@ -236,14 +236,16 @@ TEST(Catalogue, OffersAnAbsentEffectWhateverItsMembersHold) {
   EXPECT_TRUE(offers(catalogue(job, scales()), "constant_force.F_0"));
 }
 
-TEST(Catalogue, OffersASecondHarmonicOnlyBesideTheFirst) {
+TEST(Catalogue, OffersHigherHarmonicsOnlyBesideTheFirst) {
   Job job = job_with({Signal::velocity});
   EXPECT_FALSE(offers(catalogue(job, scales()), "periodic_force.F_s2"));
+  EXPECT_FALSE(offers(catalogue(job, scales()), "periodic_force.F_s3"));
   auto& force = add_effect<PeriodicForce>(job.model);
   force.F_s1 = 5.0;
   force.period = 0.05;
   const auto list = catalogue(job, scales());
   EXPECT_TRUE(offers(list, "periodic_force.F_s2"));
+  EXPECT_TRUE(offers(list, "periodic_force.F_s3"));
   EXPECT_FALSE(offers(list, "periodic_force.F_s1"));
 }
 
@@ -488,8 +490,8 @@ TEST_F(WithCandidate, ThatExtendsAnEffectPredictsTheSameAtNeutralStrength) {
              return old.strengths == c.strengths;
            });
   });
-  // Two exponents, damping, second element, second harmonic; and two changes of dry friction.
-  EXPECT_EQ(extensions.size(), 7u);
+  // Two exponents, damping, second element, two harmonics; and two changes of dry friction.
+  EXPECT_EQ(extensions.size(), 8u);
   expect_the_same(extensions);
 }
 
