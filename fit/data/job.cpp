@@ -74,13 +74,18 @@ FreeParameter free_parameter(const QuantityEntry& entry, double initial) {
 }
 
 std::optional<Job> with_exchanged_roles(Job job) {
-  if (std::ranges::find(job.recordings, Role::validate, &Recording::role) == job.recordings.end() ||
-      std::ranges::any_of(job.free, [](const FreeParameter& p) { return p.recording.has_value(); }))
-    return std::nullopt;
+  const auto is_own = [](const FreeParameter& p) { return p.recording.has_value(); };
+  bool any = false;
   for (Recording& r : job.recordings) {
     r.role = r.role == Role::fit ? Role::validate : Role::fit;
     r.held_out.clear();
+    if (r.role != Role::fit) continue;
+    any = true;
+    for (const auto& [quantity, value] : r.overrides)
+      if (std::ranges::find(job.free, quantity, &FreeParameter::quantity) != job.free.end())
+        return std::nullopt;
   }
+  if (!any || std::ranges::any_of(job.free, is_own)) return std::nullopt;
   return job;
 }
 

@@ -191,7 +191,8 @@ struct Job {
 };
 
 /// The job with the roles of its recordings exchanged: those to validate are fitted, all samples of
-/// them. None where nothing validates, or where a parameter is one recording's own.
+/// them. None where nothing validates, or where a free parameter is one recording's own, or has a
+/// value of its own in a recording to validate.
 std::optional<Job> with_exchanged_roles(Job job);
 
 }  // namespace axisfit

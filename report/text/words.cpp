@@ -316,8 +316,7 @@ std::string verdict_text(const EffectSelection& selection) {
 std::string judges_text(const RunResult& run_result) {
   if (run_result.selection->held_out_blocks)
     return "No recording has the role validate: every second tenth of each recording was held out "
-           "to "
-           "validate the effects.";
+           "to validate the effects.";
   if (run_result.roles_exchanged)
     return "With the roles that the job gives to the recordings, no effect passes. Here they are "
            "exchanged: those to validate are fitted, and those to fit validate.";
@@ -333,7 +332,8 @@ std::string overall_verdict(const RunResult& run_result, bool colour) {
       grade.reason == FitGrade::Reason::residual || grade.reason == FitGrade::Reason::none;
   return (by_residual ? grade_heading(grade, colour) + "."
                       : grade_text(grade, run_result.fit(), colour, vocabulary)) +
-         " " + verdict_text(*run_result.selection);
+         " " + verdict_text(*run_result.selection) +
+         (run_result.roles_exchanged ? " Found with the roles of the recordings exchanged." : "");
 }
 
 std::string reason_text(const EffectTrial& trial, Vocabulary vocabulary) {

@@ -51,5 +51,37 @@ TEST(ShareSamples, TwoRecordingsOfAStandstillAreNotTheSame) {
   EXPECT_FALSE(share_samples(a, b));
 }
 
+/// A recording to fit and one to validate, and one free parameter.
+Job two_roles() {
+  Job job;
+  job.recordings = {recording_of(0, 100), recording_of(100, 200)};
+  job.recordings[0].held_out.assign(100, true);
+  job.recordings[1].role = Role::validate;
+  job.free = {free_parameter("M", 10.0)};
+  return job;
+}
+
+TEST(ExchangedRoles, FitWhatValidatedAndTheOtherWayRound) {
+  const auto exchanged = with_exchanged_roles(two_roles());
+  ASSERT_TRUE(exchanged);
+  EXPECT_EQ(exchanged->recordings[0].role, Role::validate);
+  EXPECT_EQ(exchanged->recordings[1].role, Role::fit);
+  EXPECT_TRUE(exchanged->recordings[0].held_out.empty());
+}
+
+TEST(ExchangedRoles, NeedParametersOfAllRecordings) {
+  Job job = two_roles();
+  job.recordings[1].role = Role::fit;
+  EXPECT_FALSE(with_exchanged_roles(job)) << "nothing validates";
+  job = two_roles();
+  job.free[0].recording = 0;
+  EXPECT_FALSE(with_exchanged_roles(job));
+  job = two_roles();
+  job.recordings[1].overrides = {{job.free[0].quantity, 12.0}};
+  EXPECT_FALSE(with_exchanged_roles(job)) << "its mass is given";
+  job.recordings[1].overrides = {{find_quantity("B_a")->index, 12.0}};
+  EXPECT_TRUE(with_exchanged_roles(job));
+}
+
 }  // namespace
 }  // namespace axisfit
