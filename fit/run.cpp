@@ -179,7 +179,7 @@ std::optional<Comparison> compare(const RunResult& result, const RunContext& con
   if (result.selection)
     for (std::size_t i = 0; i + 1 < result.selection->models.size(); ++i) {
       const auto& [added, job, fit] = result.selection->models[i];
-      ModelEntry& entry = models.emplace_back(added, job, fit);
+      ModelEntry& entry = models.emplace_back(ModelEntry{added, job, fit});
       entry.forces = result.scores[i].forces;
       if (!fit.usable) continue;
       const std::optional<Scatter> scatter = allow_for_scatter(job, entry.fit);
