@@ -119,9 +119,14 @@ std::pair<Rig, double> rig_of(const FactoryOptions& options, const AxisTruth& tr
       case Wear::play:
         soft.H_g += 10e-6;
         break;
-      case Wear::bearing:
-        effect_of<PeriodicForce>(model) = {3.0, 1.0, 0.0, 0.0, 0.04};
+      case Wear::bearing: {
+        PeriodicForce<double>& force = effect_of<PeriodicForce>(model);
+        force = {};  // no other harmonic
+        force.F_s1 = 3.0;
+        force.F_c1 = 1.0;
+        force.period = 0.04;
         break;
+      }
       case Wear::belt:
         soft.c_g *= 2.0;
         break;

@@ -299,23 +299,5 @@ TEST(Alarms, KnowDatesAndNumbers) {
   EXPECT_EQ(days_of({"b", "a"}).at("b"), 1.0);
 }
 
-TEST(Factory, IsTheSameEveryTime) {
-  TempFolder folder;
-  FactoryOptions options;
-  options.axes = 2;
-  options.nights = 3;
-  options.missing = 0.0;
-  write_factory(folder.path() + "/a", options);
-  const ThreadPool pool(2);
-  write_factory(folder.path() + "/b", options);
-  for (const auto& entry : fs::recursive_directory_iterator(folder.path() + "/a"))
-    if (entry.is_regular_file()) {
-      const std::string name = fs::relative(entry.path(), folder.path() + "/a").string();
-      EXPECT_EQ(folder.read("a/" + name), folder.read("b/" + name)) << name;
-    }
-  EXPECT_NE(message_of([&] { write_factory(folder.path() + "/a", options); }).find("is not empty"),
-            std::string::npos);
-}
-
 }  // namespace
 }  // namespace axisfit
