@@ -198,6 +198,19 @@ std::optional<Comparison> compare(const RunResult& result, const RunContext& con
   return compare_models(models, context);
 }
 
+/// Gives the effects that are in the model the estimates of its last fit. When they were tried, the
+/// simulation may have tracked the recordings, and other effects were missing.
+void take_final_estimates(EffectSelection& selection) {
+  for (EffectTrial& trial : selection.effects)
+    if (trial.in_model)
+      for (ParameterResult& p : trial.parameters) {
+        const auto& last = selection.result.fit.parameters;
+        if (const auto found = std::ranges::find(last, p.name, &ParameterResult::name);
+            found != last.end())
+          p = *found;
+      }
+}
+
 void find_guess_influences(const Job& job, FitResult& fit) {
   if (job.guessed.empty() || !fit.usable) return;
   std::vector<std::vector<GuessInfluence>> found = guess_influences(job, fit);
@@ -273,6 +286,7 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
     for (SelectionStep& model : result.selection->models)
       find_guess_influences(model.job, model.fit);
     find_guess_influences(result.job(), last);
+    take_final_estimates(*result.selection);
   }
   const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - begin;
   result.wall_time = wall_time.count();

@@ -38,7 +38,7 @@ struct EffectTrial {
   std::string other;                        ///< effect that it was compared with, see reason
   bool in_model = false;                    ///< accepted, or that of the undecided which stays
   double score = 0.0;                       ///< gain that the score test promised
-  std::vector<ParameterResult> parameters;  ///< its own
+  std::vector<ParameterResult> parameters;  ///< its own: of this trial, or of the final model
   Improvement improvement;                  ///< against the model before it
   /// Of an accepted effect, what the recordings to validate say of it by themselves.
   std::optional<Replication> replication{};

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/fit/selection/selection.h"
 
 namespace axisfit {
@@ -26,6 +28,29 @@ TEST(Run, TellsOfEveryModelWhatRestsOnGuesses) {
   expect_known(result.first);
   expect_known(result.fit());
   for (const SelectionStep& model : result.selection->models) expect_known(model.fit);
+}
+
+TEST(Run, GivesTheEffectsOfTheModelTheirLastEstimates) {
+  Model<double> truth = slide();
+  truth.structure.effects.set(*effect_named("coulomb_friction"));
+  truth.structure.effects.set(*effect_named("stroke_spring"));
+  *members(truth)[find_quantity("coulomb_friction.F_c")->index] = 5.0;
+  *members(truth)[find_quantity("stroke_spring.k_s")->index] = 30.0;
+  const RunResult result =
+      run(two_recordings(truth, slide(), {"M", "B_a"}), {.select_effects = true});
+  ASSERT_TRUE(result.selection);
+  ASSERT_EQ(accepted(*result.selection),
+            (std::set<std::string>{"coulomb_friction", "stroke_spring"}));
+  for (const EffectTrial& trial : result.selection->effects) {
+    if (!trial.in_model) continue;
+    for (const ParameterResult& own : trial.parameters) {
+      const auto& last = result.fit().parameters;
+      const auto found = std::ranges::find(last, own.name, &ParameterResult::name);
+      ASSERT_NE(found, last.end()) << own.name;
+      EXPECT_EQ(own.value, found->value) << own.name;
+      EXPECT_EQ(own.uncertainty.standard_error, found->uncertainty.standard_error) << own.name;
+    }
+  }
 }
 
 TEST(Run, TellsNothingOfTheParametersOfAWrongModel) {
