@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 /// Its error without what recordings or their stretches differ by, which trends see for themselves.
 double error_within(const RunResult& run, std::size_t parameter) {
-  if (run.scatter && !run.selection)
+  if (run.scatter)
     for (const ParameterScatter& scatter : run.scatter->parameters)
       if (scatter.parameter == parameter && scatter.deviation > 0.0) return scatter.within;
   return run.first.parameters[parameter].uncertainty.standard_error;
@@ -75,12 +75,17 @@ NightResult night_result(const RunResult& run) {
                                  fitted.signals[m].rmse, fitted.signals[m].reduced_chi_square});
     }
   }
-  if (run.selection)
-    for (const EffectTrial& trial : run.selection->effects)
-      if (trial.decision == Decision::accepted)
-        night.effects.push_back(effect_text(trial, run.job().vocabulary()));
   night.channels = channel_means(job);
   return night;
+}
+
+void add_search(NightResult& night, const RunResult& run) {
+  night.status = grade_name(run.grade.grade);
+  night.seconds += run.wall_time;
+  if (!run.selection) return;
+  for (const EffectTrial& trial : run.selection->effects)
+    if (trial.decision == Decision::accepted)
+      night.effects.push_back(effect_text(trial, run.job().vocabulary()));
 }
 
 Json to_json(const NightResult& n) {

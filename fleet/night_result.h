@@ -30,13 +30,16 @@ struct NightResult {
   std::string fingerprint;            ///< of the inputs, as planned
   double seconds = 0.0;               ///< that it took, the only part that differs from run to run
   std::vector<Parameter> parameters;  ///< of the declared model, that are determined
-  std::vector<Residual> residuals;
-  std::vector<std::string> effects;  ///< that were accepted, with what they are
+  std::vector<Residual> residuals;    ///< of the declared model
+  std::vector<std::string> effects;   ///< that were accepted, with what they are
   std::vector<Channel> channels;
 };
 
-/// Of a finished run. Axis, night and fingerprint are for the caller.
+/// Of a finished run that did not search for effects, so that nights can be compared whatever a
+/// search makes of them. Axis, night and fingerprint are for the caller.
 NightResult night_result(const RunResult& run);
+/// Adds what a search for effects on the same recordings found: effects, grade and time.
+void add_search(NightResult& night, const RunResult& run);
 
 nlohmann::ordered_json to_json(const NightResult& result);
 /// Throws nlohmann::json::exception for what to_json() did not make.

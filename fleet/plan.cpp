@@ -70,17 +70,16 @@ NightResult result_of(const Plan& plan, const FleetItem& item, const RunContext&
     JobFile file =
         read_job_draft({{plan.job_name, filled_in(plan.job_text, item.values)}}, plan.job_folder);
     file.job.options.threads = 1;  // items are what is spread
-    RunOptions options;
-    options.select_effects = plan.close_loop == CloseLoop::always;
-    RunResult run_result = run(file.job, options, context.quiet());
-    if (plan.close_loop == CloseLoop::unexplained && run_result.grade.grade != Grade::explained) {
-      const double before = run_result.wall_time;
-      options.select_effects = true;
-      run_result = run(std::move(file.job), options, context.quiet());
-      run_result.wall_time += before;
-    }
-    if (run_result.interrupted) throw Interrupted();
-    night = night_result(run_result);
+    const auto run_with = [&](const RunOptions& options) {
+      RunResult result = run(file.job, options, context.quiet());
+      if (result.interrupted) throw Interrupted();
+      return result;
+    };
+    const RunResult declared = run_with({});
+    night = night_result(declared);
+    if (plan.close_loop == CloseLoop::always ||
+        (plan.close_loop == CloseLoop::unexplained && declared.grade.grade != Grade::explained))
+      add_search(night, run_with({.select_effects = true}));
   } catch (const std::exception& error) {
     night = failed(error);
   }

@@ -127,6 +127,44 @@ TEST_F(PlanTest, HasWhatTheHistoryDoesNotKnow) {
     }
 }
 
+// What a search finds is added; parameters and residuals stay those of the declared model, so that
+// nights with and without a search can be compared.
+TEST_F(PlanTest, KeepsTheDeclaredModelWhereASearchFindsMore) {
+  const auto leave_out = [&](const std::string& name, const std::string& line) {
+    std::string text = folder_.read("factory/" + name);
+    const std::size_t at = text.find(line);
+    ASSERT_NE(at, std::string::npos) << line;
+    folder_.write("factory/" + name, text.erase(at, line.size()));
+  };
+  leave_out("axis.yaml", "  coulomb_friction: {F_c: 12 N}\n");
+  leave_out("night.yaml", "  coulomb_friction.F_c: {}\n");
+  const auto result_with = [&](CloseLoop close_loop) {
+    FleetFile file = fleet();
+    file.close_loop = close_loop;
+    const std::string folder = plan_folder(std::to_string(static_cast<int>(close_loop)));
+    write_plan(file, folder, Retry::none);
+    Plan plan = read_plan(folder);
+    plan.items.resize(1);
+    work_on(plan, {}, {});
+    merge(plan);
+    return History(file.history).results().at(0);
+  };
+  const NightResult declared = result_with(CloseLoop::never);
+  EXPECT_TRUE(declared.effects.empty());
+  EXPECT_NE(declared.status, "explained");
+  ASSERT_FALSE(declared.parameters.empty());
+  for (const CloseLoop close_loop : {CloseLoop::unexplained, CloseLoop::always}) {
+    NightResult searched = result_with(close_loop);
+    EXPECT_EQ(searched.effects, std::vector<std::string>{"coulomb_friction"});
+    EXPECT_EQ(searched.status, "explained");
+    searched.effects.clear();
+    searched.status = declared.status;
+    searched.fingerprint = declared.fingerprint;
+    searched.seconds = declared.seconds;
+    EXPECT_EQ(to_json(searched), to_json(declared));
+  }
+}
+
 TEST_F(PlanTest, PlansOfAnotherVersionAreMadeAnew) {
   const Plan plan = planned();
   const std::string head = folder_.read("plan/plan.json");
