@@ -48,7 +48,7 @@ struct SimulationResult {
 };
 
 /// Options for a simulation that is compared with a recording, with budgets that such a simulation
-/// stays far below: less than one event per sample, and a hundred steps for each sample and each
+/// stays far below: less than one event per sample, and twenty steps for each sample and each
 /// `step` (s). Parameters with which the axis chatters or oscillates faster are rejected.
 inline IntegratorOptions recording_options(std::span<const double> times, double step) {
   const double samples = static_cast<double>(times.size());
@@ -57,8 +57,8 @@ inline IntegratorOptions recording_options(std::span<const double> times, double
   options.step = step;
   options.event_budget = 200 + static_cast<long>(0.5 * samples);
   options.step_budget =
-      100'000 +
-      static_cast<long>(std::min(kMost, 100.0 * (samples + (times.back() - times.front()) / step)));
+      10'000 +
+      static_cast<long>(std::min(kMost, 20.0 * (samples + (times.back() - times.front()) / step)));
   return options;
 }
 
