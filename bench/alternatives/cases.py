@@ -7,8 +7,8 @@ fitted with an observer, as --init and the EMPS job do; the others by levels of 
 velocity and a free run, or with the horizon that `--horizon` of run.py says. All but the clean ones
 with white noise may have a coloured disturbance too.
 
-The strength of a law is such that the reduced chi-square of the best fit without it is about 3 or 10. It
-is found without the project: the force that the base model lacks, sent through the linear response of
+The strength of a law is such that the reduced chi-square of the best fit without it is about 3 or 10, or
+what `--chi-square` of run.py says. It is found without the project: the force that the base model lacks, sent through the linear response of
 the axis (with its observer), less its projection on the responses of the base terms.
 """
 import dataclasses
@@ -76,7 +76,7 @@ class Case:
         return m
 
 
-def draw(name, index, seed):
+def draw(name, index, seed, chi_squares):
     """A case, the same for every list of cases that it is in."""
     code = zlib.crc32(name.encode())
     rng = np.random.default_rng([seed, code, index])
@@ -110,7 +110,8 @@ def draw(name, index, seed):
             demand = moves(rng, samples, rng.uniform(0.18, 0.25), 0.3, rng.uniform(0.7, 1.2))
         motions[role] = Motion(setup, demand, int(rng.integers(1 << 31)), rng.uniform(15.0, 30.0),
                                3.0 * force)  # fmt: skip
-    case = Case(name, (3.0, 10.0)[order // 2 % 2] if name != "several" else 2.0, setup, base, parts,
+    aim = chi_squares[order // 2 % len(chi_squares)]
+    case = Case(name, aim if name != "several" else 2.0 / 3.0 * chi_squares[0], setup, base, parts,
                 {p: rng.random(3) for p in (*parts, "disturbance")}, force,
                 between(rng, 2e-6, 5e-6) if setup == "servo" else between(rng, 3e-3, 8e-3),
                 force * between(rng, 0.001, 0.005), motions)  # fmt: skip
@@ -175,9 +176,9 @@ def simulate_all(pairs):
     return logs
 
 
-def make(names, count, seed):
+def make(names, count, seed, chi_squares):
     """The cases with these names, `count` of each, with recordings."""
-    cases = [draw(name, index, seed) for name in names for index in range(count)]
+    cases = [draw(name, index, seed, chi_squares) for name in names for index in range(count)]
     calibrate(cases)
     laws = lambda c, role: (*c.parts, "disturbance") if role != "test" else c.parts
     pairs = [(c.machine(*laws(c, role)), c.motions[role]) for c in cases for role in ROLES]
@@ -200,9 +201,9 @@ def make(names, count, seed):
     return cases
 
 
-def write(case, folder, horizon):
+def write(case, folder, horizon, free_run):
     """axis.yaml, job.yaml and the two recordings that a method may see. The horizon is that of a fit
-    without an observer."""
+    without an observer; with `free_run` there is none for a servo, either."""
     signal_name, unit = ("position", "m") if case.setup == "servo" else ("velocity", "m/s")
     for role in ("fit", "validate"):
         r = case.recordings[role]
@@ -227,6 +228,6 @@ def write(case, folder, horizon):
                                    "sigma": f"{case.sigma:.6g} {unit}"}}}
         for role in ("fit", "validate")]}  # fmt: skip
     servo = {"observer": {"fixed": f"{case.observer:g} 1/s"}}
-    job["fit"] = servo if case.setup == "servo" else {"horizon": horizon}
+    job["fit"] = servo if case.setup == "servo" and not free_run else {"horizon": horizon}
     (folder / "axis.yaml").write_text(json.dumps(axis, indent=1) + "\n")
     (folder / "job.yaml").write_text(json.dumps(job, indent=1) + "\n")

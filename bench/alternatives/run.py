@@ -96,7 +96,7 @@ def answer(label, case, options):
     if "axisfit" in options.methods:
 
         def work(folder):
-            write(case, folder, options.horizon)
+            write(case, folder, options.horizon, options.free_run)
             return by_axisfit(options, folder / "job.yaml", folder, case.recordings["test"],
                               declared={"M": case.base.mass})  # fmt: skip
 
@@ -197,6 +197,9 @@ def arguments():
     methods = ("axisfit", *regression.METHODS)
     parser.add_argument("--methods", nargs="+", choices=methods, default=methods, metavar="METHOD")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--chi-square", type=float, nargs="+", default=(3.0, 10.0),
+                        help="of the fit without the law; cases take them in turn")  # fmt: skip
+    parser.add_argument("--free-run", action="store_true", help="fits of servos without an observer")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="cases at the same time")
     parser.add_argument("--horizon", default="whole", help="of axisfit's fits without an observer")
     parser.add_argument("--threads", type=int, default=1, help="of each run of axisfit")
@@ -216,9 +219,10 @@ def main():
     warnings.filterwarnings("ignore", module="sklearn")  # of a lasso that has not converged quite
     names = [n for n in options.kinds if n not in CLEAN]
     clean = [n for n in options.kinds if n in CLEAN]
-    cases = make(names, options.cases, options.seed) if names else []
+    drawn = options.seed, options.chi_square
+    cases = make(names, options.cases, *drawn) if names else []
     count = options.cases if options.clean is None else options.clean
-    cases += make(clean, count, options.seed) if clean and count else []
+    cases += make(clean, count, *drawn) if clean and count else []
     labels = [f"{c.name} {sum(o.name == c.name for o in cases[:i])}" for i, c in enumerate(cases)]
     print(f"`bench/alternatives/run.py {' '.join(sys.argv[1:])}`\n")
     if cases:

@@ -60,6 +60,8 @@ class RoundTrial {
     const bool is_free = model_.job.options.observer != ObserverMode::fixed;
     if (is_free && options_.explained) return {0.0};
     std::vector<double> gains = score_gains(model_.job);
+    if (const auto close = close_gain(model_.job, values_of(model_.fit), context_))
+      gains.insert(gains.begin(), *close);
     if (is_free && model_.fit.reduced_chi_square < kClose) gains.push_back(0.0);
     return gains;
   }

@@ -273,14 +273,33 @@ void refine_shapes(const Job& fixed, const EffectColumns& columns, const Scorer&
   }
 }
 
+/// Whether the job leaves it to the search at which observer gains it scores.
+bool has_choice_of_gains(const Job& job) {
+  const bool is_given = job.options.observer == ObserverMode::fixed && !job.options.choose_horizon;
+  return !is_given && std::isfinite(initial_observer_gain(job));
+}
+
+/// The fit at an observer gain that a score test starts from. Not usable: nothing finite.
+SolveResult tracking_fit(const Job& job, const ParameterSpace& space,
+                         const std::vector<double>& values, double rate,
+                         const RunContext& context) {
+  SolveOptions options;
+  options.max_iterations = 15;
+  options.function_tolerance = 1e-6;
+  return solve(job, space, space.internal(values), rate, options, context);
+}
+
+/// Smooth effects are then a few parts in ten thousand off, and four times as quick.
+Job with_coarse_steps(Job job) {
+  job.options.step *= 4.0;
+  return job;
+}
+
 ScoreTest scored(const Job& job, const std::vector<double>& values, double rate, bool curves,
                  const RunContext& context) {
   ScoreTest test;
   const ParameterSpace space(job);
-  SolveOptions options;
-  options.max_iterations = 15;
-  options.function_tolerance = 1e-6;
-  const SolveResult tracking = solve(job, space, space.internal(values), rate, options, context);
+  const SolveResult tracking = tracking_fit(job, space, values, rate, context);
   if (!tracking.usable) return test;
   const std::vector<double> tracking_values = space.values(tracking.u);
   const Linearization base = linearize(job, space, tracking, rate);
@@ -347,18 +366,28 @@ ScoreTest scored(const Job& job, const std::vector<double>& values, double rate,
 ScoreTest score_test(const Job& job, const std::vector<double>& values, double rate, bool curves,
                      const RunContext& context) {
   const ThreadPool pool(job.options.threads);
-  // Smooth effects are then a few parts in ten thousand off, and four times as quick.
-  Job coarse = job;
-  coarse.options.step *= 4.0;
-  ScoreTest test = scored(coarse, values, rate, curves, context);
+  ScoreTest test = scored(with_coarse_steps(job), values, rate, curves, context);
   return test.usable ? test : scored(job, values, rate, curves, context);
 }
 
 std::vector<double> score_gains(const Job& job) {
   const double first = initial_observer_gain(job);
-  const bool is_given = job.options.observer == ObserverMode::fixed && !job.options.choose_horizon;
-  if (is_given || !std::isfinite(first)) return {first};
+  if (!has_choice_of_gains(job)) return {first};
   return {first / 30.0, first / 100.0};
+}
+
+std::optional<double> close_gain(const Job& job, const std::vector<double>& values,
+                                 const RunContext& context) {
+  constexpr double kLeastChiSquare = 100.0;  // per sample: ten times the noise
+  if (!has_choice_of_gains(job)) return std::nullopt;
+  const Job coarse = with_coarse_steps(job);
+  const ParameterSpace space(coarse);
+  for (const double part : {1.0, 1.0 / 3.0, 1.0 / 10.0}) {
+    const double gain = part * initial_observer_gain(job);
+    const SolveResult fit = tracking_fit(coarse, space, values, gain, context);
+    if (fit.usable && fit.reduced_cost >= kLeastChiSquare) return gain;
+  }
+  return std::nullopt;
 }
 
 }  // namespace axisfit

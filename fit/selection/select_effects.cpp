@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "fit/estimation/horizon.h"
+#include "fit/estimation/kalman_gain.h"
 #include "fit/estimation/parameters.h"
 #include "fit/estimation/windows.h"
 #include "fit/selection/pruning.h"
@@ -20,10 +21,24 @@
 namespace axisfit {
 namespace {
 
+/// Whether the residual of a free run says little of what is missing: noise of a recorded force
+/// adds up, and moves it far more than the readings are in doubt.
+bool is_moved_by_input_noise(const Job& job, const FitResult& fit) {
+  constexpr double kFarMore = 9.0;  // of the mean square, over that of the readings
+  const auto series = residual_series(job, fit);
+  return fit.observer_gain == 0.0 && std::ranges::any_of(series, [](const ResidualSeries& s) {
+           return s.input_noise > kFarMore;
+         });
+}
+
+/// The observer gain at which a search tracks.
+double tracking_gain(const Job& job, const FitResult& fit) {
+  return kalman_gain(job, values_of(fit)).value_or(score_gains(job).front());
+}
+
 /// The model, refitted with a simulation that tracks the data.
-SelectionStep tracking(SelectionStep model, const RunContext& context) {
+SelectionStep tracking(SelectionStep model, double gain, const RunContext& context) {
   FitOptions& options = model.job.options;
-  const double gain = score_gains(model.job).front();
   options.observer = ObserverMode::fixed;
   options.observer_gain = gain;
   options.horizon = 0.0;
@@ -158,7 +173,7 @@ class EffectSelector {
     constexpr double kProvisionalChance = 0.05;
     const SelectionStep declared = chain().declared();
     const bool is_continued = declared.job.options.observer == ObserverMode::continuation;
-    if (is_continued) restart(tracking(declared, context_));
+    if (is_continued) restart(tracking(declared, score_gains(declared.job).front(), context_));
     while (current().fit.usable && has_room() && !explained() && round(false, kProvisionalChance)) {
     }
     const bool is_new = std::ranges::any_of(accepted(), [&](const AcceptedEffect& found) {
@@ -411,8 +426,10 @@ EffectSelection select_effects(const Job& job, const FitResult& first,
   // The states with which windows begin take part of what is missing upon themselves, and every
   // fit with them takes minutes. A simulation that was chosen to track may follow the noise.
   const bool tracks = first.usable && (window_states(job) > 0 ||
-                                       (is_chosen && job.options.observer == ObserverMode::fixed));
-  const SelectionStep start = tracks ? tracking(declared, context) : declared;
+                                       (is_chosen && job.options.observer == ObserverMode::fixed) ||
+                                       is_moved_by_input_noise(job, first));
+  const SelectionStep start =
+      tracks ? tracking(declared, tracking_gain(job, first), context) : declared;
   EffectSelection selection = EffectSelector(start.job, start.fit, options, context).run();
   try {
     FitOptions criterion = job.options;

@@ -152,4 +152,15 @@ class Normal {
   std::mt19937_64 generator_;
 };
 
+/// The inputs as recorded with noise of `sigma` (V) that never reached the axis.
+inline void add_input_noise(Job& job, double sigma, std::uint64_t seed = 1) {
+  Normal normal(1000 + seed);
+  for (Recording& r : job.recordings) {
+    Schedule noisy;
+    for (const double t : r.times) noisy.append(t, r.command.value_at(t) + sigma * normal());
+    r.command = noisy;
+    r.command_sigma = sigma;
+  }
+}
+
 }  // namespace axisfit

@@ -20,17 +20,7 @@ class InputNoiseTest : public testing::Test {
   static Job job(double sigma, std::uint64_t seed = 1) {
     Job job = two_recordings(slide(), slide(), {"M", "B_a"}, 6.0, {Signal::velocity}, seed);
     job.options.observer = ObserverMode::none;
-    Normal normal(1000 + seed);
-    for (Recording& r : job.recordings) {
-      Schedule recorded;
-      std::size_t k = 0;
-      for (const double t : r.times) {
-        while (k + 1 < r.command.times.size() && r.command.times[k + 1] <= t) ++k;
-        recorded.append(t, r.command.values[k] + sigma * normal());
-      }
-      r.command = recorded;
-      r.command_sigma = sigma;
-    }
+    add_input_noise(job, sigma, seed);
     return job;
   }
   static Linearization at_start(const Job& job) {

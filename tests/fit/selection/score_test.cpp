@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "fit/estimation/continuation.h"
 #include "fit/selection/select_effects.h"
 #include "tests/fit/selection/hidden_effects.h"
 
@@ -54,6 +55,29 @@ TEST_P(ScoreOf, TheTrueEffectIsAmongTheTwoBest) {
 
 INSTANTIATE_TEST_SUITE_P(EverySlot, ScoreOf, testing::ValuesIn(hidden_effects()),
                          [](const auto& one) { return one.param.label(); });
+
+TEST(CloseGain, IsTheHighestAtWhichTheResidualStandsOutOfTheNoise) {
+  Model<double> truth = slide();
+  for (const auto& [level, part] : {std::pair{2000.0, 1.0}, {150.0, 10.0}}) {
+    add_effect<CoulombFriction>(truth).F_c = level;
+    const Job job = two_recordings(truth, slide(), {"M", "B_a"}, 60.0, {Signal::velocity});
+    const auto gain = close_gain(job, {20.0, 30.0});
+    ASSERT_TRUE(gain) << level;
+    EXPECT_DOUBLE_EQ(*gain, initial_observer_gain(job) / part) << level;
+  }
+  add_effect<CoulombFriction>(truth).F_c = 1.0;
+  EXPECT_FALSE(close_gain(two_recordings(truth, slide(), {"M", "B_a"}), {20.0, 30.0}));
+}
+
+TEST(CloseGain, IsNothingWhereTheJobGivesOne) {
+  Model<double> truth = slide();
+  add_effect<CoulombFriction>(truth).F_c = 200.0;
+  Job job = two_recordings(truth, slide(), {"M", "B_a"}, 60.0, {Signal::velocity});
+  ASSERT_TRUE(close_gain(job, {20.0, 30.0}));
+  job.options.observer = ObserverMode::fixed;
+  job.options.observer_gain = 30.0;
+  EXPECT_FALSE(close_gain(job, {20.0, 30.0}));
+}
 
 // Of n independent chi-square variables with one degree of freedom the largest is about 2 log n.
 TEST(ScoreTestOf, ACleanRecordingIsChance) {

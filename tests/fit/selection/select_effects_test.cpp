@@ -162,6 +162,24 @@ TEST(SelectEffects, SeesWhatAHorizonThatWasChosenHides) {
   }
 }
 
+// A free run is off by millimetres, whatever the model: what the noise of the force adds up to.
+TEST(SelectEffects, SeesWhatNoiseOfTheInputHidesFromAFreeRun) {
+  Model<double> truth = slide();
+  add_effect<CoulombFriction>(truth).F_c = 8.0;
+  Job job = two_recordings(truth, slide(), {"M", "B_a"}, 6.0, {Signal::position});
+  add_input_noise(job, 0.1);
+  const FitResult first = estimate(job);
+  ASSERT_GT(first.reduced_chi_square, 100.0);
+  const EffectSelection selection = select_effects(job, first);
+  EXPECT_EQ(accepted(selection), Names{"coulomb_friction"});
+  // The fits are those that were asked for, and no more precise than these are.
+  const ParameterResult& F_c = selection.result.fit.parameters.back();
+  EXPECT_EQ(F_c.name, "coulomb_friction.F_c");
+  EXPECT_NEAR(F_c.value, 8.0, 2.0 * F_c.uncertainty.standard_error);
+  EXPECT_EQ(selection.result.job.options.observer, job.options.observer);
+  EXPECT_EQ(selection.result.fit.observer_gain, 0.0);
+}
+
 TEST(SelectEffects, FitsAllSamplesInWindowsWhereBlocksWereHeldOut) {
   Job job = hidden_effect_named("stroke_spring").job();
   job.recordings.resize(1);

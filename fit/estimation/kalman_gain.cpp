@@ -1,0 +1,42 @@
+#include "fit/estimation/kalman_gain.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/estimation/continuation.h"
+#include "fit/estimation/input_noise.h"
+#include "fit/estimation/residual.h"
+#include "sim/sampling.h"
+
+namespace axisfit {
+
+std::optional<double> kalman_gain(const Job& job, const std::vector<double>& values) {
+  const double high = initial_observer_gain(job);
+  if (!std::isfinite(high)) return std::nullopt;
+  Job few = job;
+  few.options.input_noise_draws = 8;
+  few.options.horizon = 0.0;
+  const ParameterSpace space(few);
+  const Eigen::VectorXd u = space.internal(values);
+  const Linearization at = linearize(few, space, u, high);
+  const std::optional<InputNoise> noise = input_noise(few, space, u, high, at);
+  if (!noise) return std::nullopt;
+  std::optional<double> gain;
+  for (std::size_t s = 0; s < at.series.size(); ++s) {
+    const Recording& recording = job.recordings[at.series[s].recording];
+    const Signal signal = recording.measurements[at.series[s].measurement].signal;
+    const bool of_velocity = recording.find(Signal::velocity) != nullptr;
+    if (signal != (of_velocity ? Signal::velocity : Signal::position)) continue;
+    // White noise of density q in the acceleration makes q / (2 g) of the velocity's mean square
+    // at a gain g, and q / (4 g^3) of the position's.
+    const double square = noise->mean_squares.row(static_cast<Eigen::Index>(s)).mean(),
+                 interval = mean_interval(recording.times);
+    if (!(square > 0.0)) continue;
+    const double own = of_velocity ? std::sqrt(2.0 * high * square / interval)
+                                   : std::pow(4.0 * std::pow(high, 3) * square / interval, 0.25);
+    gain = std::min({gain.value_or(high), own});
+  }
+  return gain;
+}
+
+}  // namespace axisfit
