@@ -71,6 +71,7 @@ Candidate candidate_of(const EffectInfo& effect, SearchEntry entry, bool is_in_m
   candidate.strengths = quantities_of(effect.name, entry.strengths);
   candidate.shapes = quantities_of(effect.name, entry.shapes);
   candidate.settings = std::move(entry.settings);
+  candidate.largest = std::move(entry.largest);
   candidate.shapes_are_free = !entry.is_curve;
   candidate.probes = std::move(entry.probes);
   candidate.extends = words_on(vocabulary, entry.extends);
@@ -252,6 +253,7 @@ Job with_candidate(const Job& job, const Candidate& candidate, std::span<const d
     p.logarithmic = q.lower > 0.0;
     std::tie(p.lower, p.upper) =
         p.logarithmic ? std::pair(q.lower, q.upper) : range_of_place(job, candidate, i);
+    if (!candidate.largest.empty()) p.upper = std::min(p.upper, candidate.largest[i]);
     p.initial = std::clamp(shapes[i], p.lower, p.upper);
     extended_job.free.push_back(p);
   }

@@ -27,6 +27,7 @@ struct Candidate {
   /// A candidate without shapes has one empty setting.
   std::vector<std::size_t> shapes;
   std::vector<std::vector<double>> settings;
+  std::vector<double> largest;  ///< of each shape; empty: what the quantity may be
   bool shapes_are_free = true;  ///< whether the shapes are estimated too; a curve's ends are not
   /// Strengths at which the score test looks instead of at zero, where the derivative there says
   /// little: that of a lag or delay holds while it is shorter than anything else. Empty: none.

@@ -134,17 +134,17 @@ std::vector<double> periods_in(const Recording& recording, const SimulatedRecord
   // slowly over the waves, so that a few of them tell.
   const std::vector<double> adjoint = adjoint_response(recording, residual, observer);
   const double spacing = 0.25 / stroke;  // 1/m, a quarter of a cycle over the stroke
-  constexpr std::size_t kSizes = 24;
+  constexpr std::size_t kFirst = 4, kSizes = 24;
   const auto waves = static_cast<std::size_t>(std::ceil((1.0 / shortest) / spacing));
   const std::size_t stride = std::max<std::size_t>(1, waves / kSizes);
   std::vector<std::complex<double>> turn(n), phase(n);
   for (std::size_t i = 0; i < n; ++i) {
     turn[i] = unit(spacing, i);
-    phase[i] = adjoint[i] * weight(i) * turn[i];
+    phase[i] = adjoint[i] * weight(i) * unit((kFirst - 1) * spacing, i);
   }
   std::vector<Line> spectrum;
   double size = 0.0;
-  for (std::size_t k = 2; k < waves; ++k) {
+  for (std::size_t k = kFirst; k < waves; ++k) {
     if (is_set(stop)) throw Interrupted();
     std::complex<double> product = 0.0;
     for (std::size_t i = 0; i < n; ++i) product += phase[i] *= turn[i];

@@ -10,10 +10,11 @@
 namespace axisfit {
 
 /// The periods (m) at which a force sin, cos(2 pi y0 / period) on the arm explains most of the
-/// residuals, best first, at most `most` of them, from twice the stroke down to what sampling
-/// shows. `residuals` are those of one recording, as RecordingCost orders them, and `basis` spans
-/// what the free parameters explain of them already, in orthonormal columns of as many rows. With
-/// `of_drive` the force is in proportion to the drive's, as that of a ripple of its torque.
+/// residuals, best first, at most `most` of them, from the stroke down to what sampling shows: of a
+/// longer one the recording has no period. `residuals` are those of one recording, as RecordingCost
+/// orders them, and `basis` spans what the free parameters explain of them already, in orthonormal
+/// columns of as many rows. With `of_drive` the force is in proportion to the drive's, as that of a
+/// ripple of its torque.
 ///
 /// Throws Interrupted when the stop flag is set.
 ///

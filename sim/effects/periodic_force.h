@@ -46,6 +46,7 @@ struct PeriodicForce {
     return {{.strengths = {"F_s1", "F_c1"},
              .shapes = {"period"},
              .settings = one_by_one(scales.periods),
+             .largest = {scales.position_high - scales.position_low},
              .has_phase = true},
             {.strengths = {"F_s2", "F_c2"}, .extends = name, .has_phase = true},
             {.strengths = {"F_s3", "F_c3"}, .extends = name, .has_phase = true}};

@@ -72,6 +72,8 @@ struct SearchEntry {
   std::vector<std::string_view> strengths;  ///< symbols of quantities
   std::vector<std::string_view> shapes = {};
   ShapeSettings settings = ShapeSettings(1);  ///< at first one, of no shapes; none: not offered
+  /// Of each shape, beyond which the recordings cannot tell the effect from others; empty: none.
+  std::vector<double> largest = {};
   /// Strengths at which the score test looks instead of at zero; see Candidate.
   std::vector<double> probes = {};
   UsedBy used_by = UsedBy::every_axis;  ///< the axes for which it is offered

@@ -57,6 +57,11 @@ TEST_F(PeriodsTest, OfAForceAreFound) {
     EXPECT_NEAR(found(residuals(kStroke / cycles, false), false).front(), kStroke / cycles, 1e-9);
 }
 
+TEST_F(PeriodsTest, AreNoLongerThanTheStroke) {
+  for (const double period : found(residuals(1.7 * kStroke, false), false))
+    EXPECT_LE(period, kStroke);
+}
+
 TEST_F(PeriodsTest, OfARippleAreFoundInProportionToTheDrive) {
   for (const double cycles : {7.0, 12.5, 60.25}) {
     const Eigen::VectorXd r = residuals(kStroke / cycles, true);
