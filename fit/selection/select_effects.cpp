@@ -31,9 +31,9 @@ bool is_moved_by_input_noise(const Job& job, const FitResult& fit) {
          });
 }
 
-/// The observer gain at which a search tracks.
+/// The observer gain at which a search tracks: none at which noise of the inputs adds up.
 double tracking_gain(const Job& job, const FitResult& fit) {
-  return kalman_gain(job, values_of(fit)).value_or(score_gains(job).front());
+  return std::max(score_gains(job).front(), kalman_gain(job, values_of(fit)).value_or(0.0));
 }
 
 /// The model, refitted with a simulation that tracks the data.
