@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <stdexcept>
 
 #include "base/parallel.h"
 #include "fit/estimation/continuation.h"
@@ -151,8 +150,7 @@ HorizonChoice choose_horizon(const Job& job, const RunContext& context) {
   tracking.options.tolerance = quick_fit(job.options).tolerance;
   const FitResult near = estimate(tracking, context.quiet());
   if (near.status == Status::failed)
-    throw std::runtime_error("horizon: auto: the model cannot be simulated at any start: " +
-                             near.message);
+    throw NoHorizon("horizon: auto: the model cannot be simulated at any start: " + near.message);
   const std::vector<double> from = values_of(near);
 
   const std::size_t fits = choice.trials.size() * stretches.size();
@@ -198,7 +196,7 @@ HorizonChoice choose_horizon(const Job& job, const RunContext& context) {
     if (choice.trials[t].error < choice.trials[choice.chosen].error) choice.chosen = t;
   }
   if (!std::isfinite(choice.trials[choice.chosen].error))
-    throw std::runtime_error(
+    throw NoHorizon(
         "horizon: auto: with no horizon can the model be simulated through the stretches that are "
         "left out: give a horizon, such as 'horizon: 1 s'");
   return choice;

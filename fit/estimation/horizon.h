@@ -5,6 +5,7 @@
 // the rest is fitted with every horizon, and the model then runs free through that stretch.
 #pragma once
 
+#include <stdexcept>
 #include <vector>
 
 #include "fit/data/job.h"
@@ -29,10 +30,14 @@ struct HorizonChoice {
   std::size_t chosen = 0;  ///< with the smallest error
 };
 
+/// With no horizon can the model be fitted and simulated.
+struct NoHorizon : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// Tries horizons from a hundredth of a stretch to all of it, the whole recordings, and one step
 /// ahead, unless the signal that is tracked lags. The job's recordings must have windows, see
-/// window_starts(). Throws std::runtime_error where no trial can be fitted,
-/// Interrupted after a stop.
+/// window_starts(). Throws NoHorizon, and Interrupted after a stop.
 HorizonChoice choose_horizon(const Job& job, const RunContext& context = {});
 
 /// Lets fits go by that criterion. `choose_horizon` stays, to say that it was chosen.

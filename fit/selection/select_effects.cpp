@@ -438,8 +438,12 @@ EffectSelection select_effects(const Job& job, const FitResult& first,
       Job extended = selection.result.job;
       extended.options = job.options;
       set_initial_values(extended, values_of(selection.result.fit));
-      selection.horizon = choose_horizon(extended, context);
-      set_criterion(criterion, selection.horizon->trials[selection.horizon->chosen]);
+      try {
+        selection.horizon = choose_horizon(extended, context);
+        set_criterion(criterion, selection.horizon->trials[selection.horizon->chosen]);
+      } catch (const NoHorizon&) {
+        // The one that was chosen for the declared model stays.
+      }
     }
     const bool is_other = !is_same_criterion(criterion, job.options);
     if (!selection.interrupted && (tracks || is_other))
