@@ -74,6 +74,8 @@ def spline(values, x, low, high):
 
 def elastic(k, p):
     """What a part of the mass on a spring makes of the force that it would take if it were rigid."""
+    if p["m_e"] == 0.0:
+        return np.zeros_like(k.v)
     w = 2 * np.pi * p["f_e"]
     part = {"M": p["m_e"], "B_a": 0.0, "H": 0.0, "k_g": p["m_e"] * w * w,
             "b_g": 2.0 * p.get("zeta_e", 0.02) * w * p["m_e"]}  # fmt: skip

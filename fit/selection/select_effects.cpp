@@ -425,9 +425,9 @@ EffectSelection select_effects(const Job& job, const FitResult& first,
   const bool is_chosen = job.options.choose_horizon;
   // The states with which windows begin take part of what is missing upon themselves, and every
   // fit with them takes minutes. A simulation that was chosen to track may follow the noise.
-  const bool tracks = first.usable && (window_states(job) > 0 ||
-                                       (is_chosen && job.options.observer == ObserverMode::fixed) ||
-                                       is_moved_by_input_noise(job, first));
+  const bool is_moved = first.usable && is_moved_by_input_noise(job, first);
+  const bool tracks = first.usable && (window_states(job) > 0 || is_moved ||
+                                       (is_chosen && job.options.observer == ObserverMode::fixed));
   const SelectionStep start =
       tracks ? tracking(declared, tracking_gain(job, first), context) : declared;
   EffectSelection selection = EffectSelector(start.job, start.fit, options, context).run();
@@ -445,6 +445,8 @@ EffectSelection select_effects(const Job& job, const FitResult& first,
         // The one that was chosen for the declared model stays.
       }
     }
+    // A free run that noise moves would not keep what was found.
+    if (is_moved && !is_chosen && selection.models.size() > 1) return selection;
     const bool is_other = !is_same_criterion(criterion, job.options);
     if (!selection.interrupted && (tracks || is_other))
       selection = refitted(selection, criterion, is_other ? nullptr : &first, context);

@@ -314,6 +314,13 @@ std::string verdict_text(const EffectSelection& selection) {
 }
 
 std::string judges_text(const RunResult& run_result) {
+  const FitOptions &given = run_result.baseline.options, &used = run_result.job().options;
+  if (given.observer != ObserverMode::fixed && used.observer == ObserverMode::fixed &&
+      !given.choose_horizon)
+    return fmt::format(
+        "The {} moves a free run by far more than the readings are in doubt. All models therefore "
+        "track the recordings, as with 'observer: {{fixed: {:.3g} 1/s}}'.",
+        input_noise_text(run_result.job()), used.observer_gain);
   if (run_result.selection->held_out_blocks)
     return "No recording has the role validate: every second tenth of each recording was held out "
            "to validate the effects.";

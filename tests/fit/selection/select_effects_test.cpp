@@ -172,12 +172,11 @@ TEST(SelectEffects, SeesWhatNoiseOfTheInputHidesFromAFreeRun) {
   ASSERT_GT(first.reduced_chi_square, 100.0);
   const EffectSelection selection = select_effects(job, first);
   EXPECT_EQ(accepted(selection), Names{"coulomb_friction"});
-  // The fits are those that were asked for, and no more precise than these are.
-  const ParameterResult& F_c = selection.result.fit.parameters.back();
-  EXPECT_EQ(F_c.name, "coulomb_friction.F_c");
-  EXPECT_NEAR(F_c.value, 8.0, 2.0 * F_c.uncertainty.standard_error);
-  EXPECT_EQ(selection.result.job.options.observer, job.options.observer);
-  EXPECT_EQ(selection.result.fit.observer_gain, 0.0);
+  expect_found(selection, "coulomb_friction.F_c", 8.0);
+  // With the effect, too, the free run would be off by as much.
+  EXPECT_EQ(selection.result.job.options.observer, ObserverMode::fixed);
+  EXPECT_GT(selection.result.fit.observer_gain, 0.0);
+  EXPECT_TRUE(selection.explained);
 }
 
 TEST(SelectEffects, FitsAllSamplesInWindowsWhereBlocksWereHeldOut) {
