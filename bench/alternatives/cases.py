@@ -8,8 +8,9 @@ velocity and a free run, or with the horizon that `--horizon` of run.py says. Al
 with white noise may have a coloured disturbance too.
 
 The strength of a law is such that the reduced chi-square of the best fit without it is about 3 or 10, or
-what `--chi-square` of run.py says. It is found without the project: the force that the base model lacks, sent through the linear response of
-the axis (with its observer), less its projection on the responses of the base terms.
+what `--chi-square` of run.py says. It is found without the project: the force that the base model lacks,
+sent through the linear response of the axis (with its observer), less its projection on the responses of the
+base terms.
 """
 import dataclasses
 import json

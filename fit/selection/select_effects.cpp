@@ -23,12 +23,10 @@ namespace {
 
 /// Whether the residual of a free run says little of what is missing: noise of a recorded force
 /// adds up, and moves it far more than the readings are in doubt.
-bool is_moved_by_input_noise(const Job& job, const FitResult& fit) {
+bool is_moved_by_input_noise(const FitResult& fit) {
   constexpr double kFarMore = 9.0;  // of the mean square, over that of the readings
-  const auto series = residual_series(job, fit);
-  return fit.observer_gain == 0.0 && std::ranges::any_of(series, [](const ResidualSeries& s) {
-           return s.input_noise > kFarMore;
-         });
+  return fit.observer_gain == 0.0 && fit.at_solution && fit.at_solution->input_noise &&
+         fit.at_solution->input_noise->mean_squares.maxCoeff() > kFarMore;
 }
 
 /// The observer gain at which a search tracks: none at which noise of the inputs adds up.
@@ -423,9 +421,9 @@ EffectSelection select_effects(const Job& job, const FitResult& first,
   const ThreadPool pool(job.options.threads);
   const SelectionStep declared{"", job, first};
   const bool is_chosen = job.options.choose_horizon;
+  const bool is_moved = first.usable && is_moved_by_input_noise(first);
   // The states with which windows begin take part of what is missing upon themselves, and every
   // fit with them takes minutes. A simulation that was chosen to track may follow the noise.
-  const bool is_moved = first.usable && is_moved_by_input_noise(job, first);
   const bool tracks = first.usable && (window_states(job) > 0 || is_moved ||
                                        (is_chosen && job.options.observer == ObserverMode::fixed));
   const SelectionStep start =

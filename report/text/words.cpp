@@ -314,20 +314,23 @@ std::string verdict_text(const EffectSelection& selection) {
 }
 
 std::string judges_text(const RunResult& run_result) {
+  std::vector<std::string> sentences;
   const FitOptions &given = run_result.baseline.options, &used = run_result.job().options;
   if (given.observer != ObserverMode::fixed && used.observer == ObserverMode::fixed &&
       !given.choose_horizon)
-    return fmt::format(
+    sentences.push_back(fmt::format(
         "The {} moves a free run by far more than the readings are in doubt. All models therefore "
         "track the recordings, as with 'observer: {{fixed: {:.3g} 1/s}}'.",
-        input_noise_text(run_result.job()), used.observer_gain);
+        input_noise_text(run_result.job()), used.observer_gain));
   if (run_result.selection->held_out_blocks)
-    return "No recording has the role validate: every second tenth of each recording was held out "
-           "to validate the effects.";
-  if (run_result.roles_exchanged)
-    return "With the roles that the job gives to the recordings, no effect passes. Here they are "
-           "exchanged: those to validate are fitted, and those to fit validate.";
-  return "";
+    sentences.push_back(
+        "No recording has the role validate: every second tenth of each recording was held out "
+        "to validate the effects.");
+  else if (run_result.roles_exchanged)
+    sentences.push_back(
+        "With the roles that the job gives to the recordings, no effect passes. Here they are "
+        "exchanged: those to validate are fitted, and those to fit validate.");
+  return fmt::format("{}", fmt::join(sentences, " "));
 }
 
 std::string overall_verdict(const RunResult& run_result, bool colour) {
