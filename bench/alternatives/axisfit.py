@@ -3,7 +3,8 @@ that it has not seen, from the same signals as the alternatives.
 
 Inverse dynamics of the final model: the laws of docs/effects.md with the estimates of result.json. A
 sensor effect changes the signals first, timing shifts them, and what is behind a spring or a gap is
-simulated behind the motor's motion.
+simulated behind the motor's motion. What the drive and friction by load take of the force is taken of the
+force that the model predicts, not of the recorded one.
 """
 import dataclasses
 import json
@@ -15,7 +16,7 @@ import time
 import numpy as np
 from scipy import interpolate, signal
 
-from regression import hysteresis, kinematics, missing
+from regression import MOST, force_for, hysteresis, kinematics, missing
 
 
 class Unknown(Exception):
@@ -103,10 +104,6 @@ LAWS = {
     "position_friction": lambda k, p: (p.get("G_c", 0.0) * k.y + p.get("G_q", 0.0) * k.y**2)
     * k.direction + p.get("G_b", 0.0) * k.y * k.v,
     "friction_bump": lambda k, p: p["F_b"] * k.direction * np.exp(-(((k.y - p["y_b"]) / p["w_b"]) ** 2)),
-    "load_friction": lambda k, p: p["mu"] * np.abs(k.force) * k.direction,
-    "quadratic_load_friction": lambda k, p: p["mu_q"] * k.force**2 * k.direction,
-    "stribeck_load_friction": lambda k, p: p["mu_st"] * np.abs(k.force) * k.direction
-    * np.exp(-np.abs(k.v) / p["v_l"]),
     "dahl_friction": dahl,
     "second_dahl_friction": dahl,
     "warming_friction": lambda k, p: p["F_w"] * k.direction * np.exp(-k.time / p["t_w"]),
@@ -125,6 +122,14 @@ LAWS = {
     "force_over_time": curve(lambda k: k.time),
     "friction_over_velocity": lambda k, p: -curve(lambda k: np.abs(k.v))(k, p) * k.direction,
     "friction_over_position": lambda k, p: -curve(lambda k: k.y)(k, p) * k.direction,
+}  # fmt: skip
+
+# What friction by load takes of a force.
+LOAD_LAWS = {
+    "load_friction": lambda f, k, p: p["mu"] * np.abs(f) * k.direction,
+    "quadratic_load_friction": lambda f, k, p: p["mu_q"] * f**2 * k.direction,
+    "stribeck_load_friction": lambda f, k, p: p["mu_st"] * np.abs(f) * k.direction
+    * np.exp(-np.abs(k.v) / p["v_l"]),
 }  # fmt: skip
 
 
@@ -199,22 +204,15 @@ def lacking(values, recording):
     base = groups.get("", {})
     k = kinematics(corrected(recording, groups))
     force = shifted(k.force, k.time, -base.get("T_d", 0.0))
-    if "torque_fade" in groups:
-        force = force / (1.0 + groups["torque_fade"]["c_t"] * k.time)
-    if "force_droop" in groups:
-        droop = groups["force_droop"]
-        force = force * (1.0 / np.sqrt(1.0 + 2.0 * droop.get("c_q", 0.0) * force**2)
-                         - droop.get("c_f", 0.0) * np.abs(force))  # fmt: skip
     if "drive_lag" in groups and groups["drive_lag"]["T_l"] > 0.0:
         follow = signal.cont2discrete(([1.0], [groups["drive_lag"]["T_l"], 1.0]), 1.0 / k.rate,
                                       "bilinear")  # fmt: skip
         force = signal.lfilter(follow[0][0], follow[1], force)
-    k = dataclasses.replace(k, force=force)
     needed = np.zeros_like(k.v)
     for effect, parameters in groups.items():
         if effect in LAWS:
             needed = needed + LAWS[effect](k, parameters)
-        elif effect not in ("", "position", "velocity", "initial", *ELSEWHERE):
+        elif effect not in ("", "position", "velocity", "initial", *ELSEWHERE, *LOAD_LAWS):
             raise Unknown(effect)
     if "J_m" in base:  # r_g is 1 m
         dry = groups.get("coulomb_friction", {"F_c": 0.0})["F_c"]
@@ -222,6 +220,18 @@ def lacking(values, recording):
         needed = base["J_m"] * k.a + behind_gap(k, {"H": 0.0, **base}, dry, others)
     else:
         needed = needed + base["M"] * k.a + base["B_a"] * k.v
+
+    def arrives(f):
+        """What is left of a force, behind the drive and friction by load."""
+        if "torque_fade" in groups:
+            f = f / (1.0 + groups["torque_fade"]["c_t"] * k.time)
+        droop = groups.get("force_droop", {})
+        f = f * (1.0 / np.sqrt(1.0 + 2.0 * droop.get("c_q", 0.0) * f**2)
+                 - droop.get("c_f", 0.0) * np.abs(f))  # fmt: skip
+        return f - sum(law(f, k, groups[name]) for name, law in LOAD_LAWS.items() if name in groups)
+
+    if not groups.keys().isdisjoint(("torque_fade", "force_droop", *LOAD_LAWS)):
+        needed = force_for(arrives, needed, MOST * np.max(np.abs(k.force)))
     return missing(k, force - needed)
 
 

@@ -26,6 +26,7 @@ BAND = 20.0  # Hz, in which forces are compared
 RIDGES = (1e-4, 1e-2)  # of stlsq, beside terms of unit size
 LEAST_SPEED = 0.01  # of the largest, at which an axis moves
 EDGE = 0.15  # s, at either end, where filters start
+MOST = 3.0  # times the largest recorded force: no force is predicted beyond
 NAMES = {"M": "a", "B_a": "v", "F_c": "sgn v", "F_0": "1"}  # base terms
 
 
@@ -92,6 +93,21 @@ def missing(k, force):
     return float(np.sqrt(np.mean(compared(np.where(k.moves, force, 0.0), k.rate) ** 2)))
 
 
+def force_for(response, wanted, most):
+    """The smallest force in N, up to `most`, that makes what is wanted of `response`, which is 0 at no force
+    and of the sign of the force; where none does, the one that comes nearest. Sample by sample."""
+    to = np.sign(wanted)
+    nearest, reached, before = np.zeros_like(wanted), np.zeros_like(wanted), np.zeros_like(wanted)
+    step = most / 300
+    for force in np.arange(step, most, step):
+        now, open_ = to * response(to * force), reached < np.abs(wanted)
+        rises = open_ & (now > reached)
+        part = (np.abs(wanted) - before) / np.where(rises, now - before, 1.0)
+        nearest = np.where(rises, force - step + step * np.clip(part, 0.0, 1.0), nearest)
+        reached, before = np.where(rises, now, reached), now
+    return to * nearest
+
+
 def hysteresis(k, length):
     """Friction that builds up over `length` after a reversal, of level one."""
     z, state = np.zeros_like(k.y), 0.0
@@ -100,6 +116,11 @@ def hysteresis(k, length):
         state = to - (to - state) * np.exp(-abs(moved) / length)
         z[i] = state
     return z
+
+
+# Terms of the force itself: what they take of it.
+LOSSES = {"|F| sgn v": lambda f, k: np.abs(f) * k.direction, "F t": lambda f, k: f * k.time,
+          "F|F|": lambda f, k: f * np.abs(f)}  # fmt: skip
 
 
 def base_terms(k):
@@ -131,12 +152,12 @@ def candidate_terms(k, s, declared):
     terms += [("quadratic_drag", "v|v|", v * np.abs(v)), ("directional_friction", "|v|", np.abs(v)),
               ("stroke_spring", "x", x), ("position_friction", "x sgn v", x * sgn),
               ("position_friction", "x^2 sgn v", x * x * sgn), ("position_friction", "x v", x * v),
-              ("load_friction", "|F| sgn v", np.abs(f) * sgn), ("torque_fade", "F t", f * t),
               ("warming_friction", "t sgn v", t * sgn)]  # fmt: skip
+    losses = zip(("load_friction", "torque_fade", "force_droop"), LOSSES.items())
+    terms += [(effect, term, loss(f, k)) for effect, (term, loss) in losses]
     smooth = low_pass(f, CUTOFF, k.rate)
     terms.append(("drive_lag", "dF/dt", slope(t, smooth)))
     terms.append(("elastic_mode", "d2a/dt2", slope(t, slope(t, k.a))))
-    terms.append(("force_droop", "F|F|", f * np.abs(f)))
     for part in (0.01, 0.03, 0.1, 0.3):
         terms.append(("stribeck_friction", f"exp(-|v|/{part * s.speed:.3g}) sgn v",
                       np.exp(-np.abs(v) / (part * s.speed)) * sgn))  # fmt: skip
@@ -160,13 +181,13 @@ class Problem:
         self.declared = declared
         self.mass = 0.0 if "M" in declared else mass
         self.scales = scales(fit)
-        self.effects = []
+        self.effects, self.names = [], []
         self.force, self.base, self.terms = zip(*(self.filtered(k) for k in (fit, validate)))
 
     def columns(self, k):
         """The force less that of the known mass, the base terms and the candidate terms."""
         terms = candidate_terms(k, self.scales, self.declared)
-        self.effects = [effect for effect, _, _ in terms]
+        self.effects, self.names = [effect for effect, *_ in terms], [term for _, term, _ in terms]
         base = base_terms(k)
         force = k.force - self.mass * k.a
         return np.stack([force, *(base[q] for q in self.declared), *(c for *_, c in terms)], -1)
@@ -248,8 +269,15 @@ METHODS = {"stlsq": stlsq, "bic": bic, "lasso": lasso}
 
 
 def held_out(p, selected, k):
-    """rms in N of the force that a selection lacks in a recording that it has not seen."""
-    columns = p.columns(k)
-    split = 1 + len(p.declared)
-    chosen = [*range(1, split), *(split + i for i in selected)]
-    return missing(k, columns[:, 0] - columns[:, chosen] @ p.solve(selected))
+    """rms in N of the force that a selection lacks in a recording that it has not seen: the force less the one
+    that it predicts for the motion. A term of the force itself must not explain the force by itself."""
+    columns, split = p.columns(k), 1 + len(p.declared)
+    chosen = np.array([*range(1, split), *(split + i for i in selected)])
+    coefficients = p.solve(selected)
+    losses = {split + p.names.index(term): loss for term, loss in LOSSES.items()}
+    of_motion = [column not in losses for column in chosen]
+    needed = p.mass * k.a + columns[:, chosen[of_motion]] @ coefficients[of_motion]
+    taken = [(c, losses[i]) for i, c in zip(chosen, coefficients) if i in losses]
+    predicted = force_for(lambda f: f - sum(c * loss(f, k) for c, loss in taken), needed,
+                          MOST * np.max(np.abs(k.force))) if taken else needed  # fmt: skip
+    return missing(k, k.force - predicted)

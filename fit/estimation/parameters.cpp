@@ -66,6 +66,20 @@ void set_initial_values(Job& job, std::span<const double> values) {
     job.free[i].initial = std::clamp(values[i], job.free[i].lower, job.free[i].upper);
 }
 
+Job fixed_at(const Job& job, std::span<const double> values) {
+  Job fixed = job;
+  fixed.free.clear();
+  const auto member = members(fixed.model);
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    if (job.free[i].recording)
+      fixed.recordings[*job.free[i].recording].overrides.emplace_back(job.free[i].quantity,
+                                                                      values[i]);
+    else
+      *member[job.free[i].quantity] = values[i];
+  }
+  return fixed;
+}
+
 Model<double> model_at(const Job& job, const ParameterSpace& space, const double* u,
                        std::size_t recording) {
   Model<double> model = job.model;

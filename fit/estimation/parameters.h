@@ -48,6 +48,9 @@ std::vector<double> initial_values(const Job& job);
 /// Lets it begin there, or at the bound that is nearest: of the first so many parameters.
 void set_initial_values(Job& job, std::span<const double> values);
 
+/// The job with its free parameters fixed at these values.
+Job fixed_at(const Job& job, std::span<const double> values);
+
 /// The model of one recording of a job at u, with the recording's overrides and initial state.
 Model<double> model_at(const Job& job, const ParameterSpace& space, const double* u,
                        std::size_t recording);

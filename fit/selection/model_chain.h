@@ -30,6 +30,7 @@ bool explains(const SelectionStep& model);
 /// Another effect that explained as much as an accepted one when that was chosen.
 struct Rival {
   Candidate candidate;
+  /// Without strengths: it has not been fitted yet.
   CandidateValues values;
   /// Of the other free parameters, where its refit starts; empty: from where all else is.
   std::vector<double> others{};

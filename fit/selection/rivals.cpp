@@ -36,6 +36,16 @@ void add_alternatives(AcceptedEffect& accepted, const SelectionStep& model) {
   }
 }
 
+/// Where the fit of a rival starts: one that has not been fitted with the strengths that suit all
+/// else as it is.
+CandidateValues first_values(const Job& others, const Rival& rival, const RunContext& context) {
+  if (!rival.values.strengths.empty()) return rival.values;
+  const Candidate& candidate = rival.candidate;
+  const Job alone = with_candidate(fixed_at(others, initial_values(others)), candidate, {},
+                                   candidate.neutral, rival.values.shapes);
+  return candidate_values(alone, refit(alone, context), candidate);
+}
+
 /// Fits those of an accepted effect's rivals that `counts` in its place, from where all else is.
 template <class Counts>
 std::vector<ExtendedModel> fit_rivals(const SearchState& state, std::size_t place, Counts&& counts,
@@ -53,9 +63,10 @@ std::vector<ExtendedModel> fit_rivals(const SearchState& state, std::size_t plac
   const Job others = state.chain.job_with_accepted(state.chain.declared().job, place);
   parallel_for(list.size(), [&](std::size_t i) {
     const Rival& rival = rivals[i];
+    const CandidateValues first = first_values(others, rival, context);
     list[i] = fit_extended_model(others, rival.candidate,
                                  rival.others.empty() ? initial_values(others) : rival.others,
-                                 rival.values.strengths, rival.values.shapes, context);
+                                 first.strengths, first.shapes, context);
   });
   std::erase_if(list, [](const ExtendedModel& e) { return !e.fit.usable; });
   return list;
@@ -100,8 +111,7 @@ std::vector<RivalPair> equal_rivals(SearchState& state, int round, const RunCont
     const auto counts = [&](const Candidate& rival) {
       // A clock that is off has precedence: no part of the machine is its equal.
       const bool is_behind = chosen.is_timing && !rival.is_timing;
-      return !is_behind && !is_form_of_same_effect(chosen, rival) &&
-             rival.parameters() <= chosen.parameters();
+      return !is_behind && !is_form_of_same_effect(chosen, rival);
     };
     rivals[a] = fit_rivals(state, a, counts, context);
   });
@@ -109,7 +119,10 @@ std::vector<RivalPair> equal_rivals(SearchState& state, int round, const RunCont
   std::vector<RivalPair> pairs;
   for (std::size_t a = 0; a < accepted.size(); ++a) {
     for (const ExtendedModel& e : rivals[a]) {
-      if (is_clearly_worse(loss_with(e, present, now))) continue;
+      // What has more parameters is an equal where it explains more than they cost.
+      const bool has_more = e.candidate.parameters() > accepted[a].candidate.parameters();
+      const double loss = loss_with(e, present, now);
+      if (has_more ? loss >= 0.0 : is_clearly_worse(loss)) continue;
       if (state.trials.find(e.candidate) == nullptr) state.trials.record(e, &e, round);
       pairs.push_back({a, e.candidate, fitted_model(e.job, e.fit),
                        is_delay(accepted[a].candidate) && is_delay(e.candidate)});

@@ -108,11 +108,14 @@ class RoundTrial {
       return entry(place).is_second ? 2 : entry(place).gain >= kRival * promised ? 0 : 1;
     };
     std::ranges::stable_sort(places, {}, turn);
-    for (auto next = places.begin(); next != places.end() && all_are_rejected(result_.models);) {
+    auto next = places.begin();
+    while (next != places.end() && all_are_rejected(result_.models)) {
       const auto end = std::ranges::upper_bound(next, places.end(), turn(*next), {}, turn);
       refit_all({next, end});
       next = end;
     }
+    for (; next != places.end(); ++next)
+      if (entry(*next).is_second) result_.seconds.push_back(entry(*next));
   }
 
   /// Refits with each of these and judges it.

@@ -38,6 +38,8 @@ struct RoundResult {
   std::vector<ExtendedModel> models;  ///< refitted and judged, each effect once
   std::optional<std::size_t> best{};  ///< of them; none: no effect passes
   std::size_t tried = 1;              ///< candidates and settings among which they were chosen
+  /// Not refitted, since a simpler one gained as much.
+  std::vector<ShortlistEntry> seconds{};
 };
 
 /// Scores all effects, refits a shortlist, and takes the best that passes the acceptance test.

@@ -16,21 +16,6 @@
 namespace axisfit {
 namespace {
 
-/// The job with its free parameters fixed at these values.
-Job fixed_at(const Job& job, std::span<const double> values) {
-  Job fixed = job;
-  fixed.free.clear();
-  const auto member = members(fixed.model);
-  for (std::size_t i = 0; i < job.free.size(); ++i) {
-    if (job.free[i].recording)
-      fixed.recordings[*job.free[i].recording].overrides.emplace_back(job.free[i].quantity,
-                                                                      values[i]);
-    else
-      *member[job.free[i].quantity] = values[i];
-  }
-  return fixed;
-}
-
 /// Orthonormal columns that span those of a matrix; a column of zeros where they span nothing, for
 /// of a matrix without columns Eigen takes no blocks.
 Eigen::MatrixXd basis_of(const Eigen::MatrixXd& a) {

@@ -245,6 +245,10 @@ class EffectSelector {
       if (is_clearly_worse(bic_advantage(*best, e))) continue;
       accepted.rivals.push_back({e.candidate, candidate_values(e.job, e.fit, e.candidate)});
     }
+    // So are those of more parameters, which the rounds to come may tell from it.
+    for (const ShortlistEntry& e : found.seconds)
+      if (!same_effect(e.candidate, best->candidate) && !e.candidate.gives_backlash)
+        accepted.rivals.push_back({e.candidate, {{}, e.score.shapes}});
     chain().append(std::move(accepted), std::move(best->job), std::move(best->fit));
     if (!provisional_) last_valid_ = state_;
     return true;
