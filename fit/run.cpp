@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "fit/estimation/gain_sensitivity.h"
 #include "fit/estimation/guesses.h"
+#include "fit/estimation/kalman_gain.h"
 #include "fit/selection/rival_shift.h"
 
 namespace axisfit {
@@ -250,6 +251,7 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
     context.report({.phase = "does the observer gain matter?"});
     try {
       allow_for_observer_gain(result.job(), last, context);
+      if (!result.horizon) last.quiet_gain = tracking_gain(result.job(), last);
     } catch (const Interrupted&) {
       result.interrupted = true;
     }

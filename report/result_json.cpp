@@ -622,6 +622,7 @@ Json result_json(const RunResult& run_result) {
                    {"seed", run_result.baseline.options.seed},
                    {"wall_time_s", run_result.wall_time}});
   if (fit.better_gain) json["better_observer_gain"] = *fit.better_gain;
+  if (fit.quiet_gain) json["quiet_observer_gain"] = *fit.quiet_gain;
   return json;
 }
 

@@ -395,7 +395,10 @@ class Equations {
       return static_cast<std::int8_t>(value > limit ? 1 : value < -limit ? -1 : 0);
     };
     Mode mode;
-    if (is_.has.has_backlash) mode.contact = side(value_of(gear_position(y)), value_of(p.H));
+    // Teeth without play always touch: at rest, on one of the sides that are the same.
+    if (is_.has.has_backlash)
+      mode.contact = value_of(p.H) == 0.0 ? value_of(gear_position(y)) < 0.0 ? -1 : 1
+                                          : side(value_of(gear_position(y)), value_of(p.H));
     if (is_.has.is_electric) mode.v_c = side(value_of(preamplifier(y)), value_of(p.V_L));
     if (is_.has.has_voltage_loop)
       mode.v_m = side(value_of(supply_demand(mode, y, input)), value_of(p.V_s));

@@ -630,15 +630,20 @@ std::optional<typename Integrator<T>::Hit> Integrator<T>::locate(const State<dou
       mode_, to, moved(view.input, length), [&](Guard guard, double g, double scale) {
         const std::size_t index = n++;
         if (g >= -1e-12 * scale) return;
+        const auto node_at = [&](double t) {
+          const Input<double> input = moved(view.input, t);
+          return guard_values({view.equations, view.propagator, input}, t > 0.0 ? path.at(t) : from)
+              .nodes[index];
+        };
         double low = 0.0, high = length, t = 0.0, newton = 0.0;
         for (int i = 0; i < 60 && high - low > 1e-15 * length; ++i) {
-          const Input<double> input = moved(view.input, t);
-          const GuardValues::Node node =
-              guard_values({view.equations, view.propagator, input}, t > 0.0 ? path.at(t) : from)
-                  .nodes[index];
+          const GuardValues::Node node = node_at(t);
           // A guard that rises from zero, as that of an arm which has just broken away, was not met
-          // there. Within a step it may fall again: that is looked for.
-          const bool rises = node.rate > 0.0;
+          // there. Within a step it may fall again: that is looked for. From rest, as of teeth that
+          // have just met, it rises with the square of the time.
+          constexpr double kSoon = 1.0 / 64.0;  // of the step
+          const bool rises =
+              t == 0.0 && node.rate == 0.0 ? node_at(kSoon * length).value > 0.0 : node.rate > 0.0;
           if (node.value <= 0.0 && !(rises && (t == 0.0 || node.value > -1e-12 * scale)))
             high = t;
           else

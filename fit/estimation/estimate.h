@@ -135,6 +135,8 @@ struct FitResult {
   /// 1/s, at which what was estimated predicts the recordings to validate better; see
   /// gain_sensitivity.h.
   std::optional<double> better_gain{};
+  /// 1/s, at which noise of the inputs would not add up, see tracking_gain().
+  std::optional<double> quiet_gain{};
   int iterations = 0;         ///< of the best start, all stages
   std::vector<Stage> stages;  ///< of the best start
   std::vector<StartResult> starts;

@@ -39,4 +39,12 @@ std::optional<double> kalman_gain(const Job& job, const std::vector<double>& val
   return gain;
 }
 
+std::optional<double> tracking_gain(const Job& job, const FitResult& fit) {
+  constexpr double kFarMore = 9.0;  // of the mean square, over that of the readings
+  const bool is_moved = fit.usable && fit.observer_gain == 0.0 && fit.at_solution &&
+                        fit.at_solution->input_noise &&
+                        fit.at_solution->input_noise->mean_squares.maxCoeff() > kFarMore;
+  return is_moved ? kalman_gain(job, values_of(fit)) : std::nullopt;
+}
+
 }  // namespace axisfit

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "fit/data/job.h"
+#include "fit/estimation/estimate.h"
 
 namespace axisfit {
 
@@ -18,5 +18,10 @@ namespace axisfit {
 /// recorded velocity, from sample to sample, gives a bandwidth of sqrt(s_a / s_x) or s_a / s_v.
 /// What s_a is in a job's units follows from what the noise does to a simulation that tracks.
 std::optional<double> kalman_gain(const Job& job, const std::vector<double>& values);
+
+/// That gain, for a free run that noise of the inputs moves by more than three times the noise of
+/// the readings: its residual says little of the model, and its estimates err more than those of a
+/// fit that tracks. Nothing for any other fit.
+std::optional<double> tracking_gain(const Job& job, const FitResult& fit);
 
 }  // namespace axisfit

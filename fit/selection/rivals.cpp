@@ -105,13 +105,19 @@ std::vector<RivalPair> equal_rivals(SearchState& state, int round, const RunCont
   state.report_progress(context, "any equals?");
   const SelectionStep& present = state.current();
   for (AcceptedEffect& effect : accepted) add_alternatives(effect, present);
+  // What leaves nothing but noise needs no more parameters.
+  const bool is_noise = state.chain.explained();
+  const auto has_more = [&](const Candidate& rival, std::size_t a) {
+    return rival.parameters() > accepted[a].candidate.parameters();
+  };
   std::vector<std::vector<ExtendedModel>> rivals(accepted.size());
   parallel_for(accepted.size(), [&](std::size_t a) {
     const Candidate& chosen = accepted[a].candidate;
     const auto counts = [&](const Candidate& rival) {
       // A clock that is off has precedence: no part of the machine is its equal.
       const bool is_behind = chosen.is_timing && !rival.is_timing;
-      return !is_behind && !is_form_of_same_effect(chosen, rival);
+      return !is_behind && !is_form_of_same_effect(chosen, rival) &&
+             !(is_noise && has_more(rival, a));
     };
     rivals[a] = fit_rivals(state, a, counts, context);
   });
@@ -119,10 +125,9 @@ std::vector<RivalPair> equal_rivals(SearchState& state, int round, const RunCont
   std::vector<RivalPair> pairs;
   for (std::size_t a = 0; a < accepted.size(); ++a) {
     for (const ExtendedModel& e : rivals[a]) {
-      // What has more parameters is an equal where it explains more than they cost.
-      const bool has_more = e.candidate.parameters() > accepted[a].candidate.parameters();
+      // More parameters must explain more than they cost.
       const double loss = loss_with(e, present, now);
-      if (has_more ? loss >= 0.0 : is_clearly_worse(loss)) continue;
+      if (has_more(e.candidate, a) ? loss >= 0.0 : is_clearly_worse(loss)) continue;
       if (state.trials.find(e.candidate) == nullptr) state.trials.record(e, &e, round);
       pairs.push_back({a, e.candidate, fitted_model(e.job, e.fit),
                        is_delay(accepted[a].candidate) && is_delay(e.candidate)});

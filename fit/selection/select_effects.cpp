@@ -21,17 +21,9 @@
 namespace axisfit {
 namespace {
 
-/// Whether the residual of a free run says little of what is missing: noise of a recorded force
-/// adds up, and moves it far more than the readings are in doubt.
-bool is_moved_by_input_noise(const FitResult& fit) {
-  constexpr double kFarMore = 9.0;  // of the mean square, over that of the readings
-  return fit.observer_gain == 0.0 && fit.at_solution && fit.at_solution->input_noise &&
-         fit.at_solution->input_noise->mean_squares.maxCoeff() > kFarMore;
-}
-
 /// The observer gain at which a search tracks: none at which noise of the inputs adds up.
-double tracking_gain(const Job& job, const FitResult& fit) {
-  return std::max(score_gains(job).front(), kalman_gain(job, values_of(fit)).value_or(0.0));
+double gain_of_search(const Job& job, const FitResult& first) {
+  return std::max(score_gains(job).front(), kalman_gain(job, values_of(first)).value_or(0.0));
 }
 
 /// The model, refitted with a simulation that tracks the data.
@@ -425,13 +417,13 @@ EffectSelection select_effects(const Job& job, const FitResult& first,
   const ThreadPool pool(job.options.threads);
   const SelectionStep declared{"", job, first};
   const bool is_chosen = job.options.choose_horizon;
-  const bool is_moved = first.usable && is_moved_by_input_noise(first);
+  const bool is_moved = tracking_gain(job, first).has_value();
   // The states with which windows begin take part of what is missing upon themselves, and every
   // fit with them takes minutes. A simulation that was chosen to track may follow the noise.
   const bool tracks = first.usable && (window_states(job) > 0 || is_moved ||
                                        (is_chosen && job.options.observer == ObserverMode::fixed));
   const SelectionStep start =
-      tracks ? tracking(declared, tracking_gain(job, first), context) : declared;
+      tracks ? tracking(declared, gain_of_search(job, first), context) : declared;
   EffectSelection selection = EffectSelector(start.job, start.fit, options, context).run();
   try {
     FitOptions criterion = job.options;

@@ -56,6 +56,8 @@ std::string remarks_text(const Job& job, const FitResult& result) {
   }
   if (const std::string better = better_gain_text(result); !better.empty())
     text += paragraph(better + ".", 2);
+  if (const std::string quiet = quiet_gain_text(job, result); !quiet.empty())
+    text += paragraph(quiet + ".", 2);
   return text;
 }
 

@@ -426,6 +426,15 @@ std::string better_gain_text(const FitResult& fit) {
       *fit.better_gain);
 }
 
+std::string quiet_gain_text(const Job& job, const FitResult& fit) {
+  if (!fit.quiet_gain) return "";
+  return fmt::format(
+      "The {} adds up in the free run, to far more than the noise of the readings, and the "
+      "estimates err more than they need to: set 'observer: {{fixed: {:.3g} 1/s}}', so that the "
+      "simulation tracks the recordings",
+      input_noise_text(job), *fit.quiet_gain);
+}
+
 std::string guesses_text(const std::vector<GuessInfluence>& guesses) {
   constexpr double kWhole = 0.005;  // of an elasticity of one
   std::vector<std::string> whole, part;

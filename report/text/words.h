@@ -49,6 +49,8 @@ std::string gain_shift_text(const GainShift& shift, std::string_view unit);
 std::string rival_shift_text(const RivalShift& shift, std::string_view unit);
 /// What to do where another observer gain predicts better; empty where none does.
 std::string better_gain_text(const FitResult& fit);
+/// What to do where noise of the inputs adds up in the free run; empty where it does not.
+std::string quiet_gain_text(const Job& job, const FitResult& fit);
 
 /// "(8.10 +- 0.20) N exp(-|v| / 0.02 m/s)".
 std::string closed_form_text(const ClosedForm& closed_form);

@@ -410,6 +410,32 @@ TEST(Contact, WithoutBacklashIsASpring) {
   }
 }
 
+// The force pulls to one side, and within the first step to the other, while the arm sticks.
+TEST(Contact, WithoutBacklashIsASpringFromRestToo) {
+  constexpr double first = -1.2, slope = 3600.0;  // N, N/s
+  Model<double> model = free_gear();
+  add_effect<CoulombFriction>(model).F_c = 100.0;
+  model.axis.H = 0.0;
+  model.axis.b_g = 500.0;
+  model.axis.k_g = 1e6;
+  model.axis.J_m = 17.0 * model.axis.r_g * model.axis.r_g;
+  const Axis<double>& a = model.axis;
+  const double m = motor_mass(a);
+  const double d = 0.5 * a.b_g / m, w0 = std::sqrt(a.k_g / m), w = std::sqrt(w0 * w0 - d * d);
+  const double B = slope / a.k_g, A = first / a.k_g - 2.0 * d * B / (w0 * w0);
+  const auto times = instants(10, 2e-3);
+  Schedule force{{0.0, times.back()}, {first, first + slope * times.back()}};
+  force.hold = Hold::linear;
+  const auto r = run(model, force, times, {.interval = 2e-3});
+  ASSERT_TRUE(r.finished);
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const double t = times[k];
+    const double free = -A * std::cos(w * t) - (d * A + B) / w * std::sin(w * t);
+    ASSERT_EQ(r.states[k][0], 0.0);
+    ASSERT_NEAR(a.r_g * r.states[k][2], A + B * t + std::exp(-d * t) * free, 1e-9 * B * 0.02);
+  }
+}
+
 TEST(Coincidence, OfBothVoltageLimitsIsContinuous) {
   // Where the motor voltage meets its limit, put the preamplifier's limit at that very voltage.
   Model<double> model = paper_axis();

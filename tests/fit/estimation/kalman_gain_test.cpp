@@ -41,5 +41,26 @@ TEST(KalmanGain, IsNothingWithoutNoiseOfTheInputOrASignalToTrack) {
   EXPECT_FALSE(kalman_gain(noisy(0.4, {Signal::acceleration}), kValues));
 }
 
+TEST(KalmanGain, IsAskedForWhereNoiseOfTheInputMovesAFreeRun) {
+  Job job = noisy(0.1, {Signal::position});
+  const FitResult free = estimate(job);
+  const std::optional<double> gain = tracking_gain(job, free);
+  ASSERT_TRUE(gain);
+  EXPECT_EQ(gain, kalman_gain(job, values_of(free)));
+  // A fit that tracks at it has the smaller errors.
+  job.options.observer = ObserverMode::fixed;
+  job.options.observer_gain = *gain;
+  const FitResult tracking = estimate(job);
+  EXPECT_FALSE(tracking_gain(job, tracking));
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    const ParameterUncertainty &of_free = free.parameters[i].uncertainty,
+                               &of_tracking = tracking.parameters[i].uncertainty;
+    EXPECT_LT(of_tracking.standard_error, 0.8 * of_free.standard_error);
+    EXPECT_NEAR(tracking.parameters[i].value, kValues[i], 3.0 * of_tracking.standard_error);
+  }
+  const Job quiet = noisy(1e-3, {Signal::position});
+  EXPECT_FALSE(tracking_gain(quiet, estimate(quiet)));
+}
+
 }  // namespace
 }  // namespace axisfit
