@@ -43,7 +43,9 @@ CandidateValues first_values(const Job& others, const Rival& rival, const RunCon
   const Candidate& candidate = rival.candidate;
   const Job alone = with_candidate(fixed_at(others, initial_values(others)), candidate, {},
                                    candidate.neutral, rival.values.shapes);
-  return candidate_values(alone, refit(alone, context), candidate);
+  const FitResult fit = refit(alone, context);
+  if (!fit.usable) return {candidate.neutral, rival.values.shapes};
+  return candidate_values(alone, fit, candidate);
 }
 
 /// Fits those of an accepted effect's rivals that `counts` in its place, from where all else is.

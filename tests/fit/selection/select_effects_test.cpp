@@ -268,26 +268,34 @@ TEST(SelectEffects, FindsTwoEffects) {
 
 /// While the friction is yet to be found, weight on a joint is a spring, which has a parameter
 /// less.
-EffectSelection close_weight_beside_friction(double friction, double volts) {
+Job weight_beside_friction(double friction, double volts) {
   Model<double> truth = slide();
   add_effect<CoulombFriction>(truth).F_c = friction;
   add_effect<PendulumGravity>(truth).G_s = 80.0;
-  return close(two_recordings(truth, slide(), {"M", "B_a"}, volts));
+  return two_recordings(truth, slide(), {"M", "B_a"}, volts);
 }
 
 TEST(SelectEffects, ExchangesASimpleEffectForOneThatLaterProvesBetter) {
-  const EffectSelection selection = close_weight_beside_friction(120.0, 9.0);
+  const EffectSelection selection = close(weight_beside_friction(120.0, 9.0));
   EXPECT_EQ(accepted(selection), (Names{"coulomb_friction", "pendulum_gravity"}));
   EXPECT_EQ(undecided(selection), Names{});
   EXPECT_TRUE(selection.explained);
   expect_found(selection, "pendulum_gravity.G_s", 80.0);
 }
 
-// It explains more than its parameter costs, and not clearly more.
-TEST(SelectEffects, NamesWhatMayBeBehindASimpleEffect) {
-  const EffectSelection selection = close_weight_beside_friction(60.0, 7.0);
-  EXPECT_EQ(accepted(selection), Names{"coulomb_friction"});
-  EXPECT_EQ(undecided(selection), (Names{"stroke_spring", "pendulum_gravity"}));
+// It explains more than its parameter costs, and not clearly more: what leaves nothing but noise
+// needs no other.
+TEST(SelectEffects, NamesWhatMayBeBehindASimpleEffectThatLeavesMoreThanNoise) {
+  Job job = weight_beside_friction(60.0, 7.0);
+  const EffectSelection explained = close(job);
+  EXPECT_TRUE(explained.explained);
+  EXPECT_EQ(accepted(explained), (Names{"coulomb_friction", "stroke_spring"}));
+  for (Recording& r : job.recordings)
+    for (Measurement& m : r.measurements) m.sigma *= 0.7;
+  const EffectSelection unexplained = close(job);
+  EXPECT_FALSE(unexplained.explained);
+  EXPECT_EQ(accepted(unexplained), Names{"coulomb_friction"});
+  EXPECT_EQ(undecided(unexplained), (Names{"stroke_spring", "pendulum_gravity"}));
 }
 
 TEST(SelectEffects, AddsNoMoreThanIsAllowed) {
