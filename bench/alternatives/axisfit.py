@@ -16,7 +16,7 @@ import time
 import numpy as np
 from scipy import interpolate, signal
 
-from regression import MOST, force_for, hysteresis, kinematics, missing
+from regression import force_for, hysteresis, kinematics, missing
 
 
 class Unknown(Exception):
@@ -231,7 +231,7 @@ def lacking(values, recording):
         return f - sum(law(f, k, groups[name]) for name, law in LOAD_LAWS.items() if name in groups)
 
     if not groups.keys().isdisjoint(("torque_fade", "force_droop", *LOAD_LAWS)):
-        needed = force_for(arrives, needed, MOST * np.max(np.abs(k.force)))
+        needed = force_for(arrives, needed, k)
     return missing(k, force - needed)
 
 

@@ -93,11 +93,12 @@ def missing(k, force):
     return float(np.sqrt(np.mean(compared(np.where(k.moves, force, 0.0), k.rate) ** 2)))
 
 
-def force_for(response, wanted, most):
-    """The smallest force in N, up to `most`, that makes what is wanted of `response`, which is 0 at no force
-    and of the sign of the force; where none does, the one that comes nearest. Sample by sample."""
+def force_for(response, wanted, k):
+    """The smallest force in N that makes what is wanted of `response`, which is 0 at no force and of the sign
+    of the force; where none does up to MOST, the one that comes nearest. Sample by sample."""
     to = np.sign(wanted)
     nearest, reached, before = np.zeros_like(wanted), np.zeros_like(wanted), np.zeros_like(wanted)
+    most = MOST * np.max(np.abs(k.force))
     step = most / 300
     for force in np.arange(step, most, step):
         now, open_ = to * response(to * force), reached < np.abs(wanted)
@@ -119,8 +120,11 @@ def hysteresis(k, length):
 
 
 # Terms of the force itself: what they take of it.
-LOSSES = {"|F| sgn v": lambda f, k: np.abs(f) * k.direction, "F t": lambda f, k: f * k.time,
-          "F|F|": lambda f, k: f * np.abs(f)}  # fmt: skip
+LOSSES = {
+    "load_friction": ("|F| sgn v", lambda f, k: np.abs(f) * k.direction),
+    "torque_fade": ("F t", lambda f, k: f * k.time),
+    "force_droop": ("F|F|", lambda f, k: f * np.abs(f)),
+}
 
 
 def base_terms(k):
@@ -153,8 +157,7 @@ def candidate_terms(k, s, declared):
               ("stroke_spring", "x", x), ("position_friction", "x sgn v", x * sgn),
               ("position_friction", "x^2 sgn v", x * x * sgn), ("position_friction", "x v", x * v),
               ("warming_friction", "t sgn v", t * sgn)]  # fmt: skip
-    losses = zip(("load_friction", "torque_fade", "force_droop"), LOSSES.items())
-    terms += [(effect, term, loss(f, k)) for effect, (term, loss) in losses]
+    terms += [(effect, term, loss(f, k)) for effect, (term, loss) in LOSSES.items()]
     smooth = low_pass(f, CUTOFF, k.rate)
     terms.append(("drive_lag", "dF/dt", slope(t, smooth)))
     terms.append(("elastic_mode", "d2a/dt2", slope(t, slope(t, k.a))))
@@ -181,13 +184,13 @@ class Problem:
         self.declared = declared
         self.mass = 0.0 if "M" in declared else mass
         self.scales = scales(fit)
-        self.effects, self.names = [], []
+        self.effects = []
         self.force, self.base, self.terms = zip(*(self.filtered(k) for k in (fit, validate)))
 
     def columns(self, k):
         """The force less that of the known mass, the base terms and the candidate terms."""
         terms = candidate_terms(k, self.scales, self.declared)
-        self.effects, self.names = [effect for effect, *_ in terms], [term for _, term, _ in terms]
+        self.effects = [effect for effect, _, _ in terms]
         base = base_terms(k)
         force = k.force - self.mass * k.a
         return np.stack([force, *(base[q] for q in self.declared), *(c for *_, c in terms)], -1)
@@ -272,12 +275,13 @@ def held_out(p, selected, k):
     """rms in N of the force that a selection lacks in a recording that it has not seen: the force less the one
     that it predicts for the motion. A term of the force itself must not explain the force by itself."""
     columns, split = p.columns(k), 1 + len(p.declared)
-    chosen = np.array([*range(1, split), *(split + i for i in selected)])
-    coefficients = p.solve(selected)
-    losses = {split + p.names.index(term): loss for term, loss in LOSSES.items()}
-    of_motion = [column not in losses for column in chosen]
-    needed = p.mass * k.a + columns[:, chosen[of_motion]] @ coefficients[of_motion]
-    taken = [(c, losses[i]) for i, c in zip(chosen, coefficients) if i in losses]
-    predicted = force_for(lambda f: f - sum(c * loss(f, k) for c, loss in taken), needed,
-                          MOST * np.max(np.abs(k.force))) if taken else needed  # fmt: skip
-    return missing(k, k.force - predicted)
+    of_base, own = np.split(p.solve(selected), [split - 1])
+    needed, taken = p.mass * k.a + columns[:, 1:split] @ of_base, []
+    for c, i in zip(own, selected):
+        if p.effects[i] in LOSSES:
+            taken.append((c, LOSSES[p.effects[i]][1]))
+        else:
+            needed = needed + c * columns[:, split + i]
+    if taken:
+        needed = force_for(lambda f: f - sum(c * loss(f, k) for c, loss in taken), needed, k)
+    return missing(k, k.force - needed)

@@ -20,8 +20,8 @@ The error is the same for all: the rms, up to 20 Hz and where the axis moves, of
 that the model predicts for the motion of a recording that no method has seen. The generator knows that motion
 exactly, so that the law itself has no error; signals of a measured machine are filtered first. What is taken
 of the force, by a droop or by friction, is taken of the predicted one: a term of the recorded force may explain
-that force by itself. The error is shown over that of the declared model, fitted by least squares. Times are processor time of one thread;
-with --threads N, which wants --jobs 1, those of axisfit are what N threads take.
+that force by itself. The error is shown over that of the declared model, fitted by least squares. Times are
+processor time of one thread; with --threads N, which wants --jobs 1, those of axisfit are what N threads take.
 Needs python3-numpy, python3-scipy and python3-sklearn."""
 import argparse
 import concurrent.futures

@@ -47,4 +47,9 @@ std::optional<double> tracking_gain(const Job& job, const FitResult& fit) {
   return is_moved ? kalman_gain(job, values_of(fit)) : std::nullopt;
 }
 
+bool had_to_track(const FitOptions& asked, const FitOptions& used) {
+  return asked.observer != ObserverMode::fixed && used.observer == ObserverMode::fixed &&
+         !asked.choose_horizon;
+}
+
 }  // namespace axisfit

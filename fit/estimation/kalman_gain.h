@@ -24,4 +24,8 @@ std::optional<double> kalman_gain(const Job& job, const std::vector<double>& val
 /// fit that tracks. Nothing for any other fit.
 std::optional<double> tracking_gain(const Job& job, const FitResult& fit);
 
+/// Whether a search that was `asked` for a free run came to track because of that noise. A horizon
+/// that is chosen may be to track, too: that is what was asked for.
+bool had_to_track(const FitOptions& asked, const FitOptions& used);
+
 }  // namespace axisfit

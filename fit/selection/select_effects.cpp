@@ -21,11 +21,6 @@
 namespace axisfit {
 namespace {
 
-/// The observer gain at which a search tracks: none at which noise of the inputs adds up.
-double gain_of_search(const Job& job, const FitResult& first) {
-  return std::max(score_gains(job).front(), kalman_gain(job, values_of(first)).value_or(0.0));
-}
-
 /// The model, refitted with a simulation that tracks the data.
 SelectionStep tracking(SelectionStep model, double gain, const RunContext& context) {
   FitOptions& options = model.job.options;
@@ -417,13 +412,18 @@ EffectSelection select_effects(const Job& job, const FitResult& first,
   const ThreadPool pool(job.options.threads);
   const SelectionStep declared{"", job, first};
   const bool is_chosen = job.options.choose_horizon;
-  const bool is_moved = tracking_gain(job, first).has_value();
+  std::optional<double> least_gain = tracking_gain(job, first);
+  const bool is_moved = least_gain.has_value();
   // The states with which windows begin take part of what is missing upon themselves, and every
   // fit with them takes minutes. A simulation that was chosen to track may follow the noise.
   const bool tracks = first.usable && (window_states(job) > 0 || is_moved ||
                                        (is_chosen && job.options.observer == ObserverMode::fixed));
+  // Nor at a gain at which noise of the inputs adds up.
+  if (tracks && !is_moved) least_gain = kalman_gain(job, values_of(first));
   const SelectionStep start =
-      tracks ? tracking(declared, gain_of_search(job, first), context) : declared;
+      tracks ? tracking(declared, std::max(score_gains(job).front(), least_gain.value_or(0.0)),
+                        context)
+             : declared;
   EffectSelection selection = EffectSelector(start.job, start.fit, options, context).run();
   try {
     FitOptions criterion = job.options;

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "base/units.h"
+#include "fit/estimation/kalman_gain.h"
 #include "io/config/yaml_text.h"
 
 namespace axisfit {
@@ -57,13 +58,10 @@ std::string next_job_text(const JobFile& declared, const Job& reached, const std
         for (auto column : recording[columns])
           if (YAML::Node file = column.second["file"]) file = moved(file.Scalar(), data, folder);
   }
-  // A search may have found that a free run tells little.
-  const FitOptions &given = declared.job.options, &used = reached.options;
-  if (used.observer == ObserverMode::fixed && given.observer != ObserverMode::fixed &&
-      !given.choose_horizon) {
+  if (had_to_track(declared.job.options, reached.options)) {
     YAML::Node fit = job["fit"], observer;
     for (const char* key : {"horizon", "initial_observer_gain"}) fit.remove(key);
-    observer["fixed"] = with_unit(used.observer_gain, "1/s");
+    observer["fixed"] = with_unit(reached.options.observer_gain, "1/s");
     fit["observer"] = observer;
   }
   for (auto entry : job["free"])

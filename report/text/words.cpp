@@ -10,6 +10,7 @@
 #include "base/terminal.h"
 #include "base/text_table.h"
 #include "base/units.h"
+#include "fit/estimation/kalman_gain.h"
 
 namespace axisfit {
 namespace {
@@ -315,9 +316,8 @@ std::string verdict_text(const EffectSelection& selection) {
 
 std::string judges_text(const RunResult& run_result) {
   std::vector<std::string> sentences;
-  const FitOptions &given = run_result.baseline.options, &used = run_result.job().options;
-  if (given.observer != ObserverMode::fixed && used.observer == ObserverMode::fixed &&
-      !given.choose_horizon)
+  const FitOptions& used = run_result.job().options;
+  if (had_to_track(run_result.baseline.options, used))
     sentences.push_back(fmt::format(
         "The {} moves a free run by far more than the readings are in doubt. All models therefore "
         "track the recordings, as with 'observer: {{fixed: {:.3g} 1/s}}'.",
