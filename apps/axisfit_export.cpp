@@ -11,9 +11,9 @@
 #include "apps/run_options.h"
 #include "base/text_table.h"
 #include "exports/export.h"
-#include "fit/estimation/estimate.h"
-#include "fit/prediction/comparison.h"
-#include "fit/residuals/series.h"
+#include "fit/estimate/estimate.h"
+#include "fit/judge/series.h"
+#include "fit/predict/comparison.h"
 #include "io/config/axis_file.h"
 #include "io/config/job_file.h"
 

@@ -23,9 +23,9 @@
 #include "base/random.h"
 #include "bench/simulated.h"
 #include "fit/data/standstill.h"
-#include "fit/estimation/residual.h"
-#include "fit/estimation/solve.h"
-#include "fit/selection/select_effects.h"
+#include "fit/search/select_effects.h"
+#include "fit/solve/residual.h"
+#include "fit/solve/solve.h"
 #include "io/config/axis_file.h"
 #include "report/text/words.h"
 

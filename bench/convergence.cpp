@@ -10,7 +10,7 @@
 #include <ctime>
 #include <vector>
 
-#include "fit/estimation/estimate.h"
+#include "fit/estimate/estimate.h"
 #include "io/config/job_file.h"
 
 int main(int argc, char** argv) {

@@ -10,8 +10,8 @@
 
 #include "bench/allocations.h"
 #include "bench/speed/evaluation.h"
-#include "fit/estimation/estimate.h"
-#include "fit/selection/select_effects.h"
+#include "fit/estimate/estimate.h"
+#include "fit/search/select_effects.h"
 
 namespace {
 

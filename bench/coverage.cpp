@@ -14,7 +14,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "bench/simulated.h"
-#include "fit/estimation/estimate.h"
+#include "fit/estimate/estimate.h"
 #include "io/config/axis_file.h"
 #include "sim/effects/effects.h"
 

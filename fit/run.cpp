@@ -10,10 +10,10 @@
 #include <stdexcept>
 
 #include "base/parallel.h"
-#include "fit/estimation/gain_sensitivity.h"
-#include "fit/estimation/guesses.h"
-#include "fit/estimation/kalman_gain.h"
-#include "fit/selection/rival_shift.h"
+#include "fit/errors/gain_sensitivity.h"
+#include "fit/errors/guesses.h"
+#include "fit/errors/rival_shift.h"
+#include "fit/estimate/kalman_gain.h"
 
 namespace axisfit {
 namespace {

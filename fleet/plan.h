@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/estimation/run_context.h"
+#include "fit/solve/run_context.h"
 #include "fleet/history.h"
 #include "fleet/items.h"
 

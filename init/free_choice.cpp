@@ -13,7 +13,7 @@
 #include "fit/data/noise.h"
 #include "fit/data/recording_check.h"
 #include "fit/design/forecast.h"
-#include "fit/estimation/estimate.h"
+#include "fit/estimate/estimate.h"
 #include "init/job_text.h"
 #include "io/config/job_file.h"
 #include "io/config/yaml_text.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fit/residuals/series.h"
+#include "fit/judge/series.h"
 #include "init/starter_axis.h"
 #include "io/config/job_file.h"
 

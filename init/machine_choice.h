@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/estimation/run_context.h"
+#include "fit/solve/run_context.h"
 #include "init/init_job.h"
 
 namespace axisfit {

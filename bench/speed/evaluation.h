@@ -6,7 +6,7 @@
 
 #include "bench/simulated.h"
 #include "bench/speed/work.h"
-#include "fit/estimation/residual.h"
+#include "fit/solve/residual.h"
 #include "io/config/axis_file.h"
 
 namespace axisfit::speed {

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "fit/estimation/jet.h"
+#include "fit/solve/jet.h"
 #include "sim/affine.h"
 #include "sim/rig.h"
 

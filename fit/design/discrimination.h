@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fit/design/experiment.h"
-#include "fit/selection/select_effects.h"
+#include "fit/search/select_effects.h"
 
 namespace axisfit {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/estimation/estimate.h"
+#include "fit/estimate/estimate.h"
 #include "sim/controller_settings.h"
 #include "sim/motion.h"
 

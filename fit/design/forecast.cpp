@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "fit/estimation/continuation.h"
+#include "fit/estimate/continuation.h"
 
 namespace axisfit {
 

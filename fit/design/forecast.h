@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
-#include "fit/estimation/identifiability.h"
-#include "fit/estimation/uncertainty.h"
+#include "fit/errors/identifiability.h"
+#include "fit/errors/uncertainty.h"
 
 namespace axisfit {
 

@@ -4,8 +4,8 @@
 #include <chrono>
 
 #include "base/parallel.h"
-#include "fit/estimation/continuation.h"
-#include "fit/estimation/estimate.h"
+#include "fit/estimate/continuation.h"
+#include "fit/estimate/estimate.h"
 
 namespace axisfit {
 

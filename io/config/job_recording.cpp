@@ -8,10 +8,10 @@
 #include <filesystem>
 
 #include "fit/data/derivative.h"
+#include "fit/data/initial_state.h"
 #include "fit/data/noise.h"
 #include "fit/data/standstill.h"
-#include "fit/estimation/continuation.h"
-#include "fit/estimation/initial_state.h"
+#include "fit/estimate/continuation.h"
 #include "io/config/axis_file.h"
 #include "io/config/channels.h"
 #include "io/config/recording_input.h"

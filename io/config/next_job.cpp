@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "base/units.h"
-#include "fit/estimation/kalman_gain.h"
+#include "fit/estimate/kalman_gain.h"
 #include "io/config/yaml_text.h"
 
 namespace axisfit {

@@ -7,7 +7,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "fit/estimation/journal.h"
+#include "fit/solve/journal.h"
 
 namespace axisfit {
 

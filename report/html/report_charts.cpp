@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "fit/data/standstill.h"
-#include "fit/residuals/spectrum.h"
+#include "fit/judge/spectrum.h"
 #include "report/text/words.h"
 #include "sim/sampling.h"
 

@@ -10,7 +10,7 @@
 #include "base/terminal.h"
 #include "base/text_table.h"
 #include "base/units.h"
-#include "fit/estimation/kalman_gain.h"
+#include "fit/estimate/kalman_gain.h"
 
 namespace axisfit {
 namespace {

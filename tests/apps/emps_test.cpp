@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "fit/estimation/estimate.h"
+#include "fit/estimate/estimate.h"
 #include "io/config/job_file.h"
 
 namespace axisfit {

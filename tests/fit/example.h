@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "base/random.h"
-#include "fit/estimation/estimate.h"
-#include "fit/estimation/residual.h"
-#include "fit/estimation/solve.h"
+#include "fit/estimate/estimate.h"
+#include "fit/solve/residual.h"
+#include "fit/solve/solve.h"
 #include "sim/rig.h"
 #include "tests/sim/axes.h"
 

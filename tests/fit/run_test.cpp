@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "tests/fit/selection/selection.h"
+#include "tests/fit/search/selection.h"
 
 namespace axisfit {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "fit/estimation/estimate.h"
+#include "fit/estimate/estimate.h"
 #include "tests/sim/axes.h"
 
 namespace axisfit {

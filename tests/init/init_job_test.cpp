@@ -13,7 +13,7 @@
 #include <map>
 #include <string>
 
-#include "fit/estimation/estimate.h"
+#include "fit/estimate/estimate.h"
 #include "init/starter_axis.h"
 #include "io/config/axis_file.h"
 #include "io/config/job_file.h"

@@ -15,7 +15,7 @@
 #include "base/text_table.h"
 #include "base/version.h"
 #include "fit/design/forecast.h"
-#include "fit/estimation/estimate.h"
+#include "fit/estimate/estimate.h"
 #include "fit/run.h"
 #include "io/config/axis_file.h"
 #include "io/config/job_file.h"

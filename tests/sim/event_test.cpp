@@ -6,7 +6,7 @@
 #include <iostream>
 #include <numbers>
 
-#include "fit/estimation/jet.h"
+#include "fit/solve/jet.h"
 #include "sim/integrator.h"
 #include "tests/sim/axes.h"
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/estimation/jet.h"
+#include "fit/solve/jet.h"
 #include "sim/recorder.h"
 #include "tests/sim/axes.h"
 

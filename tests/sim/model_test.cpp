@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "fit/estimation/jet.h"
+#include "fit/solve/jet.h"
 #include "tests/sim/axes.h"
 
 namespace axisfit {

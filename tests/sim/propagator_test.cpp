@@ -8,7 +8,7 @@
 #include <random>
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "fit/estimation/jet.h"
+#include "fit/solve/jet.h"
 
 namespace axisfit {
 namespace {

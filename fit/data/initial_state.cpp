@@ -1,0 +1,66 @@
+#include "fit/data/initial_state.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "base/linear_algebra.h"
+
+namespace axisfit {
+LocalCourse local_course(const std::vector<double>& times, const std::vector<double>& values,
+                         std::size_t first, std::size_t count, std::size_t sample, double noise) {
+  constexpr Eigen::Index kOrder = 4;
+  const std::size_t end = std::min(first + count, times.size());
+  const auto rows = static_cast<Eigen::Index>(end - first);
+  if (rows < kOrder) return {values[sample], 0.0, noise, 0.0};
+  const double span = times[end - 1] - times[first];
+  Eigen::MatrixXd a(rows, kOrder);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const double t = (times[first + static_cast<std::size_t>(i)] - times[sample]) / span;
+    a.row(i) << 1.0, t, t * t, t * t * t;
+  }
+  const Eigen::Map<const Eigen::VectorXd> b(values.data() + first, rows);
+  const Eigen::VectorXd c = LeastSquaresSolver(a).solve(b);
+  const Eigen::MatrixXd covariance =
+      (a.transpose() * a).ldlt().solve(Eigen::MatrixXd::Identity(kOrder, kOrder));
+  const double left = std::max(
+      noise,
+      rows > kOrder ? (b - a * c).norm() / std::sqrt(static_cast<double>(rows - kOrder)) : 0.0);
+  return {c[0], c[1] / span, left * std::sqrt(covariance(0, 0)),
+          left * std::sqrt(covariance(1, 1)) / span};
+}
+
+void initial_state_from_data(Recording& recording) {
+  const auto set = [&](const char* name, double value) {
+    const std::size_t index = find_quantity(name)->index;
+    const bool given =
+        std::ranges::any_of(recording.overrides, [&](const auto& o) { return o.first == index; });
+    if (!given) recording.overrides.emplace_back(index, value);
+  };
+  const Measurement* velocity = recording.find(Signal::velocity);
+  const std::size_t n = recording.initial_samples;
+  if (const Measurement* position = recording.find(Signal::position)) {
+    const LocalCourse start = local_course(recording.times, position->values, 0, n, 0);
+    set("initial.y0", start.value);
+    if (velocity == nullptr) set("initial.y1", start.slope);
+  }
+  if (velocity != nullptr)
+    set("initial.y1", local_course(recording.times, velocity->values, 0, n, 0).value);
+}
+
+InitialErrors initial_errors(const Recording& recording) {
+  InitialErrors errors;
+  if (recording.initial_state != InitialState::data) return errors;
+  const auto start = [&](const Measurement& m) {
+    return local_course(recording.times, m.values, 0, recording.initial_samples, 0, m.sigma);
+  };
+  if (const Measurement* position = recording.find(Signal::position)) {
+    const LocalCourse found = start(*position);
+    errors = {found.value_error, found.slope_error};
+  }
+  if (const Measurement* velocity = recording.find(Signal::velocity))
+    errors.velocity = start(*velocity).value_error;
+  return errors;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,31 @@
+// The colour of residuals at a solution, and what it does to the errors of the estimates.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "fit/solve/linearization.h"
+
+namespace axisfit {
+
+/// Of whitened residuals that estimates with the Jacobian J left.
+struct ResidualColour {
+  /// By series, from lag zero on; of white noise only that.
+  std::vector<std::vector<double>> autocovariance;
+  Eigen::MatrixXd middle;  ///< J'G J, with G of these autocovariances
+};
+
+/// Of the rows `series` of `residuals` and of `j`; `inverse` is (J'J)^-1.
+///
+/// A series has the autocovariance of its autoregression, never less than the stated noise. The
+/// estimates have followed the residual: of its sum of squares tr(G) they took tr((J'J)^-1 J'G J),
+/// which is one variance for each of them if it is white, and far more if it is as slow as what
+/// they do. The autocovariances are as much larger.
+///
+/// Literature: H. White, Econometrica 48 (1980), and J. G. MacKinnon and H. White, Journal of
+/// Econometrics 29 (1985), for the same of residuals that are not equally large.
+ResidualColour residual_colour(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& j,
+                               std::span<const SeriesRows> series, const Eigen::MatrixXd& inverse);
+
+}  // namespace axisfit

@@ -1,0 +1,332 @@
+#include "fit/errors/scatter.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "base/distributions.h"
+#include "fit/criterion/windows.h"
+#include "fit/errors/residual_colour.h"
+#include "fit/solve/parameters.h"
+#include "fit/solve/solve.h"
+
+namespace axisfit {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Of the estimates by one group, on the scales of u.
+struct Alone {
+  VectorXd step;         ///< from the solution
+  MatrixXd covariance;   ///< C_i
+  MatrixXd information;  ///< J_i'J_i
+};
+
+/// Rows of a group in the linearisation: those of each of its series.
+using Rows = std::vector<SeriesRows>;
+
+/// What a group says alone: by the colour of the residual that it would leave alone, for what it
+/// leaves of the others' estimates is what is looked for. Directions that it leaves open have the
+/// variance of a range of e^20.
+Alone alone(const VectorXd& residuals, const MatrixXd& jacobian, const Rows& rows) {
+  const Index n = jacobian.cols();
+  Alone found{VectorXd::Zero(n), MatrixXd::Zero(n, n), MatrixXd::Zero(n, n)};
+  VectorXd gradient = VectorXd::Zero(n);
+  for (const SeriesRows& s : rows) {
+    const auto j = jacobian.middleRows(s.first, s.count);
+    found.information += j.transpose() * j;
+    gradient += j.transpose() * residuals.segment(s.first, s.count);
+  }
+  constexpr double kWide = 10.0;
+  const MatrixXd ridge = MatrixXd::Identity(n, n) / (kWide * kWide);
+  const Eigen::LLT<MatrixXd> normal(found.information + ridge);
+  found.step = -normal.solve(gradient);
+  const MatrixXd middle = ridge + residual_colour(residuals + jacobian * found.step, jacobian, rows,
+                                                  normal.solve(MatrixXd::Identity(n, n)))
+                                      .middle;
+  found.covariance = normal.solve(normal.solve(middle).transpose());
+  return found;
+}
+
+/// The restricted likelihood of the variances in T, for groups of independent estimates.
+class Likelihood {
+ public:
+  explicit Likelihood(std::vector<Alone> groups) : groups_(std::move(groups)) {}
+
+  double operator()(const VectorXd& variances) const {
+    const Index n = variances.size();
+    MatrixXd weights = MatrixXd::Zero(n, n);
+    VectorXd weighted = VectorXd::Zero(n);
+    double sum = 0.0;
+    for (const Alone& group : groups_) {
+      const MatrixXd spread = group.covariance + MatrixXd(variances.asDiagonal());
+      const Eigen::LLT<MatrixXd> llt(spread);
+      const VectorXd step = llt.solve(group.step);
+      sum += log_determinant(llt) + group.step.dot(step);
+      weighted += step;
+      weights += llt.solve(MatrixXd::Identity(n, n));
+    }
+    const Eigen::LLT<MatrixXd> all(weights);
+    return -0.5 * (sum + log_determinant(all) - weighted.dot(all.solve(weighted)));
+  }
+
+  /// The variances that maximise it: those of `held` stay, the others climb one by one.
+  VectorXd maximise(VectorXd variances, const std::vector<bool>& held) const {
+    constexpr int kSweeps = 8;
+    double best = (*this)(variances);
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      const double before = best;
+      for (Index k = 0; k < variances.size(); ++k)
+        if (!held[static_cast<std::size_t>(k)]) best = climb(variances, k, best);
+      if (best - before < 1e-3) break;
+    }
+    return variances;
+  }
+
+  /// The usual size of a variance of the k-th parameter.
+  double usual(Index k) const {
+    std::vector<double> sizes;
+    for (const Alone& group : groups_) sizes.push_back(group.covariance(k, k));
+    std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
+    return sizes[sizes.size() / 2];
+  }
+
+  /// The standard deviations of the k-th parameter at which the likelihood is significantly lower
+  /// than at the best variances, downwards and upwards. The other variances stay.
+  std::pair<double, double> interval(const VectorXd& variances, Index k) const {
+    constexpr double kFall = 1.92;  // half of 3.84
+    const double best = (*this)(variances);
+    const auto at = [&](double deviation) {
+      VectorXd other = variances;
+      other[k] = deviation * deviation;
+      return (*this)(other);
+    };
+    const auto crossing = [&](double inside, double outside) {
+      for (int i = 0; i < 40; ++i) {
+        const double middle = 0.5 * (inside + outside);
+        (best - at(middle) < kFall ? inside : outside) = middle;
+      }
+      return inside;
+    };
+    const double here = std::sqrt(variances[k]);
+    double beyond = std::max(here, 0.1 * std::sqrt(usual(k)));
+    for (int i = 0; i < 40 && best - at(beyond) < kFall; ++i) beyond *= 2.0;
+    return {best - at(0.0) < kFall ? 0.0 : crossing(here, 0.0), crossing(here, beyond)};
+  }
+
+ private:
+  static double log_determinant(const Eigen::LLT<MatrixXd>& llt) {
+    return 2.0 * llt.matrixL().toDenseMatrix().diagonal().array().log().sum();
+  }
+
+  /// Puts the best value of one variance in its place, zero or on a grid of its logarithm and then
+  /// between; returns the likelihood there.
+  double climb(VectorXd& variances, Index k, double best) const {
+    const double usual_size = usual(k);
+    double found = variances[k];
+    const auto try_value = [&](double value) {
+      VectorXd other = variances;
+      other[k] = value;
+      if (const double here = (*this)(other); here > best) {
+        best = here;
+        found = value;
+      }
+    };
+    try_value(0.0);
+    for (int i = -8; i <= 24; ++i) try_value(usual_size * std::pow(2.0, i));
+    for (double factor = std::sqrt(2.0); factor > 1.01; factor = std::sqrt(factor)) {
+      const double middle = found;
+      for (const double value : {middle / factor, middle * factor}) try_value(value);
+    }
+    variances[k] = found;
+    return best;
+  }
+
+  std::vector<Alone> groups_;
+};
+
+/// One part of so many of a series.
+SeriesRows part_of(const SeriesRows& rows, std::size_t part, std::size_t parts) {
+  const auto at = [&](std::size_t p) {
+    return rows.count * static_cast<Index>(p) / static_cast<Index>(parts);
+  };
+  return {rows.recording, rows.measurement, rows.first + at(part), at(part + 1) - at(part)};
+}
+
+constexpr Index kMostStretches = 6;
+
+/// Into how many stretches the only recording is divided; one: it is too short.
+std::size_t stretches_of(const Linearization& at, std::size_t recording) {
+  constexpr Index kRows = 400;
+  Index rows = 0;
+  for (const SeriesRows& s : at.series)
+    if (s.recording == recording) rows = std::max(rows, s.count);
+  return static_cast<std::size_t>(std::clamp<Index>(rows / kRows, 1, kMostStretches));
+}
+
+/// Whether what happens in a stretch of the only fitted recording has little to do with those
+/// before.
+bool forgets_within_stretches(const Job& job) {
+  if (job.options.observer == ObserverMode::fixed) return true;
+  const auto fitted = std::ranges::find(job.recordings, Role::fit, &Recording::role);
+  const std::size_t windows =
+      window_starts(job, static_cast<std::size_t>(fitted - job.recordings.begin())).size();
+  return windows >= static_cast<std::size_t>(kMostStretches);
+}
+
+/// The groups with their rows.
+std::vector<Rows> group(const Job& job, const Linearization& at, Scatter& scatter) {
+  std::vector<Rows> groups;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    const bool is_fitted = job.recordings[r].role == Role::fit;
+    const std::size_t parts = scatter.of_stretches && is_fitted ? stretches_of(at, r) : 1;
+    const double start = job.recordings[r].times.front(),
+                 length = job.recordings[r].times.back() - start;
+    for (std::size_t p = 0; p < parts; ++p) {
+      Rows rows;
+      for (const SeriesRows& s : at.series)
+        if (s.recording == r) rows.push_back(part_of(s, p, parts));
+      if (rows.empty()) continue;
+      const auto end_of = [&](std::size_t n) {
+        return start + length * static_cast<double>(n) / static_cast<double>(parts);
+      };
+      scatter.groups.push_back({r, is_fitted, end_of(p), end_of(p + 1)});
+      groups.push_back(std::move(rows));
+    }
+  }
+  return groups;
+}
+
+}  // namespace
+
+bool is_of_machine(const Job& job, std::size_t i) {
+  return !job.free[i].recording && quantity_list()[job.free[i].quantity].group != "initial";
+}
+
+std::size_t Scatter::fitted_groups() const {
+  return static_cast<std::size_t>(std::ranges::count(groups, true, &Group::fitted));
+}
+
+std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
+  if (!fit.usable || !fit.at_solution) return std::nullopt;
+  Scatter scatter;
+  scatter.of_stretches = std::ranges::count(job.recordings, Role::fit, &Recording::role) == 1;
+  if (scatter.of_stretches && !forgets_within_stretches(job)) return std::nullopt;
+  Job all = job;
+  for (Recording& r : all.recordings) r.role = Role::fit;
+  const ParameterSpace space(all);
+  const VectorXd u = space.internal(values_of(fit));
+  const Linearization at = linearize(all, space, u, fit.observer_gain);
+  if (!at.finite) return std::nullopt;
+
+  std::vector<Index> columns;     // inside their bounds
+  std::vector<Index> of_machine;  // their places among those
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    if (fit.parameters[i].uncertainty.at_bound) continue;
+    if (is_of_machine(job, i) && fit.parameters[i].uncertainty.determined)
+      of_machine.push_back(static_cast<Index>(columns.size()));
+    columns.push_back(static_cast<Index>(i));
+  }
+  const std::vector<Rows> groups = group(job, at, scatter);
+  if (of_machine.empty() || scatter.fitted_groups() < 2) return std::nullopt;
+
+  const MatrixXd jacobian = at.jacobian(Eigen::all, columns);
+  std::vector<Alone> each, fitted;
+  MatrixXd information =
+      MatrixXd::Zero(static_cast<Index>(columns.size()), static_cast<Index>(columns.size()));
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    each.push_back(alone(at.residuals, jacobian, groups[k]));
+    if (!scatter.groups[k].fitted) continue;
+    information += each.back().information;
+    fitted.push_back(
+        {each.back().step(of_machine), each.back().covariance(of_machine, of_machine), {}});
+  }
+
+  const Likelihood likelihood(fitted);
+  const auto n = static_cast<Index>(of_machine.size());
+  std::vector<bool> held(of_machine.size(), false);
+  VectorXd variances = likelihood.maximise(VectorXd::Zero(n), held);
+  // The least significant goes, until all that remain are significant.
+  constexpr double kSignificance = 0.2;
+  for (;;) {
+    Index least = -1;
+    double lowest = chi_square_upper_quantile(2.0 * kSignificance, 1.0);
+    for (Index k = 0; k < n; ++k) {
+      if (!(variances[k] > 0.0)) continue;
+      VectorXd without = variances;
+      without[k] = 0.0;
+      std::vector<bool> fixed = held;
+      fixed[static_cast<std::size_t>(k)] = true;
+      without = likelihood.maximise(without, fixed);
+      const double ratio = 2.0 * (likelihood(variances) - likelihood(without));
+      if (ratio < lowest) {
+        lowest = ratio;
+        least = k;
+      }
+    }
+    if (least < 0) break;
+    held[static_cast<std::size_t>(least)] = true;
+    variances[least] = 0.0;
+    variances = likelihood.maximise(variances, held);
+  }
+
+  // The variance of the estimates within groups, and what the scatter adds.
+  // (That of the whole fit has the scatter in its residual.)
+  const Eigen::LDLT<MatrixXd> normal(information);
+  VectorXd inside = VectorXd::Zero(n), added = VectorXd::Zero(n);
+  for (std::size_t k = 0; k < each.size(); ++k) {
+    if (!scatter.groups[k].fitted) continue;
+    const MatrixXd part = normal.solve(each[k].information);
+    const MatrixXd weights = part(of_machine, of_machine);
+    inside += (part * each[k].covariance * part.transpose()).diagonal()(of_machine);
+    added += weights.cwiseAbs2() * variances;
+  }
+  for (Index k = 0; k < n; ++k) {
+    const auto i = static_cast<std::size_t>(
+        columns[static_cast<std::size_t>(of_machine[static_cast<std::size_t>(k)])]);
+    ParameterUncertainty& known = fit.parameters[i].uncertainty;
+    const double here = u[static_cast<Index>(i)], slope = std::abs(space.slope(i, here));
+    ParameterScatter found{i, std::sqrt(variances[k]) * slope, 0.0, 0.0, known.standard_error, 1.0,
+                           {}};
+    const auto [lower, upper] = likelihood.interval(variances, k);
+    found.lower = lower * slope;
+    found.upper = upper * slope;
+    for (std::size_t g = 0; g < each.size(); ++g) {
+      const Index place = of_machine[static_cast<std::size_t>(k)];
+      const double error = std::sqrt(each[g].covariance(place, place));
+      constexpr double kKnown = 1.0;  // in u: a factor of e
+      found.groups.push_back(
+          {space.value(i, here + each[g].step[place]), error * slope, error < kKnown});
+    }
+    if (variances[k] > 0.0 && slope > 0.0) {
+      const std::optional<GainShift>& shift = fit.parameters[i].gain_shift;
+      const double moved =
+          shift ? std::pow((shift->value - fit.parameters[i].value) / slope, 2) : 0.0;
+      const double before = std::pow(known.standard_error / slope, 2);
+      const double of_one = std::min(before, inside[k] + moved);
+      const double after = of_one + added[k];
+      found.within = std::sqrt(of_one) * slope;
+      // The scatter is as well known as the groups that tell the parameter are many.
+      double weight = 0.0, square = 0.0;
+      for (const Alone& group : fitted) {
+        const double w = 1.0 / (group.covariance(k, k) + variances[k]);
+        weight += w;
+        square += w * w;
+      }
+      found.freedom = std::max(1.0, weight * weight / square - 1.0);
+      // And the errors within are known well, of which the sum has its share (Satterthwaite).
+      const double half =
+          student_95(found.freedom * std::pow(after / added[k], 2)) * std::sqrt(after);
+      known.inflation *= std::sqrt(after / before);
+      known.standard_error = std::sqrt(after) * slope;
+      known.lower = std::max(space[i].lower, space.value(i, here - half));
+      known.upper = std::min(space[i].upper, space.value(i, here + half));
+    }
+    scatter.parameters.push_back(std::move(found));
+  }
+  return scatter;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,91 @@
+// Standard errors and intervals of the estimates, from the exact Jacobian at the solution.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "fit/solve/linearization.h"
+#include "fit/solve/parameters.h"
+
+namespace axisfit {
+
+enum class ParameterVerdict {
+  determined,
+  weakly_determined,  ///< to no more than its order of magnitude
+  not_determined,     ///< the data leave it open, alone or together with others
+  at_bound,           ///< held by a bound; it has no standard error
+  of_wrong_model,     ///< the model does not describe the machine: the value means nothing
+};
+
+/// What the data say of the i-th parameter beyond its value.
+struct ParameterUncertainty {
+  bool at_bound = false;        ///< at a bound; it has no standard error
+  bool determined = false;      ///< false: the data leave it open, alone or together with others
+  bool weak = false;            ///< determined, but to no more than its order of magnitude
+  bool of_wrong_model = false;  ///< the model does not describe the machine; no standard error
+  double standard_error = 0.0;  ///< in the quantity's unit; 0 unless determined
+  /// Standard error over that of white noise of the stated size; where there is none, the most
+  /// that it could be.
+  double inflation = 1.0;
+  /// 95 % interval, in the quantity's unit: on a logarithmic scale not symmetric; at a bound
+  /// one-sided. Both zero where there is none.
+  double lower = 0.0, upper = 0.0;
+
+  bool has_interval() const { return lower != 0.0 || upper != 0.0; }
+
+  ParameterVerdict verdict() const {
+    if (of_wrong_model) return ParameterVerdict::of_wrong_model;
+    if (at_bound) return ParameterVerdict::at_bound;
+    if (!determined) return ParameterVerdict::not_determined;
+    return weak ? ParameterVerdict::weakly_determined : ParameterVerdict::determined;
+  }
+};
+
+struct Uncertainty {
+  std::vector<ParameterUncertainty> parameters;
+  /// Of the estimates of u; not a number where a parameter has no standard error.
+  Eigen::MatrixXd correlation;
+  double degrees_of_freedom = 0.0;  ///< independent samples, parameters subtracted
+  double autocorrelation_time =
+      1.0;  ///< samples per independent sample, of the most coloured signal
+  /// Of the variance of an estimate under noise of the stated sizes, what that of the input makes:
+  /// of the estimate where it is largest.
+  double input_part = 0.0;
+};
+
+/// Whether residuals with that autocorrelation time count as coloured.
+bool is_coloured(double autocorrelation_time);
+
+/// Two estimates that are hardly determined apart: the first has the smaller place.
+struct StrongCorrelation {
+  std::size_t first = 0, second = 0;
+  double value = 0.0;
+};
+
+/// Those beyond +-0.95, the strongest first.
+std::vector<StrongCorrelation> strong_correlations(const Eigen::MatrixXd& correlation);
+
+/// The factor of a standard error that makes half of a 95 % interval, for so many degrees of
+/// freedom (at least one is assumed): Student's quantile.
+double student_95(double degrees_of_freedom);
+
+/// Assumes a model that is linear over the intervals, and residuals that are, signal by signal,
+/// stationary with the variance and the autocorrelation that they show, never less than the stated
+/// noise: with J the whitened Jacobian and G the autocovariance of the residuals (see
+/// residual_colour.h),
+///
+///   covariance = (J'J)^-1 J'G J (J'J)^-1
+///
+/// through a singular value decomposition of J, columns scaled. Intervals are Student's. Priors
+/// count as one more measurement each. Where the inputs are noisy, no standard error is smaller
+/// than white noise of the stated sizes, in readings and inputs, makes it (see input_noise.h): a
+/// residual that drifts as slowly as that of a noisy input shows too little of itself in one
+/// recording. A parameter at its bound has the interval inside it whose likelihood ratio is not
+/// significant, with the others free; the others have theirs with it fixed.
+///
+/// Literature: E. A. Morelli and V. Klein, Journal of Aircraft 34 (1997), for coloured residuals;
+/// G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989, sections 2.1 and 5.1.
+Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
+                        const Linearization& at_solution);
+
+}  // namespace axisfit

@@ -1,0 +1,205 @@
+#include "fit/estimate/horizon.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "base/parallel.h"
+#include "fit/criterion/windows.h"
+#include "fit/data/initial_state.h"
+#include "fit/estimate/continuation.h"
+#include "fit/estimate/estimate.h"
+#include "fit/estimate/free_run.h"
+#include "fit/estimate/quick_fit.h"
+#include "sim/sampling.h"
+
+namespace axisfit {
+namespace {
+
+/// A part of a recording that is left out of a fit.
+struct Stretch {
+  std::size_t recording = 0;
+  std::size_t part = 0;
+  std::size_t first = 0, end = 0;  ///< samples
+  double duration = 0.0;           ///< s
+};
+
+double duration_of(const Recording& recording) {
+  return recording.times.back() - recording.times.front();
+}
+
+/// At least four, and whole recordings where there are as many.
+std::vector<Stretch> stretches_of(const Job& job) {
+  constexpr std::size_t kFewest = 4;
+  const auto recordings =
+      static_cast<std::size_t>(std::ranges::count(job.recordings, Role::fit, &Recording::role));
+  const std::size_t parts = (kFewest + recordings - 1) / std::max<std::size_t>(1, recordings);
+  std::vector<Stretch> stretches;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    const Recording& recording = job.recordings[r];
+    if (recording.role != Role::fit) continue;
+    const double duration = duration_of(recording) / static_cast<double>(parts);
+    std::vector<std::size_t> bounds = first_samples(recording, duration);
+    bounds.push_back(recording.times.size());
+    for (std::size_t part = 0; part + 1 < bounds.size(); ++part)
+      stretches.push_back({r, part, bounds[part], bounds[part + 1], duration});
+  }
+  return stretches;
+}
+
+template <class Vector>
+void cut(Vector& values, std::size_t first, std::size_t end) {
+  if (values.empty()) return;
+  values = Vector(std::vector(values.begin() + static_cast<std::ptrdiff_t>(first),
+                              values.begin() + static_cast<std::ptrdiff_t>(end)));
+}
+
+/// Some samples of a recording. Commands from before them go on acting.
+Recording piece_of(Recording recording, std::size_t first, std::size_t end) {
+  cut(recording.times, first, end);
+  for (Samples& channel : recording.channels) cut(channel, first, end);
+  for (Measurement& m : recording.measurements) {
+    cut(m.values, first, end);
+    cut(m.excluded, first, end);
+    cut(m.uninformative, first, end);
+  }
+  if (first > 0) {
+    std::erase_if(recording.overrides, [](const auto& value) {
+      return quantity_list()[value.first].group == "initial";
+    });
+    recording.initial_state = InitialState::data;
+    initial_state_from_data(recording);
+  }
+  return recording;
+}
+
+/// The job without a stretch: what is before and behind it are recordings of their own, for a run
+/// through it would be told by its end what happened there.
+Job without(Job job, const Stretch& stretch) {
+  constexpr std::size_t kFewest = 40;
+  const Recording whole = job.recordings[stretch.recording];
+  const std::size_t behind = whole.times.size() - stretch.end;
+  Recording& before = job.recordings[stretch.recording];
+  if (stretch.first >= kFewest) {
+    before = piece_of(whole, 0, stretch.first);
+    if (behind >= kFewest) {
+      job.recordings.push_back(piece_of(whole, stretch.end, whole.times.size()));
+      job.recordings.back().name += " (2)";
+    }
+  } else if (behind >= kFewest) {
+    before = piece_of(whole, stretch.end, whole.times.size());
+  } else {
+    before.role = Role::validate;  // other recordings are fitted
+  }
+  return job;
+}
+
+/// A simulation that tracks a late signal is late itself.
+bool tracks_in_time(const Job& job) {
+  const std::vector<QuantityEntry>& list = quantity_list(job.vocabulary());
+  Model<double> model = job.model;
+  const std::vector<double*> values = members(model);
+  for (const QuantityEntry& entry : list)
+    if (is_ignored(entry, ObserverMode::fixed) && *values[entry.index] != 0.0) return false;
+  return std::ranges::none_of(job.free, [&](const FreeParameter& p) {
+    return is_ignored(list[p.quantity], ObserverMode::fixed);
+  });
+}
+
+std::vector<HorizonTrial> criteria_for(const Job& job, const std::vector<Stretch>& stretches) {
+  std::vector<HorizonTrial> trials;
+  if (tracks_in_time(job)) trials.push_back({.observer_gain = initial_observer_gain(job)});
+  double shortest = std::numeric_limits<double>::infinity(), interval = 0.0;
+  for (const Stretch& stretch : stretches) {
+    shortest = std::min(shortest, stretch.duration);
+    interval = std::max(interval, mean_interval(job.recordings[stretch.recording].times));
+  }
+  constexpr double kSamples = 30.0;  // of a window, at least
+  for (const double share : {0.01, 0.03, 0.1, 0.3, 1.0})
+    if (share * shortest >= kSamples * interval) trials.push_back({.horizon = share * shortest});
+  trials.emplace_back();
+  return trials;
+}
+
+}  // namespace
+
+void set_criterion(FitOptions& options, const HorizonTrial& criterion) {
+  options.horizon = criterion.horizon;
+  if (criterion.observer_gain > 0.0) {
+    options.observer = ObserverMode::fixed;
+    options.observer_gain = criterion.observer_gain;
+  } else if (options.observer == ObserverMode::fixed) {
+    options.observer = ObserverMode::continuation;
+    options.observer_gain = 0.0;
+  }
+}
+
+HorizonChoice choose_horizon(const Job& job, const RunContext& context) {
+  const ThreadPool pool(job.options.threads);
+  const std::vector<Stretch> stretches = stretches_of(job);
+  HorizonChoice choice;
+  choice.stretches = static_cast<int>(stretches.size());
+  for (const Stretch& s : stretches) choice.longest = std::max(choice.longest, s.duration);
+  choice.trials = criteria_for(job, stretches);
+
+  // From a poor start it is a fit that tracks, or did at first, that gets near; the others begin
+  // there.
+  Job tracking = job;
+  set_criterion(tracking.options, choice.trials.front());
+  tracking.options.tolerance = quick_fit(job.options).tolerance;
+  const FitResult near = estimate(tracking, context.quiet());
+  if (near.status == Status::failed)
+    throw NoHorizon("horizon: auto: the model cannot be simulated at any start: " + near.message);
+  const std::vector<double> from = values_of(near);
+
+  const std::size_t fits = choice.trials.size() * stretches.size();
+  std::vector<double> squares(fits);
+  std::mutex mutex;
+  Progress all{.phase = "choosing the horizon", .of = static_cast<int>(fits)};
+  parallel_for(fits, [&](std::size_t i) {
+    context.check_stop();
+    const HorizonTrial& trial = choice.trials[i / stretches.size()];
+    const Stretch& stretch = stretches[i % stretches.size()];
+    Job rest = without(job, stretch);
+    rest.options = quick_fit(rest.options);
+    set_criterion(rest.options, trial);
+    if (!(trial.observer_gain > 0.0)) {
+      rest.options.observer = ObserverMode::none;
+      // The whole of each piece.
+      if (trial.horizon == 0.0) rest.options.horizon = std::numeric_limits<double>::max();
+    }
+    rest.options.threads = 1;
+    set_initial_values(rest, from);
+    const ParameterSpace space(rest);
+    const ContinuationResult fit =
+        run_continuation(rest, space, space.internal(initial_values(rest)), {}, context.quiet());
+    squares[i] = std::numeric_limits<double>::infinity();
+    if (fit.last.usable)
+      if (const std::vector<double> errors =
+              free_run_errors(job, space.values(fit.last.u), stretch.recording, stretch.duration);
+          !errors.empty())
+        squares[i] = errors[stretch.part];
+    const std::lock_guard lock(mutex);
+    ++all.done;
+    context.report(all);
+  });
+  for (std::size_t t = 0; t < choice.trials.size(); ++t) {
+    double sum = 0.0;
+    int count = 0;
+    for (std::size_t s = 0; s < stretches.size(); ++s)
+      if (const double square = squares[t * stretches.size() + s]; !std::isnan(square)) {
+        sum += square;
+        ++count;
+      }
+    choice.trials[t].error = std::sqrt(sum / count);
+    if (choice.trials[t].error < choice.trials[choice.chosen].error) choice.chosen = t;
+  }
+  if (!std::isfinite(choice.trials[choice.chosen].error))
+    throw NoHorizon(
+        "horizon: auto: with no horizon can the model be simulated through the stretches that are "
+        "left out: give a horizon, such as 'horizon: 1 s'");
+  return choice;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,46 @@
+// The choice of what a fit minimises: how far ahead the simulation predicts.
+//
+// The same model, wrong in the same way, has other parameters with each horizon. Which of them
+// predict best is asked of the fitted recordings alone: each of their stretches is left out once,
+// the rest is fitted with every horizon, and the model then runs free through that stretch.
+#pragma once
+
+#include <stdexcept>
+#include <vector>
+
+#include "fit/data/job.h"
+#include "fit/solve/run_context.h"
+
+namespace axisfit {
+
+/// One of the criteria, and how it did.
+struct HorizonTrial {
+  double observer_gain = 0.0;  ///< 1/s; above zero the simulation tracks to the end: one step ahead
+  double horizon = 0.0;        ///< s, of the windows; zero without observer: the whole recording
+  /// Root of the mean square over the stretches left out and the fitted signals, of the free run
+  /// from how the stretch begins, per standard deviation of the signal. Infinite where a fit or a
+  /// run failed.
+  double error = 0.0;
+};
+
+struct HorizonChoice {
+  int stretches = 0;     ///< that were left out in turn
+  double longest = 0.0;  ///< s, the longest of them
+  std::vector<HorizonTrial> trials;
+  std::size_t chosen = 0;  ///< with the smallest error
+};
+
+/// With no horizon can the model be fitted and simulated.
+struct NoHorizon : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Tries horizons from a hundredth of a stretch to all of it, the whole recordings, and one step
+/// ahead, unless the signal that is tracked lags. The job's recordings must have windows, see
+/// window_starts(). Throws NoHorizon, and Interrupted after a stop.
+HorizonChoice choose_horizon(const Job& job, const RunContext& context = {});
+
+/// Lets fits go by that criterion. `choose_horizon` stays, to say that it was chosen.
+void set_criterion(FitOptions& options, const HorizonTrial& criterion);
+
+}  // namespace axisfit

@@ -1,0 +1,122 @@
+#include "fit/judge/grade.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace axisfit {
+namespace {
+
+// Half is what a model must do to be one.
+constexpr double kLeastPercent = 50.0;
+// Of a simulation that drifts, the missing force must be small all the more.
+constexpr double kSmallForcePercent = 10.0;
+
+/// Whether the recordings tell anything of a parameter; of one at its bound, how far away it is.
+bool is_informed(const FreeParameter& free, const ParameterUncertainty& u) {
+  if (!u.at_bound) return u.determined;
+  if (!u.has_interval()) return false;
+  const auto scale = [&](double x) { return free.logarithmic ? std::log(x) : x; };
+  constexpr double kPart = 0.25;
+  return scale(u.upper) - scale(u.lower) < kPart * (scale(free.upper) - scale(free.lower));
+}
+
+double variance_of(const Recording& recording, const Measurement& measurement) {
+  double n = 0.0, mean = 0.0, sum = 0.0;
+  const std::size_t first = recording.score_initial_samples ? 0 : recording.initial_samples;
+  for (std::size_t i = first; i < measurement.values.size(); ++i) {
+    if (!measurement.counts(i)) continue;
+    const double deviation = measurement.values[i] - mean;
+    mean += deviation / ++n;
+    sum += deviation * (measurement.values[i] - mean);
+  }
+  return n > 0.0 ? sum / n : 0.0;
+}
+
+/// How well a simulation with these errors follows a signal, see FitGrade::percent.
+double followed_percent(double variance, const SignalError& error) {
+  const bool noise_known = error.noise != NoiseSource::fit;
+  const double noise = noise_known ? error.sigma * error.sigma : 0.0;
+  const double unexplained = std::max(0.0, error.rmse * error.rmse - noise);
+  // What is hardly more than noise proves nothing either way.
+  if (unexplained == 0.0 || (noise_known && error.reduced_chi_square <= 2.0)) return 100.0;
+  return 100.0 * (1.0 - std::sqrt(unexplained / std::max(variance - noise, 0.0)));
+}
+
+/// The worst signal of the free-running simulation.
+FitGrade worst_simulation(const Job& job, const FitResult& fit) {
+  FitGrade worst{.reason = FitGrade::Reason::simulation, .percent = 100.0};
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    for (std::size_t m = 0; m < job.recordings[r].measurements.size(); ++m) {
+      const Measurement& measurement = job.recordings[r].measurements[m];
+      if (!measurement.fitted) continue;
+      const bool finished = fit.recordings[r].free_running.finished;
+      const double percent = finished
+                                 ? followed_percent(variance_of(job.recordings[r], measurement),
+                                                    fit.recordings[r].signals[m])
+                                 : NAN;
+      if (percent >= worst.percent) continue;
+      worst.recording = job.recordings[r].name;
+      worst.signal = measurement.signal;
+      worst.percent = percent;
+      if (!finished) return worst;
+    }
+  return worst;
+}
+
+/// The recording whose missing force, noise set aside, is the largest part of the drive's.
+FitGrade worst_force(const Job& job, const Diagnosis& diagnosis) {
+  FitGrade worst{.reason = FitGrade::Reason::force};
+  for (std::size_t r = 0; r < diagnosis.forces.size(); ++r) {
+    const double percent = percent_of_drive(diagnosis.forces[r]);
+    if (!(percent > worst.percent)) continue;
+    worst.recording = job.recordings[r].name;
+    worst.percent = percent;
+  }
+  return worst;
+}
+
+}  // namespace
+
+FitGrade grade_of(const Job& job, const FitResult& fit, const std::optional<Diagnosis>& diagnosis) {
+  using enum FitGrade::Reason;
+  const auto graded = [](Grade grade, FitGrade basis) {
+    basis.grade = grade;
+    return basis;
+  };
+  const FitVerdict::Kind kind = fit.verdict.kind;
+  if (kind == FitVerdict::Kind::not_simulated || kind == FitVerdict::Kind::no_minimum) return {};
+  bool informed = false;
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i)
+    informed = informed || is_informed(job.free[i], fit.parameters[i].uncertainty);
+  if (!informed) return graded(Grade::nothing_determined, {.reason = parameters});
+  const FitGrade simulation_found = worst_simulation(job, fit);
+  if (kind == FitVerdict::Kind::signal_not_followed)
+    return graded(Grade::model_wrong, simulation_found.percent >= kLeastPercent
+                                          ? FitGrade{.reason = simulation,
+                                                     .recording = fit.verdict.recording,
+                                                     .signal = fit.verdict.signal}
+                                          : simulation_found);
+  const FitGrade force_found = diagnosis ? worst_force(job, *diagnosis) : FitGrade{};
+  if (force_found.percent > kLargestForcePercent) return graded(Grade::model_wrong, force_found);
+  if (!(simulation_found.percent >= kLeastPercent)) {
+    const bool only_drifts = fit.observer_gain > 0.0 && diagnosis &&
+                             std::isfinite(simulation_found.percent) &&
+                             force_found.percent < kSmallForcePercent;
+    FitGrade found = graded(only_drifts ? Grade::usable : Grade::model_wrong, simulation_found);
+    if (only_drifts) found.reason = tracking_only;
+    return found;
+  }
+  if (diagnosis && diagnosis->explained) return graded(Grade::explained, {.reason = none});
+  FitGrade found{.grade = Grade::usable, .reason = residual};
+  if (diagnosis && !diagnosis->tests.empty()) {
+    const SeriesTest& worst =
+        *std::ranges::max_element(diagnosis->tests, {}, &SeriesTest::unexplained_percent);
+    const Recording& recording = job.recordings[worst.series.recording];
+    found.recording = recording.name;
+    found.signal = recording.measurements[worst.series.measurement].signal;
+    found.percent = worst.unexplained_percent;
+  }
+  return found;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,65 @@
+// Residuals of one signal of one recording, and whether they are explained.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "base/autocovariance.h"
+#include "fit/estimate/estimate.h"
+
+namespace axisfit {
+
+/// Which samples a series holds.
+struct SeriesKey {
+  std::size_t recording = 0;
+  std::size_t measurement = 0;  ///< of the recording
+  bool fitted = false;          ///< whether the fit minimised them
+
+  bool operator==(const SeriesKey&) const = default;
+};
+
+/// What belongs to a key in a list of things derived from SeriesKey; null where there is none.
+template <class List>
+auto* find_series(List& list, const SeriesKey& key) {
+  const auto at = std::ranges::find_if(list, [&](const SeriesKey& k) { return k == key; });
+  return at == list.end() ? nullptr : &*at;
+}
+
+struct ResidualSeries : SeriesKey {
+  NoiseSource noise = NoiseSource::given;  ///< fit: estimated from this series
+  std::vector<std::size_t> samples;        ///< that count, in order
+  std::vector<double> values;              ///< (measured - simulated) / sigma at those
+  /// Samples of the noise per independent one: above one where the filter of the measurement made
+  /// it so.
+  double noise_time = 1.0;
+  /// What the uncertainty of the estimates alone adds to the mean square, on average; zero where
+  /// the series was fitted, and until allow_for_parameters() finds it.
+  double allowance = 0.0;
+  /// What noise of the input of the stated size adds to the mean square, the most of its draws.
+  double input_noise = 0.0;
+  /// Whether the size of that is given. One that was estimated excuses nothing.
+  bool input_noise_given = false;
+};
+
+/// The residuals by which a fit is assessed: of the simulation as it was fitted, free-running or
+/// with a fixed observer gain. Signals that are only compared are omitted, and so are recordings
+/// whose simulation did not finish.
+std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& result);
+
+/// Number of fitted samples.
+double samples_of(const std::vector<ResidualSeries>& list);
+
+/// Finds the allowances of all series that were not fitted: what the fit leaves open, another
+/// motion may show all the more. Likewise what noise of their inputs adds, where it is given.
+void allow_for_parameters(const Job& job, const FitResult& result,
+                          std::vector<ResidualSeries>& list);
+
+/// Whether a series shows no more than its noise: a mean square within 5 % of one, or within four
+/// standard errors of that of white noise, the allowance four times, and noise of the input where
+/// its size is given. The colour of the residual widens nothing, for what a model lacks is
+/// coloured, too; that which a filter of the measurement gives its noise does. Where the noise was
+/// estimated from the series itself, its size carries no information: then, whether it is no more
+/// coloured than that.
+bool is_explained(const ResidualSeries& series);
+
+}  // namespace axisfit

@@ -1,0 +1,208 @@
+#include "fit/search/acceptance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/distributions.h"
+#include "base/linear_algebra.h"
+
+namespace axisfit {
+namespace {
+
+double sum_of_squares(const ResidualSeries& series) {
+  return mean_square(series.values) * static_cast<double>(series.values.size());
+}
+
+/// a - b
+std::vector<double> difference(const ResidualSeries& a, const ResidualSeries& b) {
+  std::vector<double> d(a.values.size());
+  for (std::size_t i = 0; i < d.size(); ++i) d[i] = a.values[i] - b.values[i];
+  return d;
+}
+
+/// Of the sum of products of a change with the residual that it leaves, if they have nothing to do
+/// with each other. Both may be large at the same places, such as where the motion turns: then
+/// their products scatter more than those of two stationary series.
+double variance_of_products(const std::vector<double>& change, const ResidualSeries& after) {
+  std::vector<double> products(change.size());
+  double square = 0.0;
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    products[i] = change[i] * after.values[i];
+    square += change[i] * change[i];
+  }
+  const std::vector<double> ones(products.size(), 1.0);
+  return std::max(square * variance_along(change, after.values),
+                  static_cast<double>(products.size()) * variance_along(ones, products));
+}
+
+}  // namespace
+
+Improvement improvement(const std::vector<ResidualSeries>& before,
+                        const std::vector<ResidualSeries>& after) {
+  Improvement result;
+  double gain = 0.0, expected = 0.0, variance = 0.0, least_variance = 0.0, square_before = 0.0,
+         square_after = 0.0, noise = 0.0;
+  for (const ResidualSeries& old : before) {
+    const ResidualSeries* now = find_series(after, old);
+    if (now == nullptr) return result;
+    const std::vector<double> change = difference(old, *now);
+    if (old.fitted) {
+      const double unit = variance_along(change, now->values);
+      result.fit_gain += (sum_of_squares(old) - sum_of_squares(*now)) / unit;
+      result.samples += sum_of_squares(*now) / unit;
+      continue;
+    }
+    // With d the change of the prediction, r' = r - d: the fall of the sum of squares is
+    // |d|^2 + 2 d r', of which only the second part is chance.
+    const double by_chance = variance_of_products(change, *now);
+    variance += 4.0 * by_chance;
+    // A wrong change is in what it leaves, a right one was in what there was.
+    least_variance += 4.0 * std::min(by_chance, variance_of_products(change, old));
+    for (const double d : change) expected += d * d;
+    square_before += sum_of_squares(old);
+    square_after += sum_of_squares(*now);
+    if (old.noise != NoiseSource::fit) noise += static_cast<double>(old.values.size());
+  }
+  gain = square_before - square_after;
+  result.comparable = true;
+  result.z = variance > 0.0 ? gain / std::sqrt(variance) : 0.0;
+  result.expected_z = least_variance > 0.0 ? expected / std::sqrt(least_variance) : 0.0;
+  result.p_value = 0.5 * std::erfc(result.z / std::sqrt(2.0));
+  result.validate_percent =
+      square_before > 0.0 ? 100.0 * (1.0 - std::sqrt(square_after / square_before)) : 0.0;
+  const double missing = square_before - noise, left = std::max(0.0, square_after - noise);
+  result.missing_percent = missing > 0.0 ? 100.0 * (1.0 - std::sqrt(left / missing)) : 0.0;
+  return result;
+}
+
+double bic_difference(const std::vector<ResidualSeries>& best, std::size_t best_parameters,
+                      const std::vector<ResidualSeries>& other, std::size_t other_parameters) {
+  double loss = 0.0, samples = 0.0;
+  for (const ResidualSeries& series : best) {
+    const ResidualSeries* rival = find_series(other, series);
+    if (rival == nullptr) return INFINITY;
+    // Neither needs to be true, so that what both lack may tell them apart: at least as much as a
+    // slow change is worth.
+    const double unit = std::max(variance_along(difference(*rival, series), series.values),
+                                 mean_square(series.values) * autocorrelation_time(series.values));
+    loss += (sum_of_squares(*rival) - sum_of_squares(series)) / unit;
+    samples += sum_of_squares(series) / unit;
+  }
+  return loss + (static_cast<double>(other_parameters) - static_cast<double>(best_parameters)) *
+                    std::log(std::max(2.0, samples));
+}
+
+double least_bic_difference(const std::vector<ResidualSeries>& best, double more_parameters) {
+  double gain = 0.0, samples = 0.0;
+  for (const ResidualSeries& series : best) {
+    if (series.noise == NoiseSource::fit) return -INFINITY;
+    const double independent =
+        static_cast<double>(series.values.size()) / autocorrelation_time(series.values);
+    gain += std::max(0.0, 1.0 - 1.0 / mean_square(series.values)) * independent;
+    samples += independent;
+  }
+  return more_parameters * std::log(std::max(2.0, samples)) - gain;
+}
+
+bool is_clearly_worse(double bic_difference) { return bic_difference > 2.0 * std::log(100.0); }
+
+bool is_needed(const Improvement& gain, std::size_t parameters, bool replicates) {
+  const double price = static_cast<double>(parameters) * std::log(std::max(2.0, gain.samples));
+  return gain.comparable && gain.fit_gain > price && (replicates || gain.p_value < kChance);
+}
+
+Determination determination(const Job& job, const FitResult& result, const Candidate& candidate,
+                            const std::vector<ResidualSeries>& residuals) {
+  Determination d;
+  const std::size_t own = candidate.parameters();
+  const std::size_t first = job.free.size() - own;
+  const std::size_t strengths = candidate.strengths.size();
+  for (std::size_t i = first; i < job.free.size(); ++i) {
+    const ParameterResult& p = result.parameters[i];
+    if (p.uncertainty.at_bound && d.at_bound.empty()) d.at_bound = p.name;
+    if (i >= first + strengths && !candidate.gives_backlash && !p.uncertainty.determined &&
+        d.undetermined.empty())
+      d.undetermined = p.name;
+  }
+  constexpr double kByChance = 3e-4;
+  d.required = chi_square_upper_quantile(kByChance, static_cast<double>(strengths));
+
+  const ParameterSpace space(job);
+  const Eigen::VectorXd u = space.internal(values_of(result));
+  const Linearization& at = *result.at_solution;
+  if (!at.finite) return d;
+  Eigen::MatrixXd others(at.jacobian.rows(),
+                         static_cast<Eigen::Index>(job.free.size() - strengths));
+  Eigen::Index k = 0;
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    if (i >= first && i < first + strengths) continue;
+    others.col(k) = at.jacobian.col(static_cast<Eigen::Index>(i));
+    if (const double length = others.col(k).norm(); length > 0.0) others.col(k) /= length;
+    ++k;
+  }
+  const Eigen::VectorXd mark =
+      at.jacobian.middleCols(static_cast<Eigen::Index>(first),
+                             static_cast<Eigen::Index>(strengths)) *
+      u.segment(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(strengths));
+  // A neutral value that is not zero, as a gain of one, is not part of the strength.
+  Eigen::VectorXd zero(static_cast<Eigen::Index>(strengths));
+  for (std::size_t i = 0; i < strengths; ++i)
+    // To first order in the compliance, none is one more of the logarithm of the stiffness.
+    zero[static_cast<Eigen::Index>(i)] = std::isinf(candidate.neutral[i])
+                                             ? u[static_cast<Eigen::Index>(first + i)] + 1.0
+                                             : space.internal(first + i, candidate.neutral[i]);
+  const Eigen::VectorXd shown =
+      mark - at.jacobian.middleCols(static_cast<Eigen::Index>(first),
+                                    static_cast<Eigen::Index>(strengths)) *
+                 zero;
+  Eigen::VectorXd residual = shown;
+  if (others.cols() > 0) residual -= others * LeastSquaresSolver(others).solve(shown);
+  d.distinct = shown.squaredNorm() > 0.0 ? residual.squaredNorm() / shown.squaredNorm() : 0.0;
+  for (const SeriesRows& rows : at.series)
+    if (const auto* series = find_series(residuals, {rows.recording, rows.measurement, true})) {
+      const Eigen::VectorXd own_part = residual.segment(rows.first, rows.count);
+      d.wald += own_part.squaredNorm() /
+                variance_along({own_part.data(), static_cast<std::size_t>(own_part.size())},
+                               series->values);
+    }
+  return d;
+}
+
+double least_gain(const Candidate& candidate, double samples, std::size_t tried) {
+  return static_cast<double>(candidate.parameters()) * std::log(std::max(2.0, samples)) +
+         2.0 * std::log(static_cast<double>(std::max<std::size_t>(1, tried)));
+}
+
+std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvement& gain,
+                                      const Determination& determined, std::size_t tried,
+                                      double chance, bool replicates) {
+  using enum Rejection::Test;
+  if (!gain.comparable) return Rejection{.test = simulation};
+  const double required = least_gain(candidate, gain.samples, tried);
+  if (gain.fit_gain < required)
+    return Rejection{.test = significance,
+                     .found = std::max(0.0, gain.fit_gain),
+                     .required = required,
+                     .tried = tried};
+  constexpr double kMinPercent = 0.5;
+  // An effect that is there passes with nine in ten of such recordings.
+  constexpr double kPower = 4.4;
+  const bool fails = !replicates && gain.p_value > chance;
+  const bool is_unseen = fails && gain.expected_z < kPower;
+  if (fails && !is_unseen) return Rejection{.test = validation, .found = gain.p_value};
+  if (!replicates && !is_unseen && gain.validate_percent < kMinPercent)
+    return Rejection{.test = validation_size, .found = gain.validate_percent};
+  if (!determined.at_bound.empty())
+    return Rejection{.test = bound, .parameter = determined.at_bound};
+  if (!determined.undetermined.empty())
+    return Rejection{.test = shape, .parameter = determined.undetermined};
+  constexpr double kAlias = 1e-10;  // below is rounding
+  if (determined.distinct < kAlias) return Rejection{.test = distinct};
+  if (determined.wald < determined.required)
+    return Rejection{.test = strength, .found = std::sqrt(determined.wald)};
+  if (is_unseen) return Rejection{.test = power, .found = gain.p_value};
+  return std::nullopt;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,114 @@
+// Whether an effect that was added to a model may stay.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fit/judge/series.h"
+#include "fit/search/catalogue.h"
+
+namespace axisfit {
+
+/// What an extended model does to the errors of a simpler one. Sums of squares are in units of the
+/// information of one independent sample: divided by the variance of the extended model's residual
+/// along the change that the extension makes, series by series; see variance_along().
+struct Improvement {
+  bool comparable = false;  ///< false: the extended model could not be simulated everywhere
+  double fit_gain = 0.0;    ///< fall of the sum of squares of what was fitted
+  double samples = 0.0;     ///< effective number of independent samples that were fitted
+  /// Fall of the sum of squares of what was not fitted, by its standard deviation if the effect
+  /// were chance, and the probability of that or more.
+  double z = 0.0;
+  double p_value = 1.0;
+  /// What z would be on average if the effect were as the fit found it: small where the motion that
+  /// was not fitted hardly shows it.
+  double expected_z = 0.0;
+  double validate_percent = 0.0;  ///< fall of the root mean square of what was not fitted
+  /// The same of its part beyond the noise of the stated size, which is all that a model can take
+  /// away.
+  double missing_percent = 0.0;
+};
+
+Improvement improvement(const std::vector<ResidualSeries>& before,
+                        const std::vector<ResidualSeries>& after);
+
+/// How much worse `other` explains all recordings than `best`, in the same units, each parameter
+/// beyond those of `best` at the price of Schwarz's criterion, log of the number of samples.
+/// Negative when `other` is better after all.
+double bic_difference(const std::vector<ResidualSeries>& best, std::size_t best_parameters,
+                      const std::vector<ResidualSeries>& other, std::size_t other_parameters);
+
+/// About what bic_difference() is to the model of these residuals, of another with so many
+/// parameters more that leaves nothing but noise. Minus infinity where the size of the noise is not
+/// known.
+double least_bic_difference(const std::vector<ResidualSeries>& best, double more_parameters);
+
+/// Whether a difference of that is ground for a preference: odds of more than a hundred to one.
+bool is_clearly_worse(double bic_difference);
+
+/// What the fit says of a candidate's own parameters, the last of the job's.
+struct Determination {
+  /// Sum of squares that would be lost with strengths of zero, in units as above: the square of
+  /// value over standard error where there is one strength.
+  double wald = 0.0;
+  double required = 0.0;     ///< the least that counts as determined
+  double distinct = 0.0;     ///< part of the strengths' effect that no other parameter can imitate
+  std::string at_bound;      ///< a parameter held by a bound; empty: none
+  std::string undetermined;  ///< a shape that the data leave open; empty: none
+};
+
+Determination determination(const Job& job, const FitResult& result, const Candidate& candidate,
+                            const std::vector<ResidualSeries>& residuals);
+
+/// How probable it may be that an effect helps by chance on what was not fitted.
+constexpr double kChance = 1e-3;
+
+/// Whether an accepted effect is needed beside those that were accepted later. `gain` is what it
+/// does to the model without it: more to the fit than the price of its parameters by Schwarz's
+/// criterion, and more than chance to what was not fitted.
+/// With `replicates` only the former counts, see replication.h.
+bool is_needed(const Improvement& gain, std::size_t parameters, bool replicates = false);
+
+/// A test that a candidate failed.
+struct Rejection {
+  enum class Test {
+    fit,              ///< there is no usable fit with it
+    simulation,       ///< with it the simulation does not finish for all recordings
+    significance,     ///< the best of many by chance lowers the sum of squares as much
+    validation,       ///< it does not lower the validation error
+    power,            ///< nor could it: what was not fitted hardly shows it
+    validation_size,  ///< it hardly does
+    bound,            ///< a parameter of it is held by a bound
+    shape,            ///< the data leave a shape of it open
+    distinct,         ///< other parameters can imitate it
+    strength,         ///< the data leave its strength open
+    share,            ///< it lowers the validation error too little where most remains unexplained
+    misfit,           ///< the declared model does not fit, with it or without
+    period,           ///< the recordings to validate, fitted by themselves, show another period
+  };
+  Test test = Test::fit;
+  /// Of significance, the fall of the sum of squares; of validation and power, the p-value; of
+  /// validation_size, the fall of the validation error, %; of share, that beyond the noise; of
+  /// strength, the standard errors from zero; of period, that which they show.
+  double found = 0.0;
+  double required = 0.0;    ///< of significance: the least fall of the sum of squares
+  std::size_t tried = 0;    ///< of significance: candidates and settings among which it was chosen
+  std::string parameter{};  ///< of bound and shape
+
+  bool operator==(const Rejection&) const = default;
+};
+
+/// The fall of the sum of squares that a candidate must bring: the price of its parameters by
+/// Schwarz's criterion, and that of having been chosen among so many.
+double least_gain(const Candidate& candidate, double samples, std::size_t tried);
+
+/// The first test that the candidate fails; none when it may stay.
+/// `tried` is the number of candidates and settings among which it was chosen. `chance` is how
+/// probable it may be that it lowers the validation error by chance; of one that replicates,
+/// nothing is asked of that error.
+std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvement& gain,
+                                      const Determination& determined, std::size_t tried,
+                                      double chance = kChance, bool replicates = false);
+
+}  // namespace axisfit

@@ -1,0 +1,153 @@
+#include "fit/search/model_chain.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/parallel.h"
+#include "fit/search/backlash.h"
+#include "fit/solve/parameters.h"
+
+namespace axisfit {
+
+std::vector<double> SelectionStep::values() const {
+  std::vector<double> values = values_of(fit);
+  values.push_back(fit.observer_gain);
+  return values;
+}
+
+Improvement improvement(const SelectionStep& before, const SelectionStep& after) {
+  return improvement(residual_series(before.job, before.fit),
+                     residual_series(after.job, after.fit));
+}
+
+bool explains(const SelectionStep& model) {
+  auto series = residual_series(model.job, model.fit);
+  if (std::ranges::all_of(series, is_explained)) return !series.empty();
+  const auto fails = [](const ResidualSeries& s) { return s.fitted && !is_explained(s); };
+  if (std::ranges::any_of(series, fails)) return false;  // nothing is allowed these
+  allow_for_parameters(model.job, model.fit, series);
+  return !series.empty() && std::ranges::all_of(series, is_explained);
+}
+
+void ModelChain::append(AcceptedEffect effect, Job job, FitResult fit) {
+  models_.push_back({effect.candidate.name, std::move(job), std::move(fit)});
+  accepted_.push_back(std::move(effect));
+  neighbours_ = {};  // of the model before, not to be copied with every state put aside
+}
+
+void ModelChain::restart(SelectionStep declared) {
+  models_ = {std::move(declared)};
+  accepted_.clear();
+}
+
+void ModelChain::replace(SelectionStep declared, SelectionStep last) {
+  models_.front() = std::move(declared);
+  set_last(std::move(last));
+}
+
+ModelChain::Neighbours& ModelChain::neighbours() {
+  std::vector<double> values = current().values();
+  if (values != neighbours_.of || neighbours_.reduced.size() != accepted_.size())
+    neighbours_ = {.of = std::move(values), .reduced = {accepted_.size(), std::nullopt}};
+  return neighbours_;
+}
+
+bool ModelChain::explained() {
+  std::optional<bool>& known = neighbours().explained;
+  if (!known) known = explains(current());
+  return *known;
+}
+
+const SelectionStep& ModelChain::without(std::size_t place) {
+  std::optional<SelectionStep>& reduced = neighbours().reduced[place];
+  if (!reduced) reduced = reduce(place);
+  return *reduced;
+}
+
+void ModelChain::fit_without(const std::vector<std::size_t>& places) {
+  auto& all = neighbours().reduced;
+  parallel_for(places.size(), [&](std::size_t i) {
+    if (!all[places[i]]) all[places[i]] = reduce(places[i]);
+  });
+}
+
+SelectionStep ModelChain::reduce(std::size_t place) const {
+  return accepted_.size() == 1 ? declared() : with_accepted(declared().job, place);
+}
+
+template <class Kept>
+Job ModelChain::job_with(const Job& declared, Kept&& kept) const {
+  Job job = declared;
+  std::vector<double> values;
+  const double motor =
+      mass_of_motor(job.model.structure, fitted_model(current().job, current().fit));
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    const bool is_mass = quantity_list()[job.free[i].quantity].name == "M";
+    values.push_back(current().fit.parameters[i].value + (is_mass ? motor : 0.0));
+  }
+  for (std::size_t a = 0; a < accepted_.size(); ++a) {
+    const Candidate& candidate = accepted_[a].candidate;
+    if (!kept(a)) continue;
+    const CandidateValues own = candidate_values(current().job, current().fit, candidate);
+    job = with_candidate(job, candidate, values, own.strengths, own.shapes);
+    values = initial_values(job);
+  }
+  set_initial_values(job, values);
+  return job;
+}
+
+Job ModelChain::job_with_accepted(const Job& declared, std::optional<std::size_t> except) const {
+  return job_with(declared, [&](std::size_t a) {
+    return !except ||
+           (a != *except && !is_part_of(accepted_[a].candidate, accepted_[*except].candidate));
+  });
+}
+
+SelectionStep ModelChain::with_accepted(const Job& declared,
+                                        std::optional<std::size_t> except) const {
+  Job job = job_with_accepted(declared, except);
+  FitResult fit = refit(job, *context_);
+  return {"", std::move(job), std::move(fit)};
+}
+
+std::vector<Candidate> ModelChain::erase(std::size_t place) {
+  const Candidate whole = accepted_[place].candidate;
+  std::vector<Candidate> parts;
+  std::erase_if(accepted_, [&](const AcceptedEffect& a) {
+    if (!is_part_of(a.candidate, whole)) return same_effect(a.candidate, whole);
+    parts.push_back(a.candidate);
+    return true;
+  });
+  return parts;
+}
+
+void ModelChain::set_last(SelectionStep last) {
+  models_.resize(1);
+  if (accepted_.empty()) return;
+  last.added = accepted_.back().candidate.name;
+  models_.push_back(std::move(last));
+}
+
+std::vector<SelectionStep> ModelChain::models() const {
+  if (models_.size() == accepted_.size() + 1) return models_;
+  std::vector<SelectionStep> all(accepted_.size() + 1);
+  all.front() = declared();
+  all.back() = current();
+  parallel_for(accepted_.size() - 1, [&](std::size_t i) {
+    Job job = job_with(declared().job, [&](std::size_t a) { return a <= i; });
+    FitResult fit = refit(job, *context_);
+    all[i + 1] = {accepted_[i].candidate.name, std::move(job), std::move(fit)};
+  });
+  return all;
+}
+
+const std::optional<FitResult>& ModelChain::elsewhere() {
+  Neighbours& known = neighbours();
+  if (!known.has_elsewhere) {
+    known.elsewhere = fit_elsewhere(current().job, current().fit, *context_);
+    known.has_elsewhere = true;
+  }
+  return known.elsewhere;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,116 @@
+// The declared model and the effects accepted one after another.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fit/search/extended_model.h"
+
+namespace axisfit {
+
+/// One intermediate model: the declared one, and one after each accepted effect.
+struct SelectionStep {
+  std::string added;  ///< the effect; empty for the declared model
+  Job job;
+  FitResult fit;
+
+  /// Of the free parameters, and last the observer gain: two steps of a search that agree in them
+  /// are the same model.
+  std::vector<double> values() const;
+};
+
+/// By how much the second lowers the errors of the first, see acceptance.h.
+Improvement improvement(const SelectionStep& before, const SelectionStep& after);
+
+/// Whether the model leaves nothing but noise in any signal.
+bool explains(const SelectionStep& model);
+
+/// Another effect that explained as much as an accepted one when that was chosen.
+struct Rival {
+  Candidate candidate;
+  /// Without strengths: it has not been fitted yet.
+  CandidateValues values;
+  /// Of the other free parameters, where its refit starts; empty: from where all else is.
+  std::vector<double> others{};
+};
+
+struct AcceptedEffect {
+  Candidate candidate;
+  std::vector<Rival> rivals;
+  bool is_seen_elsewhere = false;  ///< it replicates, or held-out stretches show it
+};
+
+/// A value that may be copied, put aside and taken up again. What was found beside the last model
+/// (fits without one of its effects, or to other recordings) is kept until that changes. Not to be
+/// used by several threads at once; its fits share the thread pool.
+class ModelChain {
+ public:
+  /// The context must outlive it.
+  ModelChain(SelectionStep declared, const RunContext& context)
+      : context_(&context), models_{std::move(declared)} {}
+
+  const SelectionStep& declared() const { return models_.front(); }
+  const SelectionStep& current() const { return models_.back(); }
+  const std::vector<AcceptedEffect>& accepted() const { return accepted_; }
+  std::vector<AcceptedEffect>& accepted() { return accepted_; }
+
+  void append(AcceptedEffect effect, Job job, FitResult fit);
+  /// Begins anew with a declared model.
+  void restart(SelectionStep declared);
+  /// Puts another declared model in the place of the present one, and the last model with the
+  /// accepted effects that follow from it.
+  void replace(SelectionStep declared, SelectionStep last);
+
+  /// The last model without one accepted effect, and what is part of it, refitted.
+  const SelectionStep& without(std::size_t place);
+  /// Fits without each of these, side by side.
+  void fit_without(const std::vector<std::size_t>& places);
+
+  /// A declared job with the accepted effects, but for one, that starts from where they are.
+  Job job_with_accepted(const Job& declared, std::optional<std::size_t> except = {}) const;
+  /// That, refitted.
+  SelectionStep with_accepted(const Job& declared, std::optional<std::size_t> except = {}) const;
+
+  /// Strikes an accepted effect off the list, and what is part of it; returns the latter. The
+  /// models are as before, until set_last().
+  std::vector<Candidate> erase(std::size_t place);
+  /// Replaces the last model by one with all accepted effects, after some were removed or
+  /// exchanged.
+  void set_last(SelectionStep last);
+
+  /// The declared model, and with one accepted effect more each, the last. Refits those between
+  /// where effects were removed or exchanged.
+  std::vector<SelectionStep> models() const;
+
+  /// Whether the last model leaves nothing but noise, see explains().
+  bool explained();
+
+  /// The last model fitted to the recordings to validate alone, see fit_elsewhere().
+  const std::optional<FitResult>& elsewhere();
+  /// Whether it was already.
+  bool has_elsewhere() { return neighbours().has_elsewhere; }
+
+ private:
+  /// What was found beside the present model.
+  struct Neighbours {
+    std::vector<double> of;                             ///< values and gain of that model
+    std::optional<bool> explained{};                    ///< takes simulations
+    std::vector<std::optional<SelectionStep>> reduced;  ///< without each of the accepted effects
+    bool has_elsewhere = false;
+    std::optional<FitResult> elsewhere{};
+  };
+  Neighbours& neighbours();
+  SelectionStep reduce(std::size_t place) const;
+  /// A declared job with those accepted effects that are `kept`.
+  template <class Kept>
+  Job job_with(const Job& declared, Kept&& kept) const;
+
+  const RunContext* context_;
+  std::vector<SelectionStep> models_;  ///< the declared one, the last, and some between
+  std::vector<AcceptedEffect> accepted_;
+  Neighbours neighbours_;
+};
+
+}  // namespace axisfit

@@ -1,0 +1,178 @@
+#include "fit/search/periods.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "base/linear_algebra.h"
+#include "sim/sampling.h"
+
+namespace axisfit {
+namespace {
+
+/// One step of a rigid axis of unit mass that tracks the data by the observer, by the implicit
+/// midpoint rule, stable however high the observer gain: of (position, velocity), and what a force
+/// adds to them.
+struct Step {
+  Eigen::Matrix2d state;
+  Eigen::Vector2d force;
+};
+
+Step step_of(const Observer& observer, double h) {
+  const double a = 0.5 * h * observer.position, b = 0.5 * h * observer.velocity,
+               c = 0.5 * h * observer.acceleration;
+  Eigen::Matrix2d inverse, explicit_half;
+  inverse << 1.0 + b, 0.5 * h, -c, 1.0 + a;
+  inverse /= (1.0 + a) * (1.0 + b) + 0.5 * h * c;
+  explicit_half << 1.0 - a, 0.5 * h, -c, 1.0 - b;
+  return {inverse * explicit_half, inverse * Eigen::Vector2d(0.0, h)};
+}
+
+/// Calls visit(row, measurement, sample) for the residuals of a recording, in the order of
+/// RecordingCost.
+template <class Visit>
+void visit_rows(const Recording& recording, Visit&& visit) {
+  Eigen::Index row = 0;
+  for (const Measurement& m : recording.measurements)
+    for (std::size_t i = 0; m.fitted && i < recording.times.size(); ++i)
+      if (recording.fits(m, i)) visit(row++, m, i);
+}
+
+/// What the recorded signals show of a force on that axis, whitened.
+Eigen::VectorXcd response(const Recording& recording, const std::vector<std::complex<double>>& f,
+                          const Observer& observer) {
+  const std::size_t n = recording.times.size();
+  std::vector<std::complex<double>> position(n), velocity(n);
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    const Step step = step_of(observer, recording.times[i + 1] - recording.times[i]);
+    const std::complex<double> force = 0.5 * (f[i] + f[i + 1]);
+    position[i + 1] =
+        step.state(0, 0) * position[i] + step.state(0, 1) * velocity[i] + step.force[0] * force;
+    velocity[i + 1] =
+        step.state(1, 0) * position[i] + step.state(1, 1) * velocity[i] + step.force[1] * force;
+  }
+  Eigen::Index rows = 0;
+  visit_rows(recording, [&](Eigen::Index, const Measurement&, std::size_t) { ++rows; });
+  Eigen::VectorXcd shown(rows);
+  visit_rows(recording, [&](Eigen::Index row, const Measurement& m, std::size_t i) {
+    const std::complex<double> x = m.signal == Signal::position       ? position[i]
+                                   : m.signal == Signal::acceleration ? f[i]
+                                   : m.signal == Signal::velocity     ? velocity[i]
+                                                                      : 0.0;
+    shown[row] = x / m.sigma;
+  });
+  return shown;
+}
+
+/// The force g for which the product of any force f with g is that of response(f) with `rows`.
+std::vector<double> adjoint_response(const Recording& recording, const Eigen::VectorXd& rows,
+                                     const Observer& observer) {
+  const std::size_t n = recording.times.size();
+  std::vector<Eigen::Vector2d> shown(n, Eigen::Vector2d::Zero());
+  std::vector<double> g(n, 0.0);
+  visit_rows(recording, [&](Eigen::Index row, const Measurement& m, std::size_t i) {
+    const double x = rows[row] / m.sigma;
+    if (m.signal == Signal::position) shown[i][0] += x;
+    if (m.signal == Signal::velocity) shown[i][1] += x;
+    if (m.signal == Signal::acceleration) g[i] += x;
+  });
+  Eigen::Vector2d carried = Eigen::Vector2d::Zero();
+  for (std::size_t i = n - 1; i > 0; --i) {
+    carried += shown[i];
+    const Step step = step_of(observer, recording.times[i] - recording.times[i - 1]);
+    const double half = 0.5 * step.force.dot(carried);
+    g[i] += half;
+    g[i - 1] += half;
+    carried = step.state.transpose() * carried;
+  }
+  return g;
+}
+
+}  // namespace
+
+std::vector<double> periods_in(const Recording& recording, const SimulatedRecording& simulation,
+                               const Observer& observer, const Eigen::VectorXd& residuals,
+                               const Eigen::MatrixXd& basis, std::size_t most, bool of_drive,
+                               const StopFlag* stop) {
+  const std::size_t n = simulation.samples.size();
+  if (n < 16 || n != recording.times.size()) return {};
+  double low = INFINITY, high = -INFINITY, speed = 0.0;
+  for (const Sample& s : simulation.samples) {
+    low = std::min(low, s.position);
+    high = std::max(high, s.position);
+    speed = std::max(speed, std::abs(s.velocity));
+  }
+  const double stroke = high - low;
+  const double interval = mean_interval(recording.times);
+  const double shortest = std::max(4.0 * speed * interval, stroke / 400.0);
+  if (!(stroke > 0.0) || !(shortest < stroke)) return {};
+
+  struct Line {
+    double wave, gain;  // 1/m
+  };
+  const Eigen::VectorXd residual = residuals - basis * (basis.transpose() * residuals);
+  const auto weight = [&](std::size_t i) {
+    return of_drive ? simulation.samples[i].drive_force : 1.0;
+  };
+  const auto unit = [&](double wave, std::size_t i) {
+    return std::polar(1.0, 2.0 * std::numbers::pi * wave * simulation.samples[i].position);
+  };
+  const auto force_of = [&](double wave) {
+    std::vector<std::complex<double>> force(n);
+    for (std::size_t i = 0; i < n; ++i) force[i] = weight(i) * unit(wave, i);
+    return force;
+  };
+  const auto columns_of = [&](double wave) {
+    const Eigen::VectorXcd d = response(recording, force_of(wave), observer);
+    Eigen::MatrixXd columns(d.size(), 2);
+    columns << d.real(), d.imag();
+    return Eigen::MatrixXd(columns - basis * (basis.transpose() * columns));
+  };
+  // The product of the residual with the response to a force is that of the force with the
+  // response, backwards in time, to the residual: one for all waves. The size of a response changes
+  // slowly over the waves, so that a few of them tell.
+  const std::vector<double> adjoint = adjoint_response(recording, residual, observer);
+  const double spacing = 0.25 / stroke;  // 1/m, a quarter of a cycle over the stroke
+  constexpr std::size_t kFirst = 4, kSizes = 24;
+  const auto waves = static_cast<std::size_t>(std::ceil((1.0 / shortest) / spacing));
+  const std::size_t stride = std::max<std::size_t>(1, waves / kSizes);
+  std::vector<std::complex<double>> turn(n), phase(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    turn[i] = unit(spacing, i);
+    phase[i] = adjoint[i] * weight(i) * unit((kFirst - 1) * spacing, i);
+  }
+  std::vector<Line> spectrum;
+  double size = 0.0;
+  for (std::size_t k = kFirst; k < waves; ++k) {
+    if (is_set(stop)) throw Interrupted();
+    std::complex<double> product = 0.0;
+    for (std::size_t i = 0; i < n; ++i) product += phase[i] *= turn[i];
+    const double wave = static_cast<double>(k) * spacing;
+    if (spectrum.empty() || k % stride == 0) size = 0.5 * columns_of(wave).squaredNorm();
+    spectrum.push_back({wave, std::norm(product) / std::max(size, 1e-300)});
+  }
+  std::vector<Line> peaks;
+  for (std::size_t i = 0; i < spectrum.size(); ++i) {
+    const bool above_left = i == 0 || spectrum[i].gain >= spectrum[i - 1].gain;
+    const bool above_right = i + 1 == spectrum.size() || spectrum[i].gain > spectrum[i + 1].gain;
+    if (above_left && above_right) peaks.push_back(spectrum[i]);
+  }
+  constexpr std::size_t kExact = 4;
+  std::ranges::stable_sort(peaks, std::greater{}, &Line::gain);
+  // The best of them exactly.
+  if (peaks.size() > kExact * most) peaks.resize(kExact * most);
+  for (Line& peak : peaks) {
+    const Eigen::MatrixXd columns = columns_of(peak.wave);
+    const Eigen::Vector2d right = columns.transpose() * residual;
+    const Eigen::Vector2d solution = LeastSquaresSolver(columns.transpose() * columns).solve(right);
+    peak.gain = right.dot(solution);
+  }
+  std::ranges::stable_sort(peaks, std::greater{}, &Line::gain);
+  std::vector<double> periods;
+  for (const Line& peak : peaks)
+    if (periods.size() < most) periods.push_back(1.0 / peak.wave);
+  return periods;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,25 @@
+#include "fit/search/search_state.h"
+
+#include <utility>
+
+namespace axisfit {
+
+void SearchState::strike_off(std::size_t place) {
+  for (const Candidate& part : chain.erase(place)) trials.reject(part, Reason::not_needed);
+}
+
+void SearchState::take_out(std::size_t place, SelectionStep reduced) {
+  strike_off(place);
+  chain.set_last(std::move(reduced));
+}
+
+void SearchState::take_out_all(const Rejection& rejection) {
+  for (const AcceptedEffect& a : chain.accepted()) trials.fail(a.candidate, rejection);
+  chain.restart(chain.declared());
+}
+
+void SearchState::report_progress(const RunContext& context, const std::string& phase) const {
+  context.report({phase, 0, 0, current().fit.reduced_chi_square});
+}
+
+}  // namespace axisfit

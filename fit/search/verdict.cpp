@@ -1,0 +1,65 @@
+#include "fit/search/verdict.h"
+
+#include <algorithm>
+
+#include "fit/judge/grade.h"
+#include "fit/judge/missing_force.h"
+#include "fit/solve/parameters.h"
+
+namespace axisfit {
+namespace {
+
+/// At a bound that is not the natural end of the quantity, where it has no part in the axis.
+bool is_stuck(const Job& job, const FreeParameter& free, const ParameterResult& found) {
+  const double natural = job.entry(free.quantity).quantity.lower;
+  const bool none = free.lower == natural && natural == 0.0 &&
+                    found.value - free.lower < 0.5 * (free.upper - free.lower);
+  return found.uncertainty.at_bound && !none;
+}
+
+}  // namespace
+
+bool is_misfit(const SearchState& state, SelectionVerdict& verdict) {
+  const Job& declared = state.chain.declared().job;
+  const SelectionStep& last = state.current();
+  for (std::size_t i = 0; i < declared.free.size() && verdict.at_bound.empty(); ++i)
+    if (is_stuck(declared, last.job.free[i], last.fit.parameters[i]))
+      verdict.at_bound = last.fit.parameters[i].name;
+  for (std::size_t r = 0; r < last.job.recordings.size(); ++r) {
+    const double percent = percent_of_drive(missing_force(last.job, last.fit, r));
+    if (percent <= std::max(kLargestForcePercent, verdict.force_percent)) continue;
+    verdict.force_percent = percent;
+    verdict.recording = last.job.recordings[r].name;
+  }
+  return !verdict.at_bound.empty() || !verdict.recording.empty();
+}
+
+void enter_effects(const SearchState& state, const SelectionStep& result,
+                   SelectionVerdict& verdict) {
+  Model<double> model = fitted_model(result.job, result.fit);
+  for (const EffectTrial& t : state.trials.list())
+    if (t.decision == Decision::undecided) verdict.undecided.push_back(t.candidate.name);
+  for (const AcceptedEffect& a : state.accepted()) {
+    if (std::ranges::find(verdict.undecided, a.candidate.name) != verdict.undecided.end()) continue;
+    verdict.accepted.push_back(a.candidate.name);
+    if (a.candidate.is_constant)
+      verdict.corrections.push_back({a.candidate.name, a.candidate.neutral.front(),
+                                     *members(model)[a.candidate.strengths.front()]});
+  }
+  if (!state.accepted().empty())
+    verdict.validate_percent =
+        improvement(state.chain.declared(), state.current()).validate_percent;
+}
+
+SelectionVerdict::Kind kind_of(const EffectSelection& selection, bool is_noise) {
+  using enum SelectionVerdict::Kind;
+  const SelectionVerdict& verdict = selection.verdict;
+  if (!verdict.accepted.empty()) return effects_accepted;
+  if (verdict.undecided.empty() && is_noise)
+    return verdict.small.empty() ? nothing_missing : hardly_anything;
+  if (selection.interrupted) return stopped;
+  if (!verdict.at_bound.empty() || !verdict.recording.empty()) return misfit;
+  return verdict.undecided.empty() ? none_passes : undecided;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,74 @@
+#include "fit/errors/guesses.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/fit/example.h"
+
+namespace axisfit {
+namespace {
+
+std::size_t quantity(const char* name) { return find_quantity(name)->index; }
+
+// A motion shows only ratios to the gain of a force.
+TEST(Guesses, AMassIsKnownOnlyAsARatioToAGuessedGain) {
+  Job job = two_recordings(slide(), slide(), {"M", "B_a"});
+  job.guessed = {quantity("K_f"), quantity("F_s")};  // there is no part of zero
+  const FitResult fit = estimate(job);
+  const auto influences = guess_influences(job, fit);
+  ASSERT_EQ(influences.size(), 2u);
+  for (const auto& of_parameter : influences) {
+    ASSERT_EQ(of_parameter.size(), 1u);
+    EXPECT_EQ(of_parameter[0].name, "K_f");
+    EXPECT_NEAR(of_parameter[0].elasticity, 1.0, 1e-6);
+  }
+}
+
+// The derivative is that of the estimates: a refit with another guess finds the same.
+TEST(Guesses, ChangeTheEstimatesAsARefitDoes) {
+  Job job = two_recordings(motor_axis(), motor_axis(), {"T_p", "B_a"});
+  job.guessed = {quantity("K_t")};
+  const FitResult fit = estimate(job);
+  const auto influences = guess_influences(job, fit);
+  constexpr double kChange = 1.001;
+  job.model.axis.K_t *= kChange;
+  const FitResult refitted = estimate(job);
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_EQ(influences[i].size(), 1u) << fit.parameters[i].name;
+    const double found =
+        std::log(refitted.parameters[i].value / fit.parameters[i].value) / std::log(kChange);
+    EXPECT_NEAR(influences[i][0].elasticity, found, 0.02 * std::abs(found));
+  }
+}
+
+TEST(Guesses, AreOfNoAccountWhereNothingRestsOnThem) {
+  Job job = two_recordings(slide(), slide(), {"M", "B_a"});
+  job.model.axis.F_s = 1e-6;
+  job.guessed = {quantity("F_s")};
+  const FitResult fit = estimate(job);
+  for (const auto& of_parameter : guess_influences(job, fit)) EXPECT_TRUE(of_parameter.empty());
+  // What is estimated is no guess.
+  job.guessed = {quantity("M")};
+  for (const auto& of_parameter : guess_influences(job, fit)) EXPECT_TRUE(of_parameter.empty());
+}
+
+TEST(Guesses, OnesThatAreNegativeCountByTheirSize) {
+  Model<double> truth = slide();
+  truth.structure.effects.set(*effect_named("constant_force"));
+  truth.structure.effects.set(*effect_named("coulomb_friction"));
+  *members(truth)[quantity("constant_force.F_0")] = -20.0;
+  *members(truth)[quantity("coulomb_friction.F_c")] = 5.0;
+  Job job = two_recordings(truth, truth, {"M", "B_a", "coulomb_friction.F_c"});
+  job.guessed = {quantity("constant_force.F_0")};
+  const auto influences = guess_influences(job, estimate(job));
+  *members(job.model)[quantity("constant_force.F_0")] *= 1.001;
+  const double mass = estimate(job).parameters[0].value;
+  *members(job.model)[quantity("constant_force.F_0")] /= 1.001;
+  const double found = std::log(mass / estimate(job).parameters[0].value) / std::log(1.001);
+  ASSERT_EQ(influences[0].size(), 1u) << found;
+  EXPECT_NEAR(influences[0][0].elasticity, found, 0.02 * std::abs(found));
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,147 @@
+// Bands around predictions.
+#include "fit/predict/prediction.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "fit/data/noise.h"
+#include "fit/predict/comparison.h"
+#include "fit/run.h"
+#include "tests/fit/predicted.h"
+#include "tests/fit/scattering.h"
+
+namespace axisfit {
+namespace {
+
+TEST(Prediction, UncertaintyIsThatOfTheTableAndItsScatter) {
+  const RunResult result = predicted(0.05, 3);
+  ASSERT_TRUE(result.uncertainty);
+  const AxisUncertainty& known = *result.uncertainty;
+  ASSERT_EQ(known.quantities.size(), 2u);
+  const ParameterScatter& scatter = result.scatter->parameters[1];
+  ASSERT_GT(scatter.deviation, 0.0);
+  const ParameterResult& damping = result.fit().parameters[1];
+  const UncertainQuantity& q = known.quantities[1];
+  EXPECT_EQ(q.quantity, find_quantity("B_a")->index);
+  EXPECT_TRUE(q.logarithmic);
+  EXPECT_NEAR(q.error, scatter.within / damping.value, 1e-12);
+  EXPECT_NEAR(std::hypot(q.error, q.scatter),
+              std::hypot(damping.uncertainty.standard_error, scatter.deviation) / damping.value,
+              1e-9);
+  EXPECT_NEAR(q.freedom, 4.0, 0.2);
+  EXPECT_EQ(known.correlation.size(), 4u);
+  EXPECT_EQ(known.correlation[0], 1.0);
+  EXPECT_NEAR(known.correlation[1], known.correlation[2], 1e-9);
+  EXPECT_FALSE(known.missing_force);  // the model is complete
+}
+
+TEST(Prediction, BandsAreNarrowWhereNothingScatters) {
+  const auto width = [](double scatter) {
+    return predicted(scatter, 2).predictions.front().signals.front().band.median();
+  };
+  EXPECT_LT(2.0 * width(0.0), width(0.05));
+}
+
+TEST(Prediction, AForceThatTheModelLacksWidensThem) {
+  Job job = scattering_machine(3, 0.0, 1, 4.0);
+  job.recordings.back().role = Role::validate;
+  for (Recording& r : job.recordings) {
+    // To and fro by a force that no parameter makes.
+    std::vector<double>& v = r.measurements.front().values.edit();
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] += 0.02 * std::sin(10.0 * r.times[i]);
+  }
+  const RunResult result = run(std::move(job), {.predict = true});
+  ASSERT_TRUE(result.uncertainty && result.uncertainty->missing_force);
+  // M times the amplitude of its acceleration, over the root of two.
+  const double force = kScatteringMass * 0.02 * 10.0 / std::sqrt(2.0);
+  EXPECT_NEAR(result.uncertainty->missing_force->deviation, force, 0.15 * force);
+  const SignalPrediction& p = result.predictions.front().signals.front();
+  EXPECT_GT(p.inside_percent, 80.0);
+}
+
+/// A model with a parameter of each name, fitted to the first of the recordings.
+ModelEntry entry(const std::string& name, Job job, const std::vector<const char*>& free) {
+  std::erase_if(job.free, [&](const FreeParameter& p) {
+    return std::ranges::none_of(
+        free, [&](const std::string& n) { return n == job.entry(p.quantity).name; });
+  });
+  FitResult fit = estimate(job);
+  std::vector<MissingForce> forces;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    forces.push_back(missing_force(job, fit, r));
+  return {name, std::move(job), std::move(fit), {}, std::move(forces)};
+}
+
+TEST(Comparison, PrefersWhatPredictsAndElseWhatIsSimple) {
+  Job job = scattering_machine(3, 0.0, 4, 3.0);
+  for (std::size_t r = 1; r < 3; ++r) job.recordings[r].role = Role::validate;
+  add_effect<QuadraticDrag>(job.model);
+  FreeParameter drag = free_parameter("quadratic_drag.c", 1.0);
+  drag.logarithmic = false;
+  drag.lower = -100.0;
+  drag.initial = 0.0;
+  job.free.push_back(drag);
+  // The starting values of the others are wrong: B_a is 30 instead of 40 N s/m.
+  job.model.axis.B_a = 30.0;
+  const std::vector<ModelEntry> models{entry("mass", job, {"M"}), entry("both", job, {"M", "B_a"}),
+                                       entry("all", job, {"M", "B_a", "quadratic_drag.c"})};
+  const auto found = compare_models(models);
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->models.size(), 3u);
+  EXPECT_EQ(found->models[found->preferred].name, "both");
+  EXPECT_GT(found->models[0].log_ratio, 4.0 * found->models[0].log_ratio_error);
+  EXPECT_LT(std::abs(found->models[2].log_ratio), 0.05);
+  EXPECT_EQ(found->models[0].windows_lost, found->windows);
+  EXPECT_EQ(found->horizons.back(), 0.0);
+  EXPECT_EQ(found->models[1].free_running.size(), found->horizons.size());
+  // The noise, and no more.
+  const double sigma = usual_noise(Signal::velocity),
+               scale = standard_deviation(job.recordings[1].measurements[0].values);
+  EXPECT_NEAR(found->models[1].free_running.back(), sigma / scale, 0.05 * sigma / scale);
+  EXPECT_GT(found->models[0].bic, found->models[1].bic + 100.0);
+  EXPECT_LT(found->models[1].bic, found->models[2].bic);
+  EXPECT_GT(found->models[0].missing_force, 3.0 * found->models[1].missing_force);
+}
+
+TEST(Comparison, KnowsOfTheFinalModelWhatItsBandsKnow) {
+  Job job = scattering_machine(6, 0.05, 3);
+  job.recordings.back().role = Role::validate;
+  RunOptions options{.predict = true};
+  options.compare = true;
+  const RunResult result = run(std::move(job), options);
+  ASSERT_TRUE(result.comparison);
+  const double inside = result.predictions.front().signals.front().inside_percent;
+  ASSERT_LT(inside, 100.0);  // or there is nothing to compare
+  EXPECT_DOUBLE_EQ(result.comparison->models.front().inside_percent, inside);
+}
+
+TEST(Comparison, NeedsARecordingToValidate) {
+  const Job job = scattering_machine(2, 0.0, 4);
+  EXPECT_FALSE(compare_models({entry("both", job, {"M", "B_a"})}));
+  EXPECT_FALSE(compare_models({}));
+}
+
+TEST(Prediction, OfAMotionIsForTheSignalsOfTheRecordings) {
+  Job job = scattering_machine(3, 0.05, 1);
+  RunOptions options{.predict = true};
+  options.motion = MotionToPredict{"step.yaml", StepMotion{5.0, 0.0}, 0.5, {}};
+  const RunResult result = run(std::move(job), options);
+  ASSERT_TRUE(result.motion) << result.no_prediction;
+  EXPECT_EQ(result.motion->signals, std::vector{Signal::velocity});
+  ASSERT_EQ(result.motion->columns.size(), 5u);
+  EXPECT_EQ(result.motion->columns[3].name, "velocity_mps_half_width");
+  EXPECT_EQ(result.motion->columns[0].values.size(), 501u);
+  // Force over damping, 5 V at the gain of the mass.
+  const double gain = result.baseline.model.axis.K_f;
+  EXPECT_NEAR(result.motion->columns[2].values.back(),
+              5.0 * gain / kScatteringDamping *
+                  (1.0 - std::exp(-0.5 * kScatteringDamping / kScatteringMass)),
+              0.1 * 5.0 * gain / kScatteringDamping);
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,106 @@
+#include "fit/search/effect_columns.h"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "fit/search/score.h"
+#include "tests/fit/example.h"
+
+namespace axisfit {
+namespace {
+
+/// The derivatives with respect to everything that a setting frees, by a simulation of its own.
+Eigen::MatrixXd by_itself(const Job& job, const EffectSetting& setting, double rate) {
+  Candidate candidate = *setting.candidate;
+  candidate.shapes_are_free = setting.with_shapes;
+  const Job with = with_candidate(job, candidate, {}, setting.strengths, setting.shapes);
+  const ParameterSpace space(with);
+  std::vector<double> values;
+  for (const FreeParameter& p : with.free) values.push_back(p.initial);
+  const Eigen::VectorXd u = space.internal(values);
+  Eigen::MatrixXd columns = linearize(with, space, u, rate).jacobian;
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (!space[i].logarithmic) columns.col(k) /= space.slope(i, u[k]);
+  }
+  return columns;
+}
+
+class EffectColumnsOf : public testing::TestWithParam<const char*> {
+ protected:
+  EffectColumnsOf() {
+    Model<double> model = GetParam() == std::string("motor") ? motor_axis() : slide();
+    if (GetParam() == std::string("sticking slide")) add_effect<CoulombFriction>(model).F_c = 12.0;
+    job_ = two_recordings(model, model, {});
+    SearchScales scales{-0.05, 0.2, 1.0, -1.0, 1.0, 0.0, 1.2, 1e-3};
+    scales.periods = scales.drive_periods = {0.05};
+    candidates_ = catalogue(job_, scales);
+  }
+
+  /// Every column within `tolerance` of its length, or of what a newton does to three samples: the
+  /// first, of an arm at rest, and those beside a reversal.
+  void expect_alike(const EffectSetting& setting, const Eigen::MatrixXd& found, double rate,
+                    double tolerance) const {
+    const Eigen::MatrixXd expected = by_itself(job_, setting, rate);
+    ASSERT_EQ(found.rows(), expected.rows()) << setting.candidate->name;
+    ASSERT_EQ(found.cols(), expected.cols()) << setting.candidate->name;
+    const double samples = 3.0 / (job_.model.axis.M * usual_noise(Signal::acceleration));
+    for (Eigen::Index k = 0; k < expected.cols(); ++k)
+      EXPECT_LE((found.col(k) - expected.col(k)).norm(),
+                tolerance * expected.col(k).norm() + samples)
+          << setting.candidate->name << ", column " << k;
+  }
+
+  Job job_;
+  std::vector<Candidate> candidates_;
+};
+
+// Between two samples a force is taken as its mean: where it jumps, as friction does at a reversal,
+// the response is off for as long.
+TEST_P(EffectColumnsOf, AreThoseOfASimulationWithEachEffect) {
+  for (const double rate : {0.0, 30.0}) {
+    const EffectColumns columns(job_, rate, {});
+    std::vector<EffectSetting> settings;
+    for (const Candidate& c : candidates_)
+      if (c.probes.empty())
+        for (const auto& shapes : c.settings) settings.push_back({&c, c.neutral, shapes});
+    ASSERT_GT(settings.size(), 40u);
+    const std::vector<Eigen::MatrixXd> found = columns.derivatives(settings);
+    for (std::size_t i = 0; i < settings.size(); ++i)
+      expect_alike(settings[i], found[i], rate, 0.1);
+  }
+}
+
+TEST_P(EffectColumnsOf, LackWhatTheStatesOfWindowsCouldMake) {
+  job_.options.horizon = 0.3;
+  for (Recording& r : job_.recordings) r.initial_state = InitialState::data;
+  const EffectColumns columns(job_, 0.0, {});
+  std::vector<EffectSetting> settings;
+  for (const Candidate& c : candidates_)
+    if (c.probes.empty()) settings.push_back({&c, c.neutral, c.settings.front()});
+  const std::vector<Eigen::MatrixXd> found = columns.derivatives(settings);
+  for (std::size_t i = 0; i < settings.size(); ++i) expect_alike(settings[i], found[i], 0.0, 0.1);
+}
+
+TEST_P(EffectColumnsOf, TellWhatTheShapesDo) {
+  const EffectColumns columns(job_, 30.0, {});
+  std::vector<EffectSetting> settings;
+  for (const Candidate& c : candidates_)
+    if (c.probes.empty() && !c.shapes.empty() && c.shapes_are_free)
+      settings.push_back({&c, std::vector<double>(c.strengths.size(), 1e-3),
+                          c.settings[1 % c.settings.size()], true});
+  ASSERT_GT(settings.size(), 3u);
+  const std::vector<Eigen::MatrixXd> found = columns.derivatives(settings);
+  for (std::size_t i = 0; i < settings.size(); ++i) expect_alike(settings[i], found[i], 30.0, 0.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryAxis, EffectColumnsOf,
+                         testing::Values("slide", "sticking slide", "motor"), [](const auto& one) {
+                           std::string name = one.param;
+                           std::ranges::replace(name, ' ', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace axisfit

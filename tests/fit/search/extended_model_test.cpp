@@ -1,0 +1,61 @@
+#include "fit/search/extended_model.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/model.h"
+#include "tests/fit/search/selection.h"
+
+namespace axisfit {
+namespace {
+
+class ShapeAtBoundTest : public testing::Test {
+ protected:
+  ShapeAtBoundTest() {
+    for (const char* name : {"B_a", "dahl_friction.F_d", "dahl_friction.l_d"}) {
+      job_.free.push_back(free_parameter(name, 1.0));
+      fit_.parameters.emplace_back().name = name;
+    }
+    candidate_.strengths = {find_quantity("dahl_friction.F_d")->index};
+    candidate_.shapes = {find_quantity("dahl_friction.l_d")->index};
+  }
+  std::string found() const { return shape_at_bound(job_, fit_, candidate_); }
+
+  Job job_;
+  FitResult fit_;
+  Candidate candidate_;
+};
+
+TEST_F(ShapeAtBoundTest, IsThatOfTheEffect) {
+  EXPECT_EQ(found(), "");
+  fit_.parameters[0].uncertainty.at_bound = true;  // of the axis
+  fit_.parameters[1].uncertainty.at_bound = true;  // a strength
+  EXPECT_EQ(found(), "");
+  fit_.parameters[2].uncertainty.at_bound = true;
+  EXPECT_EQ(found(), "dahl_friction.l_d");
+}
+
+TEST_F(ShapeAtBoundTest, IsNoneWhereShapesAreNotEstimated) {
+  fit_.parameters[2].uncertainty.at_bound = true;
+  candidate_.shapes_are_free = false;
+  EXPECT_EQ(found(), "");
+}
+
+TEST(Resume, GoesOnToTheMinimum) {
+  const HiddenEffect secret = hidden_effect_named("drive_lag");
+  ExtendedModel e;
+  e.job = two_recordings(secret.truth(), secret.truth(), {"M", "B_a", "drive_lag.T_l"});
+  const FitResult whole = refit(e.job, {}, 100);
+  ASSERT_EQ(whole.status, Status::converged);
+  e.fit = refit(e.job, {}, 1);
+  ASSERT_EQ(e.fit.verdict.kind, FitVerdict::Kind::no_minimum);
+  resume(e);
+  EXPECT_EQ(e.fit.status, Status::converged);
+  EXPECT_NEAR(e.fit.reduced_chi_square, whole.reduced_chi_square, 1e-5);
+  for (std::size_t i = 0; i < e.job.free.size(); ++i)
+    EXPECT_NEAR(e.fit.parameters[i].value, whole.parameters[i].value,
+                0.05 * whole.parameters[i].uncertainty.standard_error);
+  EXPECT_EQ(e.residuals.size(), residual_series(e.job, e.fit).size());
+}
+
+}  // namespace
+}  // namespace axisfit

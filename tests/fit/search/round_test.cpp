@@ -1,0 +1,100 @@
+#include "fit/search/round.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "fit/estimate/estimate.h"
+#include "tests/fit/search/selection.h"
+
+namespace axisfit {
+namespace {
+
+SelectionStep declared_model(const Job& job) { return {"", job, estimate(job)}; }
+
+void expect_same(const RoundResult& a, const RoundResult& b) {
+  EXPECT_EQ(a.best, b.best);
+  EXPECT_EQ(a.tried, b.tried);
+  ASSERT_EQ(a.models.size(), b.models.size());
+  for (std::size_t i = 0; i < a.models.size(); ++i) {
+    EXPECT_EQ(a.models[i].candidate.name, b.models[i].candidate.name);
+    EXPECT_EQ(values_of(a.models[i].fit), values_of(b.models[i].fit));
+    EXPECT_EQ(a.models[i].gain.p_value, b.models[i].gain.p_value);
+  }
+}
+
+class RoundOfAModel : public testing::Test {
+ protected:
+  RoundResult round(const RoundOptions& options, RoundMemory& memory) {
+    phases_.clear();
+    const RunContext context{nullptr, nullptr, [&](const Progress& p) { phases_.insert(p.phase); }};
+    return try_round(model_, options, memory, context);
+  }
+  bool has_scored() const { return phases_.contains("scoring effects"); }
+
+  SelectionStep model_ = declared_model(hidden_effect_named("coulomb_friction").job());
+  std::set<std::string> phases_;
+};
+
+TEST_F(RoundOfAModel, IsTheSameFromMemory) {
+  RoundMemory memory;
+  const RoundResult first = round({}, memory);
+  EXPECT_TRUE(has_scored());
+  ASSERT_TRUE(first.best);
+  EXPECT_EQ(first.models[*first.best].candidate.name, "coulomb_friction");
+  const RoundResult again = round({}, memory);
+  EXPECT_FALSE(has_scored());
+  expect_same(first, again);
+}
+
+TEST_F(RoundOfAModel, ComputesWhatAnotherDidNotNeed) {
+  RoundMemory memory;
+  const RoundResult all = round({}, memory);
+  RoundOptions options;
+  options.excluded = {all.models[*all.best].candidate};
+  const RoundResult rest = round(options, memory);
+  EXPECT_FALSE(has_scored());
+  RoundMemory none;
+  expect_same(rest, round(options, none));
+  EXPECT_TRUE(has_scored());
+}
+
+// A disturbance that no effect of the catalogue makes: some promise a part of what the test asks.
+TEST(RoundTest, RefitsNothingThatIsHopeless) {
+  Job job = two_recordings(slide(), slide(), {"M", "B_a"});
+  for (Recording& r : job.recordings)
+    for (Measurement& m : r.measurements) {
+      std::vector<double> values(m.values);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] += 3.0 * m.sigma * std::sin(20.0 * r.times[i] * r.times[i]);
+      m.values = values;
+    }
+  RoundMemory memory;
+  const SelectionStep model = declared_model(job);
+  const RoundResult found = try_round(model, {}, memory, {});
+  EXPECT_FALSE(found.best);
+  ASSERT_TRUE(memory.list);
+  const double samples = samples_of(residual_series(model.job, model.fit));
+  std::size_t hopeless = 0;
+  for (std::size_t i = 0; i < memory.refits.size(); ++i) {
+    const ShortlistEntry& entry = memory.list->entries[i];
+    const double least = least_gain(entry.candidate, samples, found.tried);
+    const bool may_pass = entry.promise >= 0.4 * least || entry.gain >= 10.0 * least;
+    EXPECT_EQ(memory.refits[i].has_value(), may_pass) << entry.candidate.name;
+    hopeless += may_pass ? 0 : 1;
+  }
+  EXPECT_GT(hopeless, 0u);
+}
+
+TEST_F(RoundOfAModel, RemembersNothingOfAnotherModel) {
+  RoundMemory memory;
+  round({}, memory);
+  model_.fit.parameters.front().value *= 1.0 + 1e-12;
+  round({}, memory);
+  EXPECT_TRUE(has_scored());
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,77 @@
+#include "fit/search/shortlist.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "fit/search/extended_model.h"
+#include "tests/fit/example.h"
+
+namespace axisfit {
+namespace {
+
+std::set<std::string> names_in(const Shortlist& list, bool with_second = true) {
+  std::set<std::string> names;
+  for (const ShortlistEntry& entry : list.entries)
+    if (with_second || !entry.is_second) names.insert(entry.candidate.name);
+  return names;
+}
+
+Job with_friction(double level) {
+  Model<double> truth = slide();
+  add_effect<CoulombFriction>(truth).F_c = level;
+  return two_recordings(truth, slide(), {"M", "B_a"});
+}
+
+const std::vector<double> kValues{20.0, 30.0};
+
+TEST(Shortlist, HasTheBestOfEachGainAndNothingThatIsChance) {
+  const Job job = with_friction(0.5);
+  const auto gains = score_gains(job);
+  const Shortlist list = shortlist(job, kValues, gains, false, 6);
+  const std::set<std::string> names = names_in(list);
+  EXPECT_TRUE(names.contains("coulomb_friction"));
+  for (const ShortlistEntry& entry : list.entries) EXPECT_GE(entry.score.gain, 6.0);
+}
+
+// Stribeck and Dahl friction have Coulomb friction as a limit, and a parameter more.
+TEST(Shortlist, HasWhatASimplerEffectGainsAsWellAsSecond) {
+  const Job job = with_friction(3.0);
+  const Shortlist list = shortlist(job, kValues, score_gains(job), false, 6);
+  const std::set<std::string> first = names_in(list, false);
+  EXPECT_TRUE(first.contains("coulomb_friction"));
+  EXPECT_TRUE(names_in(list).contains("dahl_friction"));
+  EXPECT_FALSE(first.contains("dahl_friction"));
+  EXPECT_FALSE(first.contains("stribeck_friction"));
+}
+
+// In a simulation that tracks, an effect that enters linearly gains what its score promises.
+TEST(Shortlist, PromisesWhatTheAcceptanceTestFinds) {
+  Job job = with_friction(3.0);
+  job.options.observer = ObserverMode::fixed;
+  job.options.observer_gain = 30.0;
+  const FitResult fit = estimate(job);
+  ASSERT_TRUE(fit.usable);
+  const Shortlist list = shortlist(job, values_of(fit), score_gains(job), false, 6);
+  const auto entry = std::ranges::find_if(
+      list.entries, [](const ShortlistEntry& e) { return e.candidate.name == "coulomb_friction"; });
+  ASSERT_NE(entry, list.entries.end());
+  const ExtendedModel refitted = fit_extended_model(
+      job, entry->candidate, entry->score.values, entry->score.strengths, entry->score.shapes, {});
+  const double found = improvement(residual_series(job, fit), refitted.residuals).fit_gain;
+  EXPECT_NEAR(entry->promise, found, 0.1 * found);
+}
+
+// Beyond the first three, and but for delays.
+TEST(Shortlist, LeavesOutWhatGainsLessThanHalfOfTheBest) {
+  const Job job = with_friction(3.0);
+  const Shortlist list = shortlist(job, kValues, {score_gains(job).front()}, false, 1000);
+  const double best = list.entries.front().gain;
+  for (std::size_t i = 3; i < list.entries.size(); ++i)
+    EXPECT_TRUE(list.entries[i].gain >= 0.5 * best || list.entries[i].candidate.is_timing)
+        << list.entries[i].candidate.name;
+}
+
+}  // namespace
+}  // namespace axisfit
