@@ -4,6 +4,7 @@
 #include <xxhash.h>
 
 #include <memory>
+#include <string>
 #include <type_traits>
 
 namespace axisfit {
@@ -56,32 +57,105 @@ class Hash {
   std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
 };
 
-void add_model(Hash& hash, const Model<double>& model) {
-  hash << model.structure.drive << model.structure.transmission << model.structure.joint
-       << model.structure.closed_loop;
-  visit_timing(model.controller.timing, [&](const Quantity&, double value) { hash << value; });
-  for (std::size_t i = 0; i < model.structure.effects.size(); ++i)
-    hash << model.structure.effects[i];
+// Structures are taken apart whole, member by member: a new one does not compile until somebody
+// decides whether a solution depends on it.
+
+Hash& operator<<(Hash& hash, const Channel& channel) {
+  const auto& [name, unit, zero] = channel;
+  hash << name.size() << unit.size() << zero;
+  for (const std::string* text : {&name, &unit})
+    for (const char letter : *text) hash << letter;
+  return hash;
+}
+
+Hash& operator<<(Hash& hash, const Structure& structure) {
+  const auto& [drive, transmission, effects, joint, closed_loop, channels, gearing] = structure;
+  hash << drive << transmission << joint << closed_loop << gearing;
+  for (std::size_t i = 0; i < effects.size(); ++i) hash << effects[i];
+  hash << (channels == nullptr ? std::size_t{0} : channels->size());
+  for (std::size_t i = 0; channels != nullptr && i < channels->size(); ++i) hash << (*channels)[i];
+  return hash;
+}
+
+Hash& operator<<(Hash& hash, const ControllerTiming& timing) {
+  const auto& [period, track_period, counts_per_revolution, velocity_samples] = timing;
+  return hash << period << track_period << counts_per_revolution << velocity_samples;
+}
+
+Hash& operator<<(Hash& hash, const Model<double>& model) {
+  // All others consist of quantities, which are visited below.
+  const auto& [structure, axis, effects, instruments, controller, initial] = model;
+  hash << structure << controller.timing;
   visit_quantities(model, [&](std::string_view, const Quantity&, double value) { hash << value; });
+  return hash;
 }
 
-void add_recording(Hash& hash, const Recording& r) {
-  hash << r.role;
-  if (r.role != Role::fit) return;
-  hash << r.times << r.command.times << r.command.values << r.command.hold << r.command.meaning
-       << r.held_out << r.overrides.size();
-  for (const auto& [quantity, value] : r.overrides) hash << quantity << value;
-  hash << r.measurements.size();
-  for (const Measurement& m : r.measurements)
-    hash << m.signal << m.values << m.sigma << m.fitted << m.excluded << m.filter.kind
-         << m.filter.length << m.filter.order << m.filter.cutoff << m.filter.zero_phase
-         << m.uninformative;
+Hash& operator<<(Hash& hash, const Schedule& schedule) {
+  const auto& [times, values, hold, meaning] = schedule;
+  return hash << times << values << hold << meaning;
 }
 
-void add_parameter(Hash& hash, const FreeParameter& p) {
-  hash << p.quantity << p.recording.has_value() << p.recording.value_or(0) << p.initial << p.lower
-       << p.upper << p.logarithmic << p.prior.has_value();
-  if (p.prior) hash << p.prior->mean << p.prior->sigma;
+Hash& operator<<(Hash& hash, const Filter& filter) {
+  const auto& [kind, length, order, cutoff, zero_phase] = filter;
+  return hash << kind << length << order << cutoff << zero_phase;
+}
+
+Hash& operator<<(Hash& hash, const Measurement& measurement) {
+  // Where sigma comes from, and how the samples came to be uninformative, does not matter.
+  const auto& [signal, values, sigma, noise, fitted, excluded, filter, hold, uninformative,
+               missing] = measurement;
+  return hash << signal << values << sigma << fitted << excluded << filter << uninformative;
+}
+
+Hash& operator<<(Hash& hash, const Recording& recording) {
+  // Not hashed: what it is called; the noise of the command, which only widens errors; how errors
+  // are reported; and the standstill, which is in the excluded samples.
+  const auto& [name, file, role, times, command, command_sigma, command_noise, measurements,
+               channels, initial_state, initial_samples, score_initial_samples,
+               acceleration_at_standstill, held_out, overrides] = recording;
+  hash << role;
+  if (role != Role::fit) return hash;
+  hash << times << command << initial_state << initial_samples << held_out << measurements.size();
+  for (const Measurement& m : measurements) hash << m;
+  hash << channels.size();
+  for (const Samples& values : channels) hash << values;
+  hash << overrides.size();
+  for (const auto& [quantity, value] : overrides) hash << quantity << value;
+  return hash;
+}
+
+Hash& operator<<(Hash& hash, const FreeParameter& parameter) {
+  const auto& [quantity, recording, initial, lower, upper, logarithmic, prior] = parameter;
+  hash << quantity << recording.has_value() << recording.value_or(0) << initial << lower << upper
+       << logarithmic << prior.has_value();
+  if (!prior) return hash;
+  const auto& [mean, sigma] = *prior;
+  return hash << mean << sigma;
+}
+
+Hash& operator<<(Hash& hash, const FitOptions& options) {
+  // How the fit goes about it is in the start and the options of each problem.
+  const auto& [observer, observer_gain, horizon, choose_horizon, loss, huber_width, max_iterations,
+               tolerance, attempts, starts, spread, seed, threads, step, input_noise_draws] =
+      options;
+  return hash << horizon << loss << huber_width << step;
+}
+
+Hash& operator<<(Hash& hash, const SolveOptions& options) {
+  const auto& [max_iterations, function_tolerance, parameter_tolerance,
+               penalize_distance_from_start, fixed, stop] = options;
+  return hash << max_iterations << function_tolerance << parameter_tolerance
+              << penalize_distance_from_start << fixed;
+}
+
+Hash& operator<<(Hash& hash, const Job& job) {
+  // Names, limits of experiments and which values are guesses say nothing of the problem.
+  const auto& [axis, model, limits, recordings, free, guessed, options] = job;
+  hash << model << recordings.size();
+  for (const Recording& r : recordings) hash << r;
+  hash << free.size();
+  for (const FreeParameter& p : free) hash << p;
+  return hash << options;
 }
 
 }  // namespace
@@ -89,14 +163,7 @@ void add_parameter(Hash& hash, const FreeParameter& p) {
 ProblemKey problem_key(const Job& job, const Eigen::VectorXd& u, double observer_gain,
                        const SolveOptions& options) {
   Hash hash;
-  add_model(hash, job.model);
-  hash << job.recordings.size();
-  for (const Recording& r : job.recordings) add_recording(hash, r);
-  hash << job.free.size();
-  for (const FreeParameter& p : job.free) add_parameter(hash, p);
-  hash << job.options.loss << job.options.huber_width << job.options.step << job.options.horizon;
-  hash << u << observer_gain << options.max_iterations << options.function_tolerance
-       << options.parameter_tolerance << options.penalize_distance_from_start << options.fixed;
+  hash << job << u << observer_gain << options;
   return hash.key();
 }
 

@@ -121,10 +121,18 @@ TEST(JournalTest, TheKeyDependsOnAllThatTheSolutionFollowsFrom) {
     SolveOptions options{};
     ProblemKey key() const { return problem_key(job, u, rate, options); }
   };
+  static const ChannelList kTemperature{{"temperature", "degC", 20.0}},
+      kOtherZero{{"temperature", "degC", 21.0}};
   const Job good = job();
   std::vector<std::function<void(Problem&)>> changes{
       [](Problem& p) { p.job.model.structure.drive = Drive::velocity_loop; },
       [](Problem& p) { p.job.model.structure.transmission = Transmission::backlash; },
+      [](Problem& p) { p.job.model.structure.joint = Joint::revolute; },
+      [](Problem& p) { p.job.model.structure.gearing = Gearing::turns; },
+      [](Problem& p) { p.job.model.structure.closed_loop = true; },
+      [](Problem& p) { p.job.model.structure.channels = kept(kTemperature); },
+      [](Problem& p) { p.job.model.structure.channels = kept(kOtherZero); },
+      [](Problem& p) { p.job.model.controller.timing.period = 4e-3; },
       [](Problem& p) { p.job.recordings[0].times.edit()[7] += 1e-9; },
       [](Problem& p) { p.job.recordings[0].command.times.edit()[1] += 1e-9; },
       [](Problem& p) { p.job.recordings[0].command.values.edit()[1] += 1e-9; },
@@ -136,6 +144,20 @@ TEST(JournalTest, TheKeyDependsOnAllThatTheSolutionFollowsFrom) {
       [](Problem& p) { p.job.recordings[0].measurements[0].excluded.resize(300); },
       [](Problem& p) { p.job.recordings[0].held_out.resize(300); },
       [](Problem& p) { p.job.recordings[0].held_out.resize(301); },
+      [](Problem& p) { p.job.recordings[0].command.hold = Hold::linear; },
+      [](Problem& p) {
+        p.job.recordings[0].measurements[0].filter.kind = Filter::Kind::butterworth;
+      },
+      [](Problem& p) { p.job.recordings[0].initial_state = InitialState::data; },
+      [](Problem& p) {
+        p.job.recordings[0].channels = {Samples{1.0, 2.0}};
+      },
+      [](Problem& p) {
+        p.job.recordings[0].channels = {Samples{1.0, 2.5}};
+      },
+      [](Problem& p) {
+        p.job.recordings[0].channels = {Samples{1.0, 2.0}, Samples{0.0, 0.0}};
+      },
       [](Problem& p) { p.job.recordings[0].overrides.emplace_back(3, 1.0); },
       [](Problem& p) { p.job.recordings[0].overrides.emplace_back(4, 1.0); },
       [](Problem& p) { p.job.recordings[0].role = Role::validate; },
@@ -157,6 +179,7 @@ TEST(JournalTest, TheKeyDependsOnAllThatTheSolutionFollowsFrom) {
       [](Problem& p) { p.job.options.loss = Loss::huber; },
       [](Problem& p) { p.job.options.huber_width = 4.0; },
       [](Problem& p) { p.job.options.step = 1e-3; },
+      [](Problem& p) { p.job.options.horizon = 0.5; },
       [](Problem& p) { p.u[1] = std::nextafter(2.0, 3.0); },
       [](Problem& p) { p.rate = 0.0; },
       [](Problem& p) { p.options.max_iterations = 7; },
@@ -181,6 +204,7 @@ TEST(JournalTest, TheKeyDependsOnAllThatTheSolutionFollowsFrom) {
   same.job.options.threads = 7;
   same.job.options.starts = 5;
   same.job.recordings[0].name = "another";
+  same.job.recordings[0].file = "another.csv";
   EXPECT_FALSE(keys.insert(same.key()).second);
 }
 
