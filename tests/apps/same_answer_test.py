@@ -8,8 +8,6 @@
 """
 
 import atexit
-import json
-import math
 import os
 import pathlib
 import re
@@ -18,7 +16,8 @@ import subprocess
 import sys
 import tempfile
 
-TOLERANCE = 1e-9
+from answers import differences, numbers
+
 BIN, *OTHERS = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
 CONFIGS = pathlib.Path(__file__).resolve().parents[2] / "configs"
 
@@ -84,33 +83,6 @@ def shipped_answers(programs):
         run(texts, ".", {}, programs / "simulate-axis", str(CONFIGS / "axes/x.yaml"), str(motion),
             "--exact")  # fmt: skip
     return texts
-
-
-def differences(one, other, where=""):
-    """Where two pieces of JSON differ, numbers by more than the tolerance."""
-    if isinstance(one, dict) and isinstance(other, dict) and one.keys() == other.keys():
-        return [d for key in one for d in differences(one[key], other[key], f"{where}/{key}")]
-    if isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
-        pairs = enumerate(zip(one, other))
-        return [d for i, (a, b) in pairs for d in differences(a, b, f"{where}/{i}")]
-    if type(one) is float and type(other) is float:
-        return [] if math.isclose(one, other, rel_tol=TOLERANCE) else [f"{where}: {one} {other}"]
-    return [] if one == other else [f"{where}: {one} {other}"]
-
-
-def numbers(name, text):
-    """The numbers of a text as JSON, or nothing where they are rounded."""
-    if name.endswith("--exact"):
-        return [[float(field) for field in line.split(",")] for line in text.splitlines()[1:]]
-    if not name.endswith(("--json", ".json")):
-        return None
-    result = json.loads(text)
-    for other in ("message", "axisfit", "wall_time_s"):
-        del result[other]
-    # A rejected effect may have no minimum, and where its parameters stop is chance.
-    result["effects"] = [e for e in result.get("effects", []) if e["decision"] != "rejected"]
-    return result
-
 
 
 def german():
