@@ -15,6 +15,7 @@
 #include "fit/design/forecast.h"
 #include "fit/estimate/estimate.h"
 #include "init/job_text.h"
+#include "io/config/diagnostics.h"
 #include "io/config/job_file.h"
 #include "io/config/yaml_text.h"
 

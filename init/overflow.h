@@ -9,7 +9,7 @@
 
 namespace axisfit {
 
-/// As the keys of a column (io/recording/recording_file.h); zero: it does not.
+/// As the keys of a column (io/config/recording_column.h); zero: it does not.
 struct Overflow {
   int signed_bits = 0;
   double wraps_after = 0.0;  ///< in the unit of the stored values

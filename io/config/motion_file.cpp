@@ -10,8 +10,8 @@
 
 #include "base/units.h"
 #include "io/config/config.h"
+#include "io/config/recording_column.h"
 #include "io/recording/csv.h"
-#include "io/recording/recording_file.h"
 #include "sim/controller.h"
 
 namespace axisfit {

@@ -7,6 +7,7 @@
 
 #include "fit/data/noise.h"
 #include "io/config/axis_file.h"
+#include "io/config/recording_column.h"
 #include "io/config/recording_keys.h"
 #include "sim/controller.h"
 

@@ -7,7 +7,7 @@
 #include "base/units.h"
 #include "io/config/axis_file.h"
 #include "io/config/channels.h"
-#include "io/recording/recording_file.h"
+#include "io/config/recording_column.h"
 
 namespace axisfit {
 namespace {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "io/config/recording_column.h"
 #include "io/config/recording_keys.h"
 
 namespace axisfit {
