@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "base/parallel.h"
+#include "fit/data/validation.h"
 #include "fit/errors/gain_sensitivity.h"
 #include "fit/errors/guesses.h"
 #include "fit/errors/rival_shift.h"
@@ -222,6 +223,7 @@ void find_guess_influences(const Job& job, FitResult& fit) {
 }  // namespace
 
 RunResult run(Job job, const RunOptions& options, const RunContext& context) {
+  validate(job);
   const auto begin = std::chrono::steady_clock::now();
   RunResult result;
   result.baseline = std::move(job);

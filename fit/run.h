@@ -113,9 +113,10 @@ bool has_noise_from(const Job& job, NoiseSource source);
 const Experiment* next_experiment(const RunResult& result);
 
 /// Fits the job, analyses its residual and does what the options ask for: all that fit-params does
-/// between reading its files and writing its results. Throws std::runtime_error if the options name
-/// a parameter that is not free, and Interrupted if it is stopped before one start of the fit has
-/// finished; stopped later, it returns what is finished.
+/// between reading its files and writing its results. Throws std::invalid_argument if the job
+/// breaks a rule (validate()), std::runtime_error if the options name a parameter that is not free,
+/// and Interrupted if it is stopped before one start of the fit has finished; stopped later, it
+/// returns what is finished.
 RunResult run(Job job, const RunOptions& options = {}, const RunContext& context = {});
 
 /// Samples of a signal that do not count, since the arm rests (fit/data/standstill.h).

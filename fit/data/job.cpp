@@ -73,6 +73,13 @@ FreeParameter free_parameter(const QuantityEntry& entry, double initial) {
   return p;
 }
 
+bool is_ignored(const QuantityEntry& entry, ObserverMode observer) {
+  return observer == ObserverMode::fixed &&
+         (entry.signal == Signal::position || entry.signal == Signal::velocity) &&
+         (entry.quantity.symbol == "lag" || entry.quantity.symbol == "delay" ||
+          entry.quantity.symbol == "drift");
+}
+
 std::optional<Job> with_exchanged_roles(Job job) {
   const auto is_own = [](const FreeParameter& p) { return p.recording.has_value(); };
   bool any = false;

@@ -142,6 +142,10 @@ enum class ObserverMode {
   none,          ///< never: plain least squares on the free-running simulation
 };
 
+/// Whether an observer that lasts to the end takes this quantity to be zero: the lag or delay of a
+/// position or velocity. A simulation that tracks a late signal is late itself.
+bool is_ignored(const QuantityEntry& entry, ObserverMode observer);
+
 enum class Loss { squares, huber };
 
 struct FitOptions {

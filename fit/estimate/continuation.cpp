@@ -155,13 +155,6 @@ double final_observer_gain(const Job& job) {
   return job.options.observer == ObserverMode::fixed ? initial_observer_gain(job) : 0.0;
 }
 
-bool is_ignored(const QuantityEntry& entry, ObserverMode observer) {
-  return observer == ObserverMode::fixed &&
-         (entry.signal == Signal::position || entry.signal == Signal::velocity) &&
-         (entry.quantity.symbol == "lag" || entry.quantity.symbol == "delay" ||
-          entry.quantity.symbol == "drift");
-}
-
 ContinuationResult run_continuation(const Job& job, const ParameterSpace& space,
                                     const Eigen::VectorXd& start,
                                     const std::function<void(const Stage&)>& progress,

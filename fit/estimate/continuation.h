@@ -27,10 +27,6 @@ double initial_observer_gain(const Job& job);
 /// The observer gain at which the fit ends: zero unless the job fixes it.
 double final_observer_gain(const Job& job);
 
-/// Whether an observer that lasts to the end takes this quantity to be zero: the lag or delay of a
-/// position or velocity. A simulation that tracks a late signal is late itself.
-bool is_ignored(const QuantityEntry& entry, ObserverMode observer);
-
 /// Fits from u, through all stages of job.options.observer. `progress` is called after every stage.
 ContinuationResult run_continuation(const Job& job, const ParameterSpace& space,
                                     const Eigen::VectorXd& u,

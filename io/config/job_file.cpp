@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
-#include <set>
 #include <tuple>
 
+#include "fit/data/validation.h"
 #include "io/config/axis_file.h"
 #include "io/config/channels.h"
 #include "io/config/job_parameters.h"
@@ -123,8 +122,8 @@ class JobReader {
       if (model && recordings) read_recordings(*recordings);
       set_channel_zeros(declared, result_.job);
       structure.channels = result_.job.model.structure.channels;
-      if (model && free) read_free(*free, result_.job);
-      if (free && diagnostics_.empty()) check_degrees_of_freedom(*free);
+      if (model && free) read_free(*free, diagnostics_, result_.job);
+      if (model) say_faults(*root);
       map.finish();
     }
     diagnostics_.throw_if_any();
@@ -221,7 +220,6 @@ class JobReader {
   }
 
   void read_horizon(const ConfigNode& node, FitOptions& options) {
-    horizon_ = node;
     options.choose_horizon = node.text() == kAuto;
     if (options.choose_horizon || node.text() == kWhole) return;
     const std::string text = node.text();
@@ -234,25 +232,6 @@ class JobReader {
       node.error(
           "with a fixed observer nothing runs free: remove 'horizon', or let it be chosen with "
           "'horizon: auto'");
-  }
-
-  /// Windows need to be begun by a recorded motion, and an axis that can leave it.
-  void check_horizon() const {
-    const FitOptions& options = result_.job.options;
-    if (!horizon_ || !(options.choose_horizon || options.horizon > 0.0)) return;
-    for (const Recording& r : result_.job.recordings) {
-      if (r.role != Role::fit) continue;
-      if (r.command.meaning == Meaning::reference)
-        horizon_->error(
-            fmt::format("the axis is under its controller in '{}', which brings it back by itself: "
-                        "remove 'horizon', or give the recorded command as input",
-                        r.name));
-      else if (r.find(Signal::position) == nullptr && r.find(Signal::velocity) == nullptr)
-        horizon_->error(fmt::format(
-            "'{}' has neither position nor velocity, from which a window could begin: remove "
-            "'horizon'",
-            r.name));
-    }
   }
 
   void read_limits(const ConfigNode& node) {
@@ -276,85 +255,84 @@ class JobReader {
   void read_recordings(const ConfigNode& node) {
     const auto entries = node.as_sequence();
     if (!entries) return;
-    bool any_fit = false;
-    std::set<std::string> names;
     for (const ConfigNode& entry : *entries) {
-      result_.job.recordings.push_back(
-          read_recording(entry, result_.rig, result_.job.options.observer, sources_));
+      const std::size_t mistakes = diagnostics_.count();
+      result_.job.recordings.push_back(read_recording(entry, result_.rig, sources_));
+      entries_.push_back(diagnostics_.count() == mistakes ? std::optional(entry) : std::nullopt);
       const Recording& recording = result_.job.recordings.back();
       if (!sources_.tables.contains(recording.file))
         result_.files.push_back(resolved(entry, recording.file, sources_.folder));
-      any_fit = any_fit || recording.role == Role::fit;
-      check_length(entry, recording);
     }
     result_.rig.model.structure.closed_loop = result_.job.model.structure.closed_loop =
         std::ranges::any_of(result_.job.recordings, [](const Recording& r) {
           return r.command.meaning == Meaning::reference;
         });
-    for (const Recording& recording : result_.job.recordings)
-      if (!names.insert(recording.name).second)
-        node.error(fmt::format("two recordings are called '{}': give them different names",
-                               recording.name));
-    if (diagnostics_.empty()) check_repeats(*entries);
-    if (!any_fit && diagnostics_.empty())
-      node.error("no recording has the role fit: at least one must");
-    check_horizon();
   }
 
-  void check_repeats(const std::vector<ConfigNode>& entries) const {
-    const std::vector<Recording>& recordings = result_.job.recordings;
-    for (std::size_t b = 1; b < recordings.size(); ++b)
-      for (std::size_t a = 0; a < b; ++a)
-        if (share_samples(recordings[a], recordings[b])) {
-          entries[b].error(
-              fmt::format("'{}' has the same samples as '{}', and a recording counts once: remove "
-                          "one of them, or trim them to different parts",
-                          recordings[b].name, recordings[a].name));
-          break;
-        }
+  /// The rules that the job breaks as a whole, each at its place in the file. What was read with a
+  /// mistake is not judged.
+  void say_faults(const ConfigNode& root) const {
+    for (const JobFault& fault : faults(result_.job)) {
+      if (fault.rule == JobFault::Rule::second_free) continue;  // a duplicate key, which was said
+      if (fault.recording ? entries_[*fault.recording].has_value()
+                          : fault.parameter || diagnostics_.empty())
+        place_of(fault, root).error(fault.message);
+    }
   }
 
-  /// Whether there is more to fit to than parameters.
-  void check_degrees_of_freedom(const ConfigNode& node) const {
-    std::size_t values = 0, parameters = result_.job.free.size();
-    for (const Recording& r : result_.job.recordings)
-      for (const Measurement& m : r.measurements)
-        for (std::size_t i = 0; i < m.values.size(); ++i) values += r.fits(m, i);
-    for (const FreeParameter& p : result_.job.free) values += p.prior.has_value();
-    if (values <= parameters)
-      node.error(
-          fmt::format("{} values, priors included, cannot determine {} parameters: free fewer "
-                      "parameters or fit more samples",
-                      values, parameters));
+  ConfigNode place_of(const JobFault& fault, const ConfigNode& root) const {
+    using Rule = JobFault::Rule;
+    const Job& job = result_.job;
+    if (fault.parameter) {
+      const std::string& name = job.entry(job.free[*fault.parameter].quantity).name;
+      const ConfigNode free = below(root, {"free", name});
+      return fault.rule == Rule::sigma ? below(free, {"prior", "sigma"}) : free;
+    }
+    if (!fault.recording)
+      return below(root, {fault.rule == Rule::fitted_recording ? "recordings"
+                          : fault.rule == Rule::model          ? "axis"
+                                                               : "free"});
+    const ConfigNode& entry = *entries_[*fault.recording];
+    if (fault.measurement) {
+      const Recording& r = job.recordings[*fault.recording];
+      const Signal signal = r.measurements[*fault.measurement].signal;
+      const ConfigNode at = below(entry, {"signals", info(signal, job.vocabulary()).name});
+      return fault.rule == Rule::sigma ? below(at, {"sigma"}) : at;
+    }
+    switch (fault.rule) {
+      case Rule::name:
+        return below(root, {"recordings"});
+      case Rule::horizon:
+        return below(root, {"fit", "horizon"});
+      case Rule::model:
+        return below(entry, {"set"});
+      case Rule::unscored:
+        return below(entry, {"initial_samples"});
+      case Rule::gap:
+      case Rule::duration:
+      case Rule::same_samples:
+        return entry;
+      default:
+        return below(entry, {"signals"});
+    }
   }
 
-  /// What takes so many steps is a mistake in the times, or would be fitted for days.
-  void check_length(const ConfigNode& node, const Recording& recording) const {
-    constexpr double kStepsBetweenSamples = 1e6, kSteps = 1e8;
-    const std::vector<double>& times = recording.times;
-    const double step = result_.job.options.step;
-    if (times.size() < 2) return;
-    std::size_t longest = 1;
-    for (std::size_t i = 2; i < times.size(); ++i)
-      if (times[i] - times[i - 1] > times[longest] - times[longest - 1]) longest = i;
-    const double gap = times[longest] - times[longest - 1], all = times.back() - times.front();
-    if (gap > kStepsBetweenSamples * step)
-      node.error(
-          fmt::format("'{}' has a gap of {:.6g} s at {:.9g} s: trim the recording before or after "
-                      "it, or check the unit of time",
-                      recording.name, gap, times[longest - 1]));
-    else if (all > kSteps * step)
-      node.error(
-          fmt::format("'{}' lasts {:.6g} s: too long to simulate in steps of {:g} s; trim it, set "
-                      "a longer step under fit, or check the unit of time",
-                      recording.name, all, step));
+  /// The value at the end of these keys, as far as they are given.
+  static ConfigNode below(ConfigNode node, std::initializer_list<std::string_view> keys) {
+    for (const std::string_view key : keys) {
+      const auto given = node.is_map() ? ConfigMap(node).optional(key) : std::nullopt;
+      if (!given) break;
+      node = *given;
+    }
+    return node;
   }
 
   std::string path_;
   RecordingSources sources_;
   Files drafts_;  ///< paths and contents
   Diagnostics diagnostics_;
-  std::optional<ConfigNode> horizon_;
+  /// Of the recordings, without those that cannot be judged for their mistakes.
+  std::vector<std::optional<ConfigNode>> entries_;
   JobFile result_;
 };
 

@@ -7,7 +7,6 @@
 #include "base/units.h"
 #include "io/config/axis_file.h"
 #include "io/config/channels.h"
-#include "io/config/job_recording.h"
 #include "io/config/recording_keys.h"
 
 namespace axisfit {
@@ -79,9 +78,6 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
       entry.group.empty() && quantity.default_value != 0.0 && quantity.lower >= 0.0;
   parameter.logarithmic =
       scale ? *scale == 0 : (bounds ? bounds->first > 0.0 : positive && parameter.initial > 0.0);
-  for (const Recording& r : job.recordings)
-    if (const auto reason = ignored_by_observer(entry, job.options.observer, r); !reason.empty())
-      return node.error(reason);
   const auto add = [&](double initial, std::optional<std::size_t> recording) {
     FreeParameter p = parameter;
     p.initial = initial;
@@ -92,26 +88,6 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
       p.lower = std::max(p.lower, initial / 100.0);
       p.upper = std::min(p.upper, initial * 100.0);
     }
-    if (p.logarithmic && !(p.lower > 0.0 && p.initial > 0.0))
-      node.error(
-          fmt::format("{} on a logarithmic scale needs an initial value and a lower bound "
-                      "above zero",
-                      entry.name));
-    else if (p.initial < p.lower || p.initial > p.upper)
-      node.error(fmt::format("the initial value {} of {} lies outside its bounds, {} to {}",
-                             rounded(p.initial, quantity.unit), entry.name,
-                             rounded(p.lower, quantity.unit), rounded(p.upper, quantity.unit)));
-    for (const Recording& r : job.recordings)
-      for (const auto& [index, value] : r.overrides)
-        if (!p.recording && index == p.quantity && entry.group != "initial")
-          node.error(
-              entry.name == "K_f"
-                  ? fmt::format(
-                        "K_f cannot be fitted to '{}', which has no command: its {} acts as it is",
-                        r.name, words_on(job.vocabulary(), "drive_force"))
-                  : fmt::format("{} is fitted for all recordings but set for '{}': remove one, or "
-                                "use per_recording: true",
-                                entry.name, r.name));
     job.free.push_back(p);
   };
   if (!per_recording) {
@@ -149,14 +125,16 @@ Map free_quantities() {
       std::move(keys), 1, false, {}, {{std::string(kChannelQuantity), AnyOf{{amount, number}}}}};
 }
 
-void read_free(const ConfigNode& node, Job& job) {
+void read_free(const ConfigNode& node, const Diagnostics& diagnostics, Job& job) {
   ConfigMap map(node);
-  for (const auto& [key, value] : map.entries())
-    if (const QuantityEntry* entry = quantity_named(key, job.model.structure))
-      read_free_parameter(value, *entry, job);
+  for (const auto& [key, value] : map.entries()) {
+    const QuantityEntry* entry = quantity_named(key, job.model.structure);
+    if (entry == nullptr) continue;
+    const std::size_t free = job.free.size(), mistakes = diagnostics.count();
+    read_free_parameter(value, *entry, job);
+    if (diagnostics.count() > mistakes) job.free.resize(free);
+  }
   map.finish();
-  if (node.is_map() && map.entries().empty())
-    node.error("no free quantity: name at least one to fit");
 }
 
 }  // namespace axisfit

@@ -9,8 +9,8 @@ namespace axisfit {
 /// All quantities, each with the keys for a free one.
 Map free_quantities();
 
-/// Adds to the job, whose model and recordings are read already. With diagnostics where anything is
-/// wrong.
-void read_free(const ConfigNode& node, Job& job);
+/// Adds to the job, whose model and recordings are read already, what is free of mistakes; the
+/// others are in the diagnostics.
+void read_free(const ConfigNode& node, const Diagnostics& diagnostics, Job& job);
 
 }  // namespace axisfit

@@ -1,7 +1,6 @@
 #include "io/config/job_recording.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +10,7 @@
 #include "fit/data/initial_state.h"
 #include "fit/data/noise.h"
 #include "fit/data/standstill.h"
-#include "fit/estimate/continuation.h"
+#include "fit/data/validation.h"
 #include "io/config/axis_file.h"
 #include "io/config/channels.h"
 #include "io/config/recording_input.h"
@@ -24,8 +23,7 @@ namespace {
 
 class RecordingReader {
  public:
-  RecordingReader(const Rig& rig, ObserverMode observer, const RecordingSources& sources)
-      : rig_(rig), observer_(observer), series_(sources) {}
+  RecordingReader(const Rig& rig, const RecordingSources& sources) : rig_(rig), series_(sources) {}
 
   Recording read(const ConfigNode& node) {
     Recording recording;
@@ -39,7 +37,7 @@ class RecordingReader {
     map.read("name", recording.name);
     map.read("role", recording.role);
     map.read("initial_state", recording.initial_state);
-    const auto initial_samples = map.read("initial_samples", recording.initial_samples);
+    map.read("initial_samples", recording.initial_samples);
     map.read("acceleration_at_standstill", recording.acceleration_at_standstill);
     map.read("score_initial_samples", recording.score_initial_samples);
     if (const auto set = map.optional("set")) read_overrides(*set, recording);
@@ -54,11 +52,6 @@ class RecordingReader {
           fmt::format("'{}' lacks the channels of the axis, or of the other recordings: name "
                       "their columns under 'channels'",
                       recording.name));
-    if (!recording.score_initial_samples && recording.times.size() >= kLeastSamples &&
-        recording.initial_samples >= recording.times.size())
-      initial_samples.value_or(node).error(fmt::format(
-          "with {} unscored initial samples, nothing of the {} samples is left to score",
-          recording.initial_samples, recording.times.size()));
     map.finish();
     return recording;
   }
@@ -73,9 +66,6 @@ class RecordingReader {
         if (const auto given = read_value(value, entry->quantity))
           recording.overrides.emplace_back(entry->index, *given);
     map.finish();
-    Model<double> model = rig_.model;
-    for (const auto& [index, value] : recording.overrides) *members(model)[index] = value;
-    if (const std::string reason = model_error(model); !reason.empty()) node.error(reason);
   }
 
   using Values = std::vector<double>;
@@ -97,9 +87,8 @@ class RecordingReader {
     ConfigMap signals(signals_node, keys_below(recording_keys(), "signals"));
     auto input = read_input(signals_node, signals, rig_, series_, recording);
     std::vector<Measured> measured;
-    const std::size_t named =
-        read_measurements(signals, rig_.model.structure, trim, series_, measured);
-    const bool all_known = signals.finish();
+    read_measurements(signals, rig_.model.structure, trim, series_, measured);
+    signals.finish();
     std::vector<Schedule> channels;
     if (channels_node) channels = read_channels(*channels_node);
     const auto& recorded = series_.times();
@@ -133,7 +122,6 @@ class RecordingReader {
       recording.channels.emplace_back(std::move(values));
     }
     for (Measured& m : measured) recording.measurements.push_back(on_times(std::move(m), all));
-    if (all_known) check_samples(signals_node, named, recording);
     take_noise_from_standstill(signals_node, recording);
     if (recording.initial_state == InitialState::data) initial_state_from_data(recording);
     if (!recording.acceleration_at_standstill) exclude_acceleration_at_standstill(recording);
@@ -215,43 +203,6 @@ class RecordingReader {
       series.times[i] = start + static_cast<double>(i) * interval;
   }
 
-  /// Whether the recording has what its role and the options of the fit need.
-  void check_samples(const ConfigNode& signals_node, std::size_t named,
-                     const Recording& recording) const {
-    const bool can_track = recording.find(Signal::position) || recording.find(Signal::velocity);
-    if (named == 0) {
-      std::vector<std::string_view> names;
-      for (const SignalInfo& signal : kSignalTable)
-        names.push_back(info(signal.signal, vocabulary()).name);
-      signals_node.error(
-          fmt::format("no measured signal: name at least one of {}", fmt::join(names, ", ")));
-    } else if (recording.role == Role::fit && recording.measurements.size() == named &&
-               std::ranges::none_of(recording.measurements, &Measurement::fitted)) {
-      signals_node.error(
-          "nothing to fit: every signal has fit: false; remove it from one, or give the recording "
-          "the role validate");
-    }
-    if (observer_ == ObserverMode::fixed && !can_track)
-      signals_node.error("a fixed observer gain needs a recorded position or velocity");
-    Model<double> model = rig_.model;
-    const auto member = members(model);
-    for (const auto& [quantity, value] : recording.overrides) *member[quantity] = value;
-    for (const QuantityEntry& entry : quantity_list(vocabulary()))
-      if (const auto reason = ignored_by_observer(entry, observer_, recording);
-          !reason.empty() && *member[entry.index] != 0.0)
-        signals_node.error(reason);
-    for (const Signal target : {Signal::position, Signal::velocity})
-      if (const Measurement* m = recording.find(target);
-          m != nullptr && observer_ == ObserverMode::fixed && m->filter != Filter() &&
-          !m->filter.zero_phase)
-        signals_node.error(fmt::format(
-            "a fixed observer gain assumes that the recorded {} is not delayed, as this filter "
-            "does without zero_phase: record it unfiltered or use observer: continuation",
-            info(target).name));
-    if (recording.initial_state == InitialState::data && !can_track)
-      signals_node.error("initial_state: data needs a recorded position or velocity");
-  }
-
   void take_noise_from_standstill(const ConfigNode& signals_node, Recording& recording) const {
     for (Measurement& m : recording.measurements) {
       if (m.noise != NoiseSource::standstill) continue;
@@ -268,25 +219,13 @@ class RecordingReader {
   Vocabulary vocabulary() const { return vocabulary_of(rig_.model.structure); }
 
   const Rig& rig_;
-  const ObserverMode observer_;
   SeriesReader series_;
 };
 
 }  // namespace
 
-Recording read_recording(const ConfigNode& node, const Rig& rig, ObserverMode observer,
-                         const RecordingSources& sources) {
-  return RecordingReader(rig, observer, sources).read(node);
-}
-
-std::string ignored_by_observer(const QuantityEntry& entry, ObserverMode observer,
-                                const Recording& recording) {
-  if (!is_ignored(entry, observer) || !recording.find(*entry.signal)) return {};
-  return fmt::format(
-      "a fixed observer gain assumes that the recorded {} has no {}: remove {} and {}use observer: "
-      "continuation",
-      entry.group, entry.quantity.symbol, entry.name,
-      entry.quantity.symbol == "delay" ? "fit T_d, which delays the whole motion, or " : "");
+Recording read_recording(const ConfigNode& node, const Rig& rig, const RecordingSources& sources) {
+  return RecordingReader(rig, sources).read(node);
 }
 
 }  // namespace axisfit

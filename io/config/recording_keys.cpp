@@ -222,10 +222,7 @@ NumberWithUnit sigma_form(std::string_view unit) {
 }
 
 double read_sigma(const ConfigNode& node, std::string_view unit) {
-  const auto sigma = node.as_number_with_unit(sigma_form(unit));
-  if (sigma && *sigma < kMinSigma)
-    node.error("sigma must be above zero: residuals are divided by it");
-  return sigma.value_or(1.0);
+  return node.as_number_with_unit(sigma_form(unit)).value_or(1.0);
 }
 
 }  // namespace axisfit

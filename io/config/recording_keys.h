@@ -1,7 +1,6 @@
 // What a recording of a job file may have, as keys.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -9,10 +8,6 @@
 
 namespace axisfit {
 
-/// Of a recording.
-inline constexpr std::size_t kLeastSamples = 10;
-/// Of a noise, in any unit. Below this squares of residuals over it overflow.
-inline constexpr double kMinSigma = 1e-40;
 /// How often a value may be recorded.
 inline constexpr std::int64_t kMostHeld = 100000;
 /// V

@@ -7,6 +7,7 @@
 #include "base/units.h"
 #include "fit/data/noise.h"
 #include "fit/data/recording_check.h"
+#include "fit/data/validation.h"
 #include "io/config/recording_keys.h"
 #include "sim/sampling.h"
 
@@ -138,24 +139,17 @@ std::optional<Measured> read_measurement(const ConfigNode& node, const SignalInf
 
 }  // namespace
 
-std::size_t read_measurements(ConfigMap& signals, const Structure& structure, const Trim& trim,
-                              SeriesReader& series, std::vector<Measured>& measured) {
-  std::size_t named = 0;
+void read_measurements(ConfigMap& signals, const Structure& structure, const Trim& trim,
+                       SeriesReader& series, std::vector<Measured>& measured) {
   for (const SignalInfo& of_sliding : kSignalTable) {
     const SignalInfo signal = info(of_sliding.signal, vocabulary_of(structure));
     const bool is_input =
         signal.signal == Signal::drive_force && capabilities(structure).is_force_driven;
     const auto given = is_input ? std::nullopt : signals.optional(signal.name);
     if (!given) continue;
-    ++named;
-    if (!has_signal(signal.signal, structure)) {
-      given->error(fmt::format("the drive of this axis has no {}: remove it", signal.name));
-      continue;
-    }
     if (auto found = read_measurement(*given, signal, trim, series))
       measured.push_back(std::move(*found));
   }
-  return named;
 }
 
 Measurement on_times(Measured measured, const std::vector<double>& times) {

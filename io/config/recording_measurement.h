@@ -1,7 +1,6 @@
 // The measured signals of a recording.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -18,9 +17,9 @@ struct Measured {
   std::optional<ConfigNode> shaped;  ///< the filter or the hold
 };
 
-/// All signals of an axis but the input. Returns how many were named, rightly or wrongly.
-std::size_t read_measurements(ConfigMap& signals, const Structure& structure, const Trim& trim,
-                              SeriesReader& series, std::vector<Measured>& measured);
+/// All signals of an axis but the input.
+void read_measurements(ConfigMap& signals, const Structure& structure, const Trim& trim,
+                       SeriesReader& series, std::vector<Measured>& measured);
 
 /// The values at these times, s. Where there is none, no residual counts, and a curve through those
 /// that there are takes its place in all that goes by the values.

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "fit/data/validation.h"
 #include "io/config/recording_column.h"
-#include "io/config/recording_keys.h"
 
 namespace axisfit {
 

@@ -183,6 +183,12 @@ class Mistakes(unittest.TestCase):
         with self.assertRaises(RuntimeError):
             axisfit.fit(PAPER, profile="no_such")
 
+    def test_of_options_are_said_before_the_fit(self):
+        with self.assertRaisesRegex(ValueError, "^starts must be at least 1, not 0$"):
+            axisfit.fit(PAPER, starts=0)
+        with self.assertRaisesRegex(ValueError, "^threads must be at least 0, not -1$"):
+            axisfit.fit(PAPER, threads=-1)
+
     def test_of_files_are_said(self):
         with self.assertRaisesRegex(ValueError, "no-such.yaml"):
             axisfit.Job.from_file("no-such.yaml")

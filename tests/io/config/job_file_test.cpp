@@ -427,6 +427,13 @@ TEST_F(JobFileTest, AReferenceIsFollowedByTheController) {
                        .job;
   EXPECT_FALSE(open.model.structure.closed_loop);
   EXPECT_EQ(open.recordings.front().command.meaning, Meaning::command);
+
+  const std::string late =
+      "T_d must be below 9 periods of the controller's commands, whose loop is simulated";
+  EXPECT_EQ(errors(replaced(followed, "    time:", "    set: {T_d: 1 s}\n    time:")),
+            "job.yaml:4:10: " + late);
+  folder_.write("mass.yaml", replaced(kMass, "M: 4 kg", "M: 4 kg\n  T_d: 1 s"));
+  EXPECT_EQ(errors(followed), "job.yaml:1:7: " + late);
 }
 
 // A PWM acts on its supply.
