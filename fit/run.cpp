@@ -11,10 +11,12 @@
 
 #include "base/parallel.h"
 #include "fit/data/validation.h"
-#include "fit/errors/gain_sensitivity.h"
+#include "fit/errors/gain_error.h"
 #include "fit/errors/guesses.h"
-#include "fit/errors/rival_shift.h"
+#include "fit/errors/rival_error.h"
 #include "fit/estimate/kalman_gain.h"
+#include "fit/estimate/other_gains.h"
+#include "fit/search/rival_models.h"
 
 namespace axisfit {
 namespace {
@@ -173,6 +175,69 @@ std::vector<MissingForce> missing_forces(const Job& job, const FitResult& fit) {
   return forces;
 }
 
+FitGrade judge(const RunResult& result) {
+  FitGrade grade = grade_of(result.job(), result.fit(), result.diagnosis);
+  // Something is missing, though it cannot be told what.
+  if (grade.grade == Grade::explained && result.selection &&
+      (!result.selection->verdict.undecided.empty() ||
+       result.selection->verdict.kind == SelectionVerdict::Kind::none_passes))
+    grade = {.grade = Grade::usable, .reason = FitGrade::Reason::residual};
+  return grade;
+}
+
+void collect_gain_errors(const Job& job, FitResult& fit, const RunContext& context) {
+  const std::vector<FitResult> others = fits_at_other_gains(job, fit, context);
+  fit.better_gain = better_gain(job, fit, others);
+  std::vector<EstimatesAtGain> estimates;
+  for (const FitResult& other : others)
+    estimates.push_back({other.observer_gain, other.parameters});
+  const auto shifts = gain_errors(fit.parameters, estimates);
+  for (std::size_t i = 0; i < shifts.size(); ++i) fit.parameters[i].budget.gain = shifts[i];
+}
+
+std::optional<Scatter> collect_scatter(const Job& job, FitResult& fit) {
+  std::optional<Scatter> scatter = scatter_of(job, fit.parameters, fit.observer_gain);
+  if (scatter)
+    for (const ParameterScatter& p : scatter->parameters)
+      fit.parameters[p.parameter].budget.scatter = p.error;
+  return scatter;
+}
+
+void collect_rival_errors(EffectSelection& selection) {
+  auto& [added, job, fit] = selection.result;
+  const auto shifts = rival_errors(job, fit.parameters, rival_models(selection));
+  for (std::size_t i = 0; i < shifts.size(); ++i) fit.parameters[i].budget.rival = shifts[i];
+}
+
+/// Completes the error budgets of the final model, as far as it is worth it.
+void collect_errors(RunResult& result, FitResult& last, const RunContext& context) {
+  if (result.interrupted) return;
+  context.report({.phase = "does the observer gain matter?"});
+  try {
+    collect_gain_errors(result.job(), last, context);
+    if (!result.horizon) last.quiet_gain = tracking_gain(result.job(), last);
+  } catch (const Interrupted&) {
+    result.interrupted = true;
+    return;
+  }
+  if (!result.grade.is_usable()) return;
+  result.scatter = collect_scatter(result.job(), last);
+  if (result.selection) collect_rival_errors(*result.selection);
+}
+
+void combine_errors(const Job& job, FitResult& fit) {
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    ParameterResult& p = fit.parameters[i];
+    p.uncertainty = combined(p.budget, p.value, job.free[i]);
+  }
+}
+
+/// Of a wrong model no error means anything.
+void withdraw_errors(FitResult& fit) {
+  for (ParameterResult& p : fit.parameters)
+    p.uncertainty = {.of_wrong_model = true, .inflation = p.uncertainty.inflation};
+}
+
 /// The declared model and those of the loop, and the others. Of the last of them the result has
 /// what is not known.
 std::optional<Comparison> compare(const RunResult& result, const RunContext& context) {
@@ -184,7 +249,8 @@ std::optional<Comparison> compare(const RunResult& result, const RunContext& con
       ModelEntry& entry = models.emplace_back(ModelEntry{added, job, fit});
       entry.forces = result.scores[i].forces;
       if (!fit.usable) continue;
-      const std::optional<Scatter> scatter = allow_for_scatter(job, entry.fit);
+      const std::optional<Scatter> scatter = collect_scatter(job, entry.fit);
+      combine_errors(job, entry.fit);
       entry.uncertainty = axis_uncertainty(job, entry.fit, scatter, entry.forces);
     }
   models.push_back(
@@ -215,7 +281,8 @@ void take_final_estimates(EffectSelection& selection) {
 
 void find_guess_influences(const Job& job, FitResult& fit) {
   if (job.guessed.empty() || !fit.usable) return;
-  std::vector<std::vector<GuessInfluence>> found = guess_influences(job, fit);
+  std::vector<std::vector<GuessInfluence>> found =
+      guess_influences(job, fit.parameters, fit.observer_gain);
   for (std::size_t i = 0; i < fit.parameters.size(); ++i)
     fit.parameters[i].rests_on = std::move(found[i]);
 }
@@ -249,33 +316,16 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
       result.scores.push_back(
           {score_signals(model.job, model.fit), missing_forces(model.job, model.fit)});
   FitResult& last = result.selection ? result.selection->result.fit : result.first;
-  if (!result.interrupted) {
-    context.report({.phase = "does the observer gain matter?"});
-    try {
-      allow_for_observer_gain(result.job(), last, context);
-      if (!result.horizon) last.quiet_gain = tracking_gain(result.job(), last);
-    } catch (const Interrupted&) {
-      result.interrupted = true;
-    }
-  }
-  result.grade = grade_of(result.job(), last, result.diagnosis);
-  // Something is missing, though it cannot be told what.
-  if (result.grade.grade == Grade::explained && result.selection &&
-      (!result.selection->verdict.undecided.empty() ||
-       result.selection->verdict.kind == SelectionVerdict::Kind::none_passes))
-    result.grade = {.grade = Grade::usable, .reason = FitGrade::Reason::residual};
-  if (result.grade.grade == Grade::model_wrong)
-    for (ParameterResult& p : last.parameters)
-      p.uncertainty = {.of_wrong_model = true, .inflation = p.uncertainty.inflation};
+  result.grade = judge(result);
+  collect_errors(result, last, context);
+  combine_errors(result.job(), last);
+  if (result.grade.grade == Grade::model_wrong) withdraw_errors(last);
   if (result.grade.is_usable() && !result.interrupted) {
-    result.scatter = allow_for_scatter(result.job(), last);
     result.uncertainty =
         axis_uncertainty(result.job(), last, result.scatter,
                          result.diagnosis ? std::span<const MissingForce>(result.diagnosis->forces)
                                           : std::span<const MissingForce>());
     if (options.predict) predict(result, context);
-    // Not in the bands: what explains the recordings equally well predicts alike.
-    if (result.selection) allow_for_rivals(*result.selection);
   }
   if (options.compare && !result.interrupted && !result.fit().recordings.empty()) {
     try {

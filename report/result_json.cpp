@@ -131,13 +131,13 @@ Json estimate_json(const ParameterResult& p, Vocabulary vocabulary) {
                 {"confidence_interval", interval_json(u)}};
   for (const GuessInfluence& guess : p.rests_on)
     estimate["rests_on"].push_back({{"name", guess.name}, {"elasticity", guess.elasticity}});
-  if (p.gain_shift)
-    estimate["at_other_gain"] = {{"observer_gain", p.gain_shift->observer_gain},
-                                 {"value", p.gain_shift->value}};
-  if (p.rival_shift)
-    estimate["with_rival"] = {{"in_place_of", p.rival_shift->chosen},
-                              {"effect", p.rival_shift->rival},
-                              {"value", p.rival_shift->value}};
+  if (p.budget.gain)
+    estimate["at_other_gain"] = {{"observer_gain", p.budget.gain->observer_gain},
+                                 {"value", p.budget.gain->value}};
+  if (p.budget.rival)
+    estimate["with_rival"] = {{"in_place_of", p.budget.rival->chosen},
+                              {"effect", p.budget.rival->rival},
+                              {"value", p.budget.rival->value}};
   return estimate;
 }
 

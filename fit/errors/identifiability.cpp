@@ -11,17 +11,17 @@ namespace axisfit {
 namespace {
 
 /// "k_g / M", "k_g M", "k_g M^0.5"
-std::string product(const std::string& a, const std::string& b, double exponent) {
-  constexpr double kWhole = 0.05;
-  if (std::abs(exponent + 1.0) < kWhole) return a + " / " + b;
-  if (std::abs(exponent - 1.0) < kWhole) return a + " " + b;
+std::string product(const std::string& a, const std::string& b, double exponent, double whole) {
+  if (std::abs(exponent + 1.0) < whole) return a + " / " + b;
+  if (std::abs(exponent - 1.0) < whole) return a + " " + b;
   return fmt::format("{} {}^{:.2g}", a, b, exponent);
 }
 
 }  // namespace
 
 Identifiability identifiability(const ParameterSpace& space, const Eigen::VectorXd& u,
-                                const Linearization& at, double scale) {
+                                const Linearization& at, double scale,
+                                const ErrorOptions& options) {
   Identifiability result;
   if (!at.finite || space.size() == 0) return result;
   std::vector<Eigen::Index> seen;
@@ -46,12 +46,12 @@ Identifiability identifiability(const ParameterSpace& space, const Eigen::Vector
     return scale * std::sqrt(variance);
   };
 
-  for (Eigen::Index m = s.size() - 1; m >= 0 && s[m] <= scale; --m) {
+  for (Eigen::Index m = s.size() - 1; m >= 0 && options.largest_error * s[m] <= scale; --m) {
     WeakDirection& weak = result.weak.emplace_back();
     weak.singular_value = s[m];
     const double largest = v.col(m).cwiseAbs().maxCoeff();
     for (Eigen::Index k = 0; k < v.rows(); ++k)
-      if (std::abs(v(k, m)) > 0.1 * largest)
+      if (std::abs(v(k, m)) > options.told_part * largest)
         weak.parts.push_back(
             {static_cast<std::size_t>(seen[static_cast<std::size_t>(k)]), v(k, m)});
     std::ranges::sort(weak.parts, std::greater{},
@@ -75,12 +75,12 @@ Identifiability identifiability(const ParameterSpace& space, const Eigen::Vector
       g[column(b)] = exponent;
       const double error = error_without(m, g);
       Combination c;
-      c.name = product(weak.parts[0].name, weak.parts[1].name, exponent);
+      c.name = product(weak.parts[0].name, weak.parts[1].name, exponent, options.whole_exponent);
       c.value =
           std::exp(u[static_cast<Eigen::Index>(a)] + exponent * u[static_cast<Eigen::Index>(b)]);
       c.standard_error = c.value * error;
       // Unless another weak direction hides it, too.
-      if (error < 1.0 && std::isfinite(c.value)) {
+      if (error < options.largest_error && std::isfinite(c.value)) {
         weak.combination = c.name;
         result.combinations.push_back(std::move(c));
       }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "fit/errors/error_options.h"
 #include "fit/solve/linearization.h"
 #include "fit/solve/parameters.h"
 
@@ -12,8 +13,8 @@ namespace axisfit {
 /// A direction in the space of the parameters along which the recordings hardly change.
 struct WeakDirection {
   double singular_value = 0.0;
-  /// Change of u, of unit length, by parameter; components below a tenth of the largest are
-  /// omitted.
+  /// Change of u, of unit length, by parameter; components that are small beside
+  /// the largest are omitted.
   struct Part {
     std::size_t parameter = 0;
     double change = 0.0;
@@ -45,6 +46,7 @@ struct Identifiability {
 /// `scale` is the size of the residual in units of the noise, colour allowed for. A direction is
 /// weak when the standard error along it is more than a factor of e, or the parameter's magnitude.
 Identifiability identifiability(const ParameterSpace& space, const Eigen::VectorXd& u,
-                                const Linearization& at, double scale);
+                                const Linearization& at, double scale,
+                                const ErrorOptions& options = {});
 
 }  // namespace axisfit

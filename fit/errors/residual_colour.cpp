@@ -9,7 +9,8 @@
 namespace axisfit {
 
 ResidualColour residual_colour(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& j,
-                               std::span<const SeriesRows> series, const Eigen::MatrixXd& inverse) {
+                               std::span<const SeriesRows> series, const Eigen::MatrixXd& inverse,
+                               const ErrorOptions& options) {
   ResidualColour found;
   std::vector<Eigen::MatrixXd> middles;
   double squares = 0.0, taken = 0.0;
@@ -23,9 +24,7 @@ ResidualColour residual_colour(const Eigen::VectorXd& residuals, const Eigen::Ma
     squares += g[0] * static_cast<double>(rows.count);
     taken += (inverse * middles.back()).trace();
   }
-  // Where hardly anything is left, nobody knows how much there was.
-  constexpr double kLeast = 0.1;
-  const double given_back = 1.0 / std::max(kLeast, 1.0 - taken / squares);
+  const double given_back = 1.0 / std::max(options.least_left, 1.0 - taken / squares);
   found.middle.setZero(j.cols(), j.cols());
   for (std::size_t s = 0; s < middles.size(); ++s) {
     std::vector<double>& g = found.autocovariance[s];

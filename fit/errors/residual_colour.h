@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "fit/errors/error_options.h"
 #include "fit/solve/linearization.h"
 
 namespace axisfit {
@@ -26,6 +27,7 @@ struct ResidualColour {
 /// Literature: H. White, Econometrica 48 (1980), and J. G. MacKinnon and H. White, Journal of
 /// Econometrics 29 (1985), for the same of residuals that are not equally large.
 ResidualColour residual_colour(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& j,
-                               std::span<const SeriesRows> series, const Eigen::MatrixXd& inverse);
+                               std::span<const SeriesRows> series, const Eigen::MatrixXd& inverse,
+                               const ErrorOptions& options = {});
 
 }  // namespace axisfit

@@ -28,9 +28,9 @@ struct Alone {
 using Rows = std::vector<SeriesRows>;
 
 /// What a group says alone: by the colour of the residual that it would leave alone, for what it
-/// leaves of the others' estimates is what is looked for. Directions that it leaves open have the
-/// variance of a range of e^20.
-Alone alone(const VectorXd& residuals, const MatrixXd& jacobian, const Rows& rows) {
+/// leaves of the others' estimates is what is looked for.
+Alone alone(const VectorXd& residuals, const MatrixXd& jacobian, const Rows& rows,
+            const ErrorOptions& options) {
   const Index n = jacobian.cols();
   Alone found{VectorXd::Zero(n), MatrixXd::Zero(n, n), MatrixXd::Zero(n, n)};
   VectorXd gradient = VectorXd::Zero(n);
@@ -39,12 +39,12 @@ Alone alone(const VectorXd& residuals, const MatrixXd& jacobian, const Rows& row
     found.information += j.transpose() * j;
     gradient += j.transpose() * residuals.segment(s.first, s.count);
   }
-  constexpr double kWide = 10.0;
-  const MatrixXd ridge = MatrixXd::Identity(n, n) / (kWide * kWide);
+  const double open = options.open_deviation;
+  const MatrixXd ridge = MatrixXd::Identity(n, n) / (open * open);
   const Eigen::LLT<MatrixXd> normal(found.information + ridge);
   found.step = -normal.solve(gradient);
   const MatrixXd middle = ridge + residual_colour(residuals + jacobian * found.step, jacobian, rows,
-                                                  normal.solve(MatrixXd::Identity(n, n)))
+                                                  normal.solve(MatrixXd::Identity(n, n)), options)
                                       .middle;
   found.covariance = normal.solve(normal.solve(middle).transpose());
   return found;
@@ -75,12 +75,13 @@ class Likelihood {
   /// The variances that maximise it: those of `held` stay, the others climb one by one.
   VectorXd maximise(VectorXd variances, const std::vector<bool>& held) const {
     constexpr int kSweeps = 8;
+    constexpr double kSettled = 1e-3;
     double best = (*this)(variances);
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       const double before = best;
       for (Index k = 0; k < variances.size(); ++k)
         if (!held[static_cast<std::size_t>(k)]) best = climb(variances, k, best);
-      if (best - before < 1e-3) break;
+      if (best - before < kSettled) break;
     }
     return variances;
   }
@@ -96,7 +97,8 @@ class Likelihood {
   /// The standard deviations of the k-th parameter at which the likelihood is significantly lower
   /// than at the best variances, downwards and upwards. The other variances stay.
   std::pair<double, double> interval(const VectorXd& variances, Index k) const {
-    constexpr double kFall = 1.92;  // half of 3.84
+    constexpr double kFall = 1.92;  // half of 3.84, chi-square's quantile of 95 %
+    constexpr int kHalvings = 40;   // to rounding
     const double best = (*this)(variances);
     const auto at = [&](double deviation) {
       VectorXd other = variances;
@@ -104,7 +106,7 @@ class Likelihood {
       return (*this)(other);
     };
     const auto crossing = [&](double inside, double outside) {
-      for (int i = 0; i < 40; ++i) {
+      for (int i = 0; i < kHalvings; ++i) {
         const double middle = 0.5 * (inside + outside);
         (best - at(middle) < kFall ? inside : outside) = middle;
       }
@@ -112,7 +114,7 @@ class Likelihood {
     };
     const double here = std::sqrt(variances[k]);
     double beyond = std::max(here, 0.1 * std::sqrt(usual(k)));
-    for (int i = 0; i < 40 && best - at(beyond) < kFall; ++i) beyond *= 2.0;
+    for (int i = 0; i < kHalvings && best - at(beyond) < kFall; ++i) beyond *= 2.0;
     return {best - at(0.0) < kFall ? 0.0 : crossing(here, 0.0), crossing(here, beyond)};
   }
 
@@ -155,33 +157,33 @@ SeriesRows part_of(const SeriesRows& rows, std::size_t part, std::size_t parts) 
   return {rows.recording, rows.measurement, rows.first + at(part), at(part + 1) - at(part)};
 }
 
-constexpr Index kMostStretches = 6;
-
 /// Into how many stretches the only recording is divided; one: it is too short.
-std::size_t stretches_of(const Linearization& at, std::size_t recording) {
-  constexpr Index kRows = 400;
+std::size_t stretches_of(const Linearization& at, std::size_t recording,
+                         const ErrorOptions& options) {
   Index rows = 0;
   for (const SeriesRows& s : at.series)
     if (s.recording == recording) rows = std::max(rows, s.count);
-  return static_cast<std::size_t>(std::clamp<Index>(rows / kRows, 1, kMostStretches));
+  return static_cast<std::size_t>(
+      std::clamp<Index>(rows / options.stretch_rows, 1, options.most_stretches));
 }
 
 /// Whether what happens in a stretch of the only fitted recording has little to do with those
 /// before.
-bool forgets_within_stretches(const Job& job) {
+bool forgets_within_stretches(const Job& job, const ErrorOptions& options) {
   if (job.options.observer == ObserverMode::fixed) return true;
   const auto fitted = std::ranges::find(job.recordings, Role::fit, &Recording::role);
   const std::size_t windows =
       window_starts(job, static_cast<std::size_t>(fitted - job.recordings.begin())).size();
-  return windows >= static_cast<std::size_t>(kMostStretches);
+  return windows >= static_cast<std::size_t>(options.most_stretches);
 }
 
 /// The groups with their rows.
-std::vector<Rows> group(const Job& job, const Linearization& at, Scatter& scatter) {
+std::vector<Rows> group(const Job& job, const Linearization& at, const ErrorOptions& options,
+                        Scatter& scatter) {
   std::vector<Rows> groups;
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     const bool is_fitted = job.recordings[r].role == Role::fit;
-    const std::size_t parts = scatter.of_stretches && is_fitted ? stretches_of(at, r) : 1;
+    const std::size_t parts = scatter.of_stretches && is_fitted ? stretches_of(at, r, options) : 1;
     const double start = job.recordings[r].times.front(),
                  length = job.recordings[r].times.back() - start;
     for (std::size_t p = 0; p < parts; ++p) {
@@ -209,27 +211,27 @@ std::size_t Scatter::fitted_groups() const {
   return static_cast<std::size_t>(std::ranges::count(groups, true, &Group::fitted));
 }
 
-std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
-  if (!fit.usable || !fit.at_solution) return std::nullopt;
+std::optional<Scatter> scatter_of(const Job& job, std::span<const ParameterResult> parameters,
+                                  double observer_gain, const ErrorOptions& options) {
   Scatter scatter;
   scatter.of_stretches = std::ranges::count(job.recordings, Role::fit, &Recording::role) == 1;
-  if (scatter.of_stretches && !forgets_within_stretches(job)) return std::nullopt;
+  if (scatter.of_stretches && !forgets_within_stretches(job, options)) return std::nullopt;
   Job all = job;
   for (Recording& r : all.recordings) r.role = Role::fit;
   const ParameterSpace space(all);
-  const VectorXd u = space.internal(values_of(fit));
-  const Linearization at = linearize(all, space, u, fit.observer_gain);
+  const VectorXd u = space.internal(values_of(parameters));
+  const Linearization at = linearize(all, space, u, observer_gain);
   if (!at.finite) return std::nullopt;
 
   std::vector<Index> columns;     // inside their bounds
   std::vector<Index> of_machine;  // their places among those
   for (std::size_t i = 0; i < space.size(); ++i) {
-    if (fit.parameters[i].uncertainty.at_bound) continue;
-    if (is_of_machine(job, i) && fit.parameters[i].uncertainty.determined)
+    if (parameters[i].uncertainty.at_bound) continue;
+    if (is_of_machine(job, i) && parameters[i].uncertainty.determined)
       of_machine.push_back(static_cast<Index>(columns.size()));
     columns.push_back(static_cast<Index>(i));
   }
-  const std::vector<Rows> groups = group(job, at, scatter);
+  const std::vector<Rows> groups = group(job, at, options, scatter);
   if (of_machine.empty() || scatter.fitted_groups() < 2) return std::nullopt;
 
   const MatrixXd jacobian = at.jacobian(Eigen::all, columns);
@@ -237,7 +239,7 @@ std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
   MatrixXd information =
       MatrixXd::Zero(static_cast<Index>(columns.size()), static_cast<Index>(columns.size()));
   for (std::size_t k = 0; k < groups.size(); ++k) {
-    each.push_back(alone(at.residuals, jacobian, groups[k]));
+    each.push_back(alone(at.residuals, jacobian, groups[k], options));
     if (!scatter.groups[k].fitted) continue;
     information += each.back().information;
     fitted.push_back(
@@ -249,10 +251,9 @@ std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
   std::vector<bool> held(of_machine.size(), false);
   VectorXd variances = likelihood.maximise(VectorXd::Zero(n), held);
   // The least significant goes, until all that remain are significant.
-  constexpr double kSignificance = 0.2;
   for (;;) {
     Index least = -1;
-    double lowest = chi_square_upper_quantile(2.0 * kSignificance, 1.0);
+    double lowest = chi_square_upper_quantile(2.0 * options.scatter_significance, 1.0);
     for (Index k = 0; k < n; ++k) {
       if (!(variances[k] > 0.0)) continue;
       VectorXd without = variances;
@@ -286,28 +287,20 @@ std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
   for (Index k = 0; k < n; ++k) {
     const auto i = static_cast<std::size_t>(
         columns[static_cast<std::size_t>(of_machine[static_cast<std::size_t>(k)])]);
-    ParameterUncertainty& known = fit.parameters[i].uncertainty;
+    const ParameterResult& estimate = parameters[i];
     const double here = u[static_cast<Index>(i)], slope = std::abs(space.slope(i, here));
-    ParameterScatter found{i, std::sqrt(variances[k]) * slope, 0.0, 0.0, known.standard_error, 1.0,
-                           {}};
+    ParameterScatter found{.parameter = i, .deviation = std::sqrt(variances[k]) * slope};
     const auto [lower, upper] = likelihood.interval(variances, k);
     found.lower = lower * slope;
     found.upper = upper * slope;
     for (std::size_t g = 0; g < each.size(); ++g) {
       const Index place = of_machine[static_cast<std::size_t>(k)];
       const double error = std::sqrt(each[g].covariance(place, place));
-      constexpr double kKnown = 1.0;  // in u: a factor of e
-      found.groups.push_back(
-          {space.value(i, here + each[g].step[place]), error * slope, error < kKnown});
+      found.groups.push_back({space.value(i, here + each[g].step[place]), error * slope,
+                              error < options.largest_error});
     }
+    ErrorBudget budget = estimate.budget;
     if (variances[k] > 0.0 && slope > 0.0) {
-      const std::optional<GainShift>& shift = fit.parameters[i].gain_shift;
-      const double moved =
-          shift ? std::pow((shift->value - fit.parameters[i].value) / slope, 2) : 0.0;
-      const double before = std::pow(known.standard_error / slope, 2);
-      const double of_one = std::min(before, inside[k] + moved);
-      const double after = of_one + added[k];
-      found.within = std::sqrt(of_one) * slope;
       // The scatter is as well known as the groups that tell the parameter are many.
       double weight = 0.0, square = 0.0;
       for (const Alone& group : fitted) {
@@ -315,15 +308,12 @@ std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit) {
         weight += w;
         square += w * w;
       }
-      found.freedom = std::max(1.0, weight * weight / square - 1.0);
-      // And the errors within are known well, of which the sum has its share (Satterthwaite).
-      const double half =
-          student_95(found.freedom * std::pow(after / added[k], 2)) * std::sqrt(after);
-      known.inflation *= std::sqrt(after / before);
-      known.standard_error = std::sqrt(after) * slope;
-      known.lower = std::max(space[i].lower, space.value(i, here - half));
-      known.upper = std::min(space[i].upper, space.value(i, here + half));
+      found.error = budget.scatter =
+          ScatterError{.inside = std::sqrt(inside[k]) * slope,
+                       .between = std::sqrt(added[k]) * slope,
+                       .degrees_of_freedom = std::max(1.0, weight * weight / square - 1.0)};
     }
+    found.within = error_within_groups(budget, estimate.value);
     scatter.parameters.push_back(std::move(found));
   }
   return scatter;

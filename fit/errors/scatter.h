@@ -10,20 +10,19 @@
 // residual (uncertainty.h). d_i is normal about the machine's with C_i + T, and T maximises the
 // restricted likelihood. A standard deviation counts where its likelihood ratio is significant at
 // 20 %. The estimate of all recordings together is the mean of d_i with the weights P_i = (J'J)^-1
-// J_i'J_i, whose variance grows by the sum of P_i T P_i'. Of that variance the part of T is known
-// as well as groups are many, the rest well: the interval has Student's quantile for the degrees of
-// freedom of their sum.
+// J_i'J_i, whose variance grows by the sum of P_i T P_i', which is known as well as groups are
+// many.
 //
-// Literature: D. A. Harville, Journal of the American Statistical Association 72 (1977), for
-// restricted likelihood; F. E. Satterthwaite, Biometrics Bulletin 2 (1946), for the degrees of
-// freedom of a sum.
+// Literature: D. A. Harville, Journal of the American Statistical Association 72 (1977).
 #pragma once
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "fit/estimate/estimate.h"
+#include "fit/data/job.h"
+#include "fit/errors/parameter_result.h"
 
 namespace axisfit {
 
@@ -38,10 +37,10 @@ struct ParameterScatter {
   std::size_t parameter = 0;  ///< its place in Job::free
   /// Standard deviation between groups, in the quantity's unit; zero where they show none.
   double deviation = 0.0;
-  double lower = 0.0, upper = 0.0;  ///< its 95 % interval, by the profile of the likelihood
-  double within = 0.0;              ///< standard error of the estimate without it
-  double freedom = 1.0;             ///< its degrees of freedom: groups that tell it, but one
-  std::vector<EstimateOfGroup> groups;
+  double lower = 0.0, upper = 0.0;      ///< its 95 % interval, by the profile of the likelihood
+  double within = 0.0;                  ///< standard error of the estimate without it
+  std::optional<ScatterError> error{};  ///< what it adds to that; none where groups show none
+  std::vector<EstimateOfGroup> groups{};
 };
 
 /// What is compared: recordings, or stretches of the only one that was fitted.
@@ -62,12 +61,13 @@ struct Scatter {
 /// begins.
 bool is_of_machine(const Job& job, std::size_t parameter);
 
-/// Of a usable fit, with a share in the standard errors and intervals of its parameters: they
-/// become those of the machine. Of two or more fitted recordings, or of stretches of one where the
-/// fit tracks it with a fixed observer or begins anew in short windows (elsewhere what happens in a
-/// stretch depends on those before). Recordings to validate are shown, too, and have no share. None
-/// where there is nothing to compare. Parameters at a bound, of one recording alone and of the
-/// initial state have no scatter. Costs one residual with its Jacobian.
-std::optional<Scatter> allow_for_scatter(const Job& job, FitResult& fit);
+/// By the estimates of a usable fit at this observer gain, without scatter in their budgets. Of two
+/// or more fitted recordings, or of stretches of one where the fit tracks it with a fixed observer
+/// or begins anew in short windows (elsewhere what happens in a stretch depends on those before).
+/// Recordings to validate are shown, too, and have no share. None where there is nothing to
+/// compare. Parameters at a bound, of one recording alone and of the initial state have no scatter.
+/// Costs one residual with its Jacobian.
+std::optional<Scatter> scatter_of(const Job& job, std::span<const ParameterResult> parameters,
+                                  double observer_gain, const ErrorOptions& options = {});
 
 }  // namespace axisfit

@@ -6,7 +6,6 @@
 #include <numeric>
 #include <span>
 
-#include "base/distributions.h"
 #include "base/linear_algebra.h"
 #include "fit/errors/residual_colour.h"
 
@@ -16,20 +15,20 @@ namespace {
 /// (J'J)^-1, of columns J of any length, over what is not rounding.
 class NormalInverse {
  public:
-  explicit NormalInverse(const Eigen::MatrixXd& j) : length_(j.colwise().norm()) {
+  NormalInverse(const Eigen::MatrixXd& j, double open_part) : length_(j.colwise().norm()) {
     if (j.cols() == 0) return;
     // Columns of equal length: the rank must not depend on units. A column of zeros stays one.
     Eigen::MatrixXd scaled = j;
     for (Eigen::Index k = 0; k < j.cols(); ++k)
       scaled.col(k) /= length_[k] > 0.0 ? length_[k] : 1.0;
     const auto [s, v] = singular_values(scaled);
-    constexpr double kRounding = 1e-9, kPart = 0.1;
+    constexpr double kRounding = 1e-9;
     undetermined_.assign(static_cast<std::size_t>(j.cols()), false);
     matrix_.setZero(j.cols(), j.cols());
     for (Eigen::Index m = 0; m < s.size(); ++m) {
       if (s[m] > kRounding * s[0]) matrix_ += v.col(m) * v.col(m).transpose() / (s[m] * s[m]);
       for (Eigen::Index k = 0; k < j.cols() && s[m] <= kRounding * s[0]; ++k)
-        if (std::abs(v(k, m)) > kPart) undetermined_[static_cast<std::size_t>(k)] = true;
+        if (std::abs(v(k, m)) > open_part) undetermined_[static_cast<std::size_t>(k)] = true;
     }
     for (Eigen::Index k = 0; k < j.cols(); ++k) {
       if (!(length_[k] > 0.0)) undetermined_[static_cast<std::size_t>(k)] = true;
@@ -51,36 +50,31 @@ class NormalInverse {
   std::vector<bool> undetermined_;
 };
 
-/// Covariance of the estimates of the parameters `chosen`, and the factors of their standard errors
-/// that make half of a 95 % interval.
+/// Covariance of the estimates of some parameters.
 struct Spread {
   Eigen::MatrixXd covariance;
-  Eigen::VectorXd student;
+  /// Variances by white noise of the stated sizes, in readings and inputs; none: inputs are exact.
+  Eigen::VectorXd stated;
+  double draws = 0.0;       ///< of the inputs' noise
   double input_part = 0.0;  ///< of the variances, the largest that noise of the input makes
 };
 
-/// The rows after the last series are those of priors, whose variance is one.
+/// Of the parameters `chosen`. The rows after the last series are those of priors, whose variance
+/// is one.
 Spread spread_of(const Linearization& at, const ResidualColour& colour,
-                 const std::vector<Eigen::Index>& chosen, const NormalInverse& inverse, double t) {
+                 const std::vector<Eigen::Index>& chosen, const NormalInverse& inverse) {
   Eigen::Index end = 0;
   for (const SeriesRows& rows : at.series) end = rows.first + rows.count;
   const Eigen::MatrixXd priors = at.jacobian(Eigen::seqN(end, at.jacobian.rows() - end), chosen);
   const Eigen::MatrixXd& n = inverse.matrix();
-  Spread found{n * (colour.middle + priors.transpose() * priors) * n,
-               Eigen::VectorXd::Constant(n.cols(), t)};
+  Spread found{n * (colour.middle + priors.transpose() * priors) * n, {}};
   if (!at.input_noise) return found;
   const Eigen::MatrixXd steps = n * at.input_noise->gradients(chosen, Eigen::all);
-  const auto draws = static_cast<double>(steps.cols());
-  for (Eigen::Index k = 0; k < n.cols(); ++k) {
-    const double of_input = steps.row(k).squaredNorm() / draws;
-    const double implied = n(k, k) + of_input;
-    found.input_part = std::max(found.input_part, of_input / implied);
-    if (!(implied > found.covariance(k, k))) continue;
-    const double factor = std::sqrt(implied / found.covariance(k, k));
-    found.covariance.row(k) *= factor;
-    found.covariance.col(k) *= factor;
-    found.student[k] = student_95(draws);
-  }
+  found.draws = static_cast<double>(steps.cols());
+  const Eigen::VectorXd of_input = steps.rowwise().squaredNorm() / found.draws;
+  found.stated = n.diagonal() + of_input;
+  for (Eigen::Index k = 0; k < n.cols(); ++k)
+    found.input_part = std::max(found.input_part, of_input[k] / found.stated[k]);
   return found;
 }
 
@@ -102,112 +96,107 @@ double add_colour(std::span<const SeriesRows> series,
 
 }  // namespace
 
-double student_95(double degrees_of_freedom) {
-  return student_quantile(0.975, std::max(1.0, degrees_of_freedom));
-}
-
 Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
-                        const Linearization& at_solution) {
+                        const Linearization& at_solution, const ErrorOptions& options) {
   Uncertainty result;
-  result.parameters.resize(space.size());
+  result.budgets.resize(space.size());
   const auto size = static_cast<Eigen::Index>(space.size());
   result.correlation.setConstant(size, size, NAN);
-  const auto lower = [&](std::size_t i) { return space.internal(i, space[i].lower); };
-  const auto upper = [&](std::size_t i) { return space.internal(i, space[i].upper); };
   std::vector<Eigen::Index> inside;
   for (std::size_t i = 0; i < space.size(); ++i) {
     const double here = u[static_cast<Eigen::Index>(i)];
-    const double near = 1e-6 * std::max(1.0, std::min(std::abs(here), upper(i) - lower(i)));
-    result.parameters[i].at_bound = here - lower(i) < near || upper(i) - here < near;
-    if (!result.parameters[i].at_bound) inside.push_back(static_cast<Eigen::Index>(i));
+    const double lower = space.internal(i, space[i].lower);
+    const double upper = space.internal(i, space[i].upper);
+    const double near = options.at_bound * std::max(1.0, std::min(std::abs(here), upper - lower));
+    SamplingError& sampling = result.budgets[i].sampling;
+    sampling.at_bound = here - lower < near || upper - here < near;
+    if (!sampling.at_bound) inside.push_back(static_cast<Eigen::Index>(i));
   }
-  if (!at_solution.finite) return result;
+  const auto combine = [&] {
+    for (std::size_t i = 0; i < space.size(); ++i)
+      result.parameters.push_back(combined(
+          result.budgets[i], space.value(i, u[static_cast<Eigen::Index>(i)]), space[i], options));
+  };
+  if (!at_solution.finite) {
+    combine();
+    return result;
+  }
 
   const auto colour_by = [&](const std::vector<Eigen::Index>& chosen,
                              const NormalInverse& inverse) {
     return residual_colour(at_solution.residuals, at_solution.jacobian(Eigen::all, chosen),
-                           at_solution.series, inverse.matrix());
+                           at_solution.series, inverse.matrix(), options);
   };
-  const NormalInverse inverse(at_solution.jacobian(Eigen::all, inside));
+  const NormalInverse inverse(at_solution.jacobian(Eigen::all, inside), options.open_part);
   const ResidualColour colour = colour_by(inside, inverse);
   const double inflation = add_colour(at_solution.series, colour.autocovariance, result);
   result.degrees_of_freedom -= static_cast<double>(inside.size());
-  for (ParameterUncertainty& p : result.parameters) p.inflation = inflation;
-  const double t = student_95(result.degrees_of_freedom);
+  for (ErrorBudget& budget : result.budgets) {
+    budget.sampling.inflation = inflation;
+    budget.sampling.degrees_of_freedom = result.degrees_of_freedom;
+  }
+  /// The budget of a parameter that is the k-th of those spread.
+  const auto fill = [&](std::size_t i, const Spread& spread, const NormalInverse& normal,
+                        Eigen::Index k) {
+    const double slope = space.slope(i, u[static_cast<Eigen::Index>(i)]);
+    const double error = std::sqrt(spread.covariance(k, k));
+    SamplingError& sampling = result.budgets[i].sampling;
+    sampling.standard_error = error * slope;
+    sampling.inflation = error / std::sqrt(normal.matrix()(k, k));
+    if (spread.stated.size() > 0)
+      result.budgets[i].input_noise = {std::sqrt(spread.stated[k]) * slope, spread.draws};
+  };
 
+  Spread spread;
   if (!inside.empty()) {
-    const auto [covariance, student, input_part] =
-        spread_of(at_solution, colour, inside, inverse, t);
-    result.input_part = input_part;
-    for (Eigen::Index k = 0; k < covariance.cols(); ++k) {
-      if (inverse.is_undetermined(k)) continue;
-      const auto i = static_cast<std::size_t>(inside[static_cast<std::size_t>(k)]);
-      const double error = std::sqrt(covariance(k, k));
-      const double here = u[inside[static_cast<std::size_t>(k)]];
-      const double half = student[k] * error;
-      ParameterUncertainty& p = result.parameters[i];
-      p.inflation = error / std::sqrt(inverse.matrix()(k, k));
-      // An error of more than a factor of e, or one that spans the allowed range, is no knowledge.
-      const double ratio = space[i].logarithmic ? error : 2.0 * half / (upper(i) - lower(i));
-      constexpr double kWeak = 0.25;
-      p.determined = ratio < 1.0;
-      if (!p.determined) continue;
-      p.weak = ratio > kWeak;
-      p.standard_error = error * space.slope(i, here);
-      p.lower = std::max(space[i].lower, space.value(i, here - half));
-      p.upper = std::min(space[i].upper, space.value(i, here + half));
-    }
-    for (Eigen::Index a = 0; a < covariance.cols(); ++a)
-      for (Eigen::Index b = 0; b < covariance.cols(); ++b) {
-        const Eigen::Index row = inside[static_cast<std::size_t>(a)];
-        const Eigen::Index column = inside[static_cast<std::size_t>(b)];
-        if (result.parameters[static_cast<std::size_t>(row)].determined &&
-            result.parameters[static_cast<std::size_t>(column)].determined)
-          result.correlation(row, column) =
-              covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
+    spread = spread_of(at_solution, colour, inside, inverse);
+    result.input_part = spread.input_part;
+    for (Eigen::Index k = 0; k < spread.covariance.cols(); ++k)
+      if (!inverse.is_undetermined(k))
+        fill(static_cast<std::size_t>(inside[static_cast<std::size_t>(k)]), spread, inverse, k);
+  }
+  if (inside.size() < space.size()) {
+    const NormalInverse inverse_of_all(at_solution.jacobian, options.open_part);
+    if (!inverse_of_all.has_undetermined()) {
+      std::vector<Eigen::Index> all(space.size());
+      std::iota(all.begin(), all.end(), Eigen::Index{0});
+      const Spread spread_of_all =
+          spread_of(at_solution, colour_by(all, inverse_of_all), all, inverse_of_all);
+      // Where the minimum would be if there were no bounds.
+      const Eigen::VectorXd step =
+          -inverse_of_all.matrix() * (at_solution.jacobian.transpose() * at_solution.residuals);
+      for (const Eigen::Index k : all) {
+        const auto i = static_cast<std::size_t>(k);
+        if (!result.budgets[i].sampling.at_bound) continue;
+        fill(i, spread_of_all, inverse_of_all, k);
+        result.budgets[i].sampling.step = step[k] * space.slope(i, u[k]);
       }
+    }
   }
+  combine();
 
-  if (inside.size() == space.size()) return result;
-  const NormalInverse inverse_of_all(at_solution.jacobian);
-  if (inverse_of_all.has_undetermined()) return result;
-  std::vector<Eigen::Index> all(space.size());
-  std::iota(all.begin(), all.end(), Eigen::Index{0});
-  const auto [covariance, student, input_part] =
-      spread_of(at_solution, colour_by(all, inverse_of_all), all, inverse_of_all, t);
-  // Where the minimum would be if there were no bounds.
-  const Eigen::VectorXd step =
-      -inverse_of_all.matrix() * (at_solution.jacobian.transpose() * at_solution.residuals);
-  for (std::size_t i = 0; i < space.size(); ++i) {
-    ParameterUncertainty& p = result.parameters[i];
-    if (!p.at_bound) continue;
-    const auto k = static_cast<Eigen::Index>(i);
-    p.inflation = std::sqrt(covariance(k, k) / inverse_of_all.matrix()(k, k));
-    const double inwards = u[k] - lower(i) < upper(i) - u[k] ? 1.0 : -1.0;
-    const double beyond = std::max(0.0, -inwards * step[k]);
-    const double variance = student[k] * student[k] * covariance(k, k);
-    if (!std::isfinite(variance)) continue;
-    // sqrt(variance + beyond^2) - beyond, without its cancellation and overflow
-    const double whole = std::hypot(std::sqrt(variance), beyond) + beyond;
-    const double reach = whole > 0.0 ? variance / whole : 0.0;
-    const double other = space.value(i, std::clamp(u[k] + inwards * reach, lower(i), upper(i)));
-    p.lower = inwards > 0.0 ? space[i].lower : other;
-    p.upper = inwards > 0.0 ? other : space[i].upper;
-  }
+  for (Eigen::Index a = 0; a < spread.covariance.cols(); ++a)
+    for (Eigen::Index b = 0; b < spread.covariance.cols(); ++b) {
+      const Eigen::Index row = inside[static_cast<std::size_t>(a)];
+      const Eigen::Index column = inside[static_cast<std::size_t>(b)];
+      const Eigen::MatrixXd& c = spread.covariance;
+      if (result.parameters[static_cast<std::size_t>(row)].determined &&
+          result.parameters[static_cast<std::size_t>(column)].determined)
+        result.correlation(row, column) = c(a, b) / std::sqrt(c(a, a) * c(b, b));
+    }
   return result;
 }
 
-bool is_coloured(double autocorrelation_time) {
-  constexpr double kWhite = 1.2;
-  return autocorrelation_time > kWhite;
+bool is_coloured(double autocorrelation_time, const ErrorOptions& options) {
+  return autocorrelation_time > options.white_time;
 }
 
-std::vector<StrongCorrelation> strong_correlations(const Eigen::MatrixXd& correlation) {
-  constexpr double kStrong = 0.95;
+std::vector<StrongCorrelation> strong_correlations(const Eigen::MatrixXd& correlation,
+                                                   const ErrorOptions& options) {
   std::vector<StrongCorrelation> strong;
   for (Eigen::Index i = 0; i < correlation.rows(); ++i)
     for (Eigen::Index k = 0; k < i; ++k)
-      if (const double c = correlation(i, k); std::abs(c) > kStrong)
+      if (const double c = correlation(i, k); std::abs(c) > options.strong_correlation)
         strong.push_back({static_cast<std::size_t>(k), static_cast<std::size_t>(i), c});
   std::ranges::stable_sort(strong, std::greater{},
                            [](const StrongCorrelation& c) { return std::abs(c.value); });

@@ -4,45 +4,15 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "fit/errors/error_budget.h"
 #include "fit/solve/linearization.h"
 #include "fit/solve/parameters.h"
 
 namespace axisfit {
 
-enum class ParameterVerdict {
-  determined,
-  weakly_determined,  ///< to no more than its order of magnitude
-  not_determined,     ///< the data leave it open, alone or together with others
-  at_bound,           ///< held by a bound; it has no standard error
-  of_wrong_model,     ///< the model does not describe the machine: the value means nothing
-};
-
-/// What the data say of the i-th parameter beyond its value.
-struct ParameterUncertainty {
-  bool at_bound = false;        ///< at a bound; it has no standard error
-  bool determined = false;      ///< false: the data leave it open, alone or together with others
-  bool weak = false;            ///< determined, but to no more than its order of magnitude
-  bool of_wrong_model = false;  ///< the model does not describe the machine; no standard error
-  double standard_error = 0.0;  ///< in the quantity's unit; 0 unless determined
-  /// Standard error over that of white noise of the stated size; where there is none, the most
-  /// that it could be.
-  double inflation = 1.0;
-  /// 95 % interval, in the quantity's unit: on a logarithmic scale not symmetric; at a bound
-  /// one-sided. Both zero where there is none.
-  double lower = 0.0, upper = 0.0;
-
-  bool has_interval() const { return lower != 0.0 || upper != 0.0; }
-
-  ParameterVerdict verdict() const {
-    if (of_wrong_model) return ParameterVerdict::of_wrong_model;
-    if (at_bound) return ParameterVerdict::at_bound;
-    if (!determined) return ParameterVerdict::not_determined;
-    return weak ? ParameterVerdict::weakly_determined : ParameterVerdict::determined;
-  }
-};
-
 struct Uncertainty {
-  std::vector<ParameterUncertainty> parameters;
+  std::vector<ErrorBudget> budgets;              ///< by parameter: sampling and noise of the input
+  std::vector<ParameterUncertainty> parameters;  ///< what those come to
   /// Of the estimates of u; not a number where a parameter has no standard error.
   Eigen::MatrixXd correlation;
   double degrees_of_freedom = 0.0;  ///< independent samples, parameters subtracted
@@ -54,7 +24,7 @@ struct Uncertainty {
 };
 
 /// Whether residuals with that autocorrelation time count as coloured.
-bool is_coloured(double autocorrelation_time);
+bool is_coloured(double autocorrelation_time, const ErrorOptions& options = {});
 
 /// Two estimates that are hardly determined apart: the first has the smaller place.
 struct StrongCorrelation {
@@ -62,12 +32,9 @@ struct StrongCorrelation {
   double value = 0.0;
 };
 
-/// Those beyond +-0.95, the strongest first.
-std::vector<StrongCorrelation> strong_correlations(const Eigen::MatrixXd& correlation);
-
-/// The factor of a standard error that makes half of a 95 % interval, for so many degrees of
-/// freedom (at least one is assumed): Student's quantile.
-double student_95(double degrees_of_freedom);
+/// The strongest first.
+std::vector<StrongCorrelation> strong_correlations(const Eigen::MatrixXd& correlation,
+                                                   const ErrorOptions& options = {});
 
 /// Assumes a model that is linear over the intervals, and residuals that are, signal by signal,
 /// stationary with the variance and the autocorrelation that they show, never less than the stated
@@ -86,6 +53,6 @@ double student_95(double degrees_of_freedom);
 /// Literature: E. A. Morelli and V. Klein, Journal of Aircraft 34 (1997), for coloured residuals;
 /// G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989, sections 2.1 and 5.1.
 Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
-                        const Linearization& at_solution);
+                        const Linearization& at_solution, const ErrorOptions& options = {});
 
 }  // namespace axisfit

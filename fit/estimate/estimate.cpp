@@ -211,7 +211,8 @@ FitResult estimate(const Job& job, const RunContext& context, std::span<const do
   Uncertainty found = uncertainty(space, solved.u, at_solution);
   const std::vector<double> values = space.values(solved.u);
   for (std::size_t i = 0; i < space.size(); ++i)
-    result.parameters.push_back({space.name(i), values[i], found.parameters[i]});
+    result.parameters.push_back(
+        {space.name(i), values[i], found.parameters[i], std::move(found.budgets[i])});
   result.input_part = found.input_part;
   result.correlation = std::move(found.correlation);
   result.degrees_of_freedom = found.degrees_of_freedom;
@@ -303,11 +304,7 @@ std::vector<Minimum> distinct_minima(std::vector<StartResult> starts) {
   return minima;
 }
 
-std::vector<double> values_of(const FitResult& result) {
-  std::vector<double> values;
-  for (const ParameterResult& p : result.parameters) values.push_back(p.value);
-  return values;
-}
+std::vector<double> values_of(const FitResult& result) { return values_of(result.parameters); }
 
 Model<double> fitted_model(const Job& job, const FitResult& result) {
   Model<double> model = job.model;

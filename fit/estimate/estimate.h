@@ -10,6 +10,7 @@
 
 #include "fit/data/simulated_recording.h"
 #include "fit/errors/identifiability.h"
+#include "fit/errors/parameter_result.h"
 #include "fit/errors/uncertainty.h"
 #include "fit/estimate/stage.h"
 #include "fit/solve/run_context.h"
@@ -44,35 +45,6 @@ struct RecordingResult {
 
   /// The prediction in the way the recording was fitted.
   const SimulatedRecording& as_fitted() const { return tracking ? *tracking : free_running; }
-};
-
-/// A quantity whose value is a guess, and what becomes of an estimate when that changes.
-struct GuessInfluence {
-  std::string name;
-  double elasticity = 0.0;  ///< d ln estimate / d ln guess
-};
-
-/// What an estimate is at another observer gain.
-struct GainShift {
-  double observer_gain = 0.0;  ///< 1/s
-  double value = 0.0;
-};
-
-/// What an estimate is with a rival in the place of an effect, see selection/rivals.h.
-struct RivalShift {
-  std::string chosen, rival;
-  double value = 0.0;
-};
-
-struct ParameterResult {
-  std::string name;
-  double value = 0.0;
-  ParameterUncertainty uncertainty;
-  std::vector<GuessInfluence> rests_on{};  ///< see guesses.h; found by run()
-  /// Where it differs by more than the errors say, which then count that in; see
-  /// gain_sensitivity.h.
-  std::optional<GainShift> gain_shift{};
-  std::optional<RivalShift> rival_shift{};  ///< counted, too; see selection/rival_shift.h
 };
 
 /// How one start of a multistart ended.
@@ -133,7 +105,7 @@ struct FitResult {
   Identifiability identifiability;  ///< at the solution
   double observer_gain = 0.0;       ///< of the last stage
   /// 1/s, at which what was estimated predicts the recordings to validate better; see
-  /// gain_sensitivity.h.
+  /// other_gains.h.
   std::optional<double> better_gain{};
   /// 1/s, at which noise of the inputs would not add up, see tracking_gain().
   std::optional<double> quiet_gain{};

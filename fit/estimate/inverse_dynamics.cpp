@@ -441,6 +441,7 @@ std::optional<InverseDynamics> inverse_dynamics(const Job& job) {
     estimate.name = space.name(i);
     estimate.value = values[i];
     estimate.uncertainty = known.parameters[i];
+    estimate.budget = known.budgets[i];
     estimate.parameter = places[i];
   }
   if (found.parameters.empty()) return std::nullopt;

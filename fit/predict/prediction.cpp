@@ -184,24 +184,22 @@ AxisUncertainty axis_uncertainty(const Job& job, const FitResult& fit,
   const Eigen::VectorXd u = space.internal(values_of(fit));
   std::vector<Eigen::Index> places;
   for (std::size_t i = 0; i < space.size(); ++i) {
-    const ParameterUncertainty& known = fit.parameters[i].uncertainty;
+    const ParameterResult& p = fit.parameters[i];
     const FreeParameter& free = space[i];
-    if (!is_of_machine(job, i) || known.verdict() == ParameterVerdict::of_wrong_model ||
-        known.at_bound || !known.determined)
-      continue;
+    if (!is_of_machine(job, i) || p.uncertainty.at_bound || !p.uncertainty.determined) continue;
+    const double error = combined(without_rival(p.budget), p.value, free).standard_error;
     // On a logarithmic scale the errors are those of the logarithm.
-    const double per_unit = free.logarithmic ? 1.0 / fit.parameters[i].value : 1.0;
-    UncertainQuantity q{free.quantity, free.logarithmic, known.standard_error * per_unit, 0.0, 1.0};
+    const double per_unit = free.logarithmic ? 1.0 / p.value : 1.0;
+    UncertainQuantity q{free.quantity, free.logarithmic, error * per_unit, 0.0, 1.0};
     // What changes from stretch to stretch changes during a prediction, too: it is part of the
     // missing force, and its mean is as uncertain as the estimate.
     if (scatter && !scatter->of_stretches) {
-      const auto p = std::ranges::find(scatter->parameters, i, &ParameterScatter::parameter);
-      if (p != scatter->parameters.end() && p->deviation > 0.0) {
-        const double of_all =
-            std::pow(known.standard_error, 2) - p->within * p->within + p->deviation * p->deviation;
-        q.error = p->within * per_unit;
+      const auto s = std::ranges::find(scatter->parameters, i, &ParameterScatter::parameter);
+      if (s != scatter->parameters.end() && s->error) {
+        const double of_all = error * error - s->within * s->within + s->deviation * s->deviation;
+        q.error = s->within * per_unit;
         q.scatter = std::sqrt(std::max(0.0, of_all)) * per_unit;
-        q.freedom = p->freedom;
+        q.freedom = s->error->degrees_of_freedom;
       }
     }
     found.quantities.push_back(q);

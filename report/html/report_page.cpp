@@ -257,8 +257,10 @@ class Page {
     Html all =
         html(R"(<span class="badge {}">{}</span>)", kind(), std::string(verdict_name(u.verdict())));
     if (!p.rests_on.empty()) all += html(" <small>{}</small>", guesses_text(p.rests_on));
-    if (p.gain_shift) all += html(" <small>{}</small>", gain_shift_text(*p.gain_shift, unit));
-    if (p.rival_shift) all += html(" <small>{}</small>", rival_shift_text(*p.rival_shift, unit));
+    if (const auto& gain = p.budget.gain)
+      all += html(" <small>{}</small>", gain_shift_text(*gain, unit));
+    if (const auto& rival = p.budget.rival)
+      all += html(" <small>{}</small>", rival_shift_text(*rival, unit));
     return all;
   }
 

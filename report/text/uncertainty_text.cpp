@@ -47,12 +47,12 @@ std::string remarks_text(const Job& job, const FitResult& result) {
     const ParameterResult& p = result.parameters[i];
     if (!p.rests_on.empty())
       text += paragraph(fmt::format("{}: {}.", p.name, guesses_text(p.rests_on)), 2);
-    if (p.gain_shift)
+    if (p.budget.gain)
       text += paragraph(
-          fmt::format("{}: {}.", p.name, gain_shift_text(*p.gain_shift, unit_of(job, i))), 2);
-    if (p.rival_shift)
+          fmt::format("{}: {}.", p.name, gain_shift_text(*p.budget.gain, unit_of(job, i))), 2);
+    if (p.budget.rival)
       text += paragraph(
-          fmt::format("{}: {}.", p.name, rival_shift_text(*p.rival_shift, unit_of(job, i))), 2);
+          fmt::format("{}: {}.", p.name, rival_shift_text(*p.budget.rival, unit_of(job, i))), 2);
   }
   if (const std::string better = better_gain_text(result); !better.empty())
     text += paragraph(better + ".", 2);

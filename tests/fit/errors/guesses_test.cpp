@@ -11,12 +11,16 @@ namespace {
 
 std::size_t quantity(const char* name) { return find_quantity(name)->index; }
 
+std::vector<std::vector<GuessInfluence>> guesses_beneath(const Job& job, const FitResult& fit) {
+  return guess_influences(job, fit.parameters, fit.observer_gain);
+}
+
 // A motion shows only ratios to the gain of a force.
 TEST(Guesses, AMassIsKnownOnlyAsARatioToAGuessedGain) {
   Job job = two_recordings(slide(), slide(), {"M", "B_a"});
   job.guessed = {quantity("K_f"), quantity("F_s")};  // there is no part of zero
   const FitResult fit = estimate(job);
-  const auto influences = guess_influences(job, fit);
+  const auto influences = guesses_beneath(job, fit);
   ASSERT_EQ(influences.size(), 2u);
   for (const auto& of_parameter : influences) {
     ASSERT_EQ(of_parameter.size(), 1u);
@@ -30,7 +34,7 @@ TEST(Guesses, ChangeTheEstimatesAsARefitDoes) {
   Job job = two_recordings(motor_axis(), motor_axis(), {"T_p", "B_a"});
   job.guessed = {quantity("K_t")};
   const FitResult fit = estimate(job);
-  const auto influences = guess_influences(job, fit);
+  const auto influences = guesses_beneath(job, fit);
   constexpr double kChange = 1.001;
   job.model.axis.K_t *= kChange;
   const FitResult refitted = estimate(job);
@@ -47,10 +51,10 @@ TEST(Guesses, AreOfNoAccountWhereNothingRestsOnThem) {
   job.model.axis.F_s = 1e-6;
   job.guessed = {quantity("F_s")};
   const FitResult fit = estimate(job);
-  for (const auto& of_parameter : guess_influences(job, fit)) EXPECT_TRUE(of_parameter.empty());
+  for (const auto& of_parameter : guesses_beneath(job, fit)) EXPECT_TRUE(of_parameter.empty());
   // What is estimated is no guess.
   job.guessed = {quantity("M")};
-  for (const auto& of_parameter : guess_influences(job, fit)) EXPECT_TRUE(of_parameter.empty());
+  for (const auto& of_parameter : guesses_beneath(job, fit)) EXPECT_TRUE(of_parameter.empty());
 }
 
 TEST(Guesses, OnesThatAreNegativeCountByTheirSize) {
@@ -61,7 +65,7 @@ TEST(Guesses, OnesThatAreNegativeCountByTheirSize) {
   *members(truth)[quantity("coulomb_friction.F_c")] = 5.0;
   Job job = two_recordings(truth, truth, {"M", "B_a", "coulomb_friction.F_c"});
   job.guessed = {quantity("constant_force.F_0")};
-  const auto influences = guess_influences(job, estimate(job));
+  const auto influences = guesses_beneath(job, estimate(job));
   *members(job.model)[quantity("constant_force.F_0")] *= 1.001;
   const double mass = estimate(job).parameters[0].value;
   *members(job.model)[quantity("constant_force.F_0")] /= 1.001;

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "fit/design/discrimination.h"
-#include "fit/errors/rival_shift.h"
 #include "fit/estimate/continuation.h"
 #include "fit/estimate/horizon.h"
+#include "fit/search/rival_models.h"
 #include "tests/fit/search/selection.h"
 
 namespace axisfit {
@@ -70,14 +70,19 @@ TEST_P(SelectEffectsTwin, IsLeftUndecided) {
   EXPECT_TRUE(trial_of(selection, advice.chosen)->in_model);
   EXPECT_FALSE(trial_of(selection, advice.rival)->in_model);
   // And they hold the truth, whichever it is.
-  allow_for_rivals(selection);
+  const SelectionStep& last = selection.result;
+  const auto shifts = rival_errors(last.job, last.fit.parameters, rival_models(selection));
   Model<double> declared = secret.declared();
-  for (const ParameterResult& p : selection.result.fit.parameters)
-    for (const char* name : secret.free)
-      if (p.name == name) {
-        EXPECT_LT(p.uncertainty.lower, *members(declared)[find_quantity(name)->index]) << name;
-        EXPECT_GT(p.uncertainty.upper, *members(declared)[find_quantity(name)->index]) << name;
-      }
+  for (std::size_t i = 0; i < shifts.size(); ++i)
+    for (const char* name : secret.free) {
+      const ParameterResult& p = last.fit.parameters[i];
+      if (p.name != name) continue;
+      ErrorBudget budget = p.budget;
+      budget.rival = shifts[i];
+      const ParameterUncertainty known = combined(budget, p.value, last.job.free[i]);
+      EXPECT_LT(known.lower, *members(declared)[find_quantity(name)->index]) << name;
+      EXPECT_GT(known.upper, *members(declared)[find_quantity(name)->index]) << name;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(EverySlot, SelectEffectsTwin, testing::ValuesIn(hidden_effects(true)),

@@ -1,0 +1,68 @@
+// The thresholds of all that is said of errors.
+#pragma once
+
+#include <cstddef>
+
+namespace axisfit {
+
+/// Lengths "on the scale of a parameter" are e-folds of a logarithmic one, and half of the range
+/// that its bounds allow of a linear one.
+struct ErrorOptions {
+  /// Distance from a bound, relative to the estimate's size on its scale, at which an estimate is
+  /// held by it. The solver leaves no more.
+  double at_bound = 1e-6;
+  /// Part of a combination without effect that leaves a parameter open. Smaller ones come from
+  /// rounding.
+  double open_part = 0.1;
+  /// On the scale of a parameter. An error of more than a factor of e, or an interval as wide as
+  /// the allowed range, is no knowledge.
+  double largest_error = 1.0;
+  /// On the same scale: a larger error tells no more than the order of magnitude.
+  double weak_error = 0.25;
+  /// Correlation beyond which two estimates are hardly determined apart: their errors are three
+  /// times what either has with the other known.
+  double strong_correlation = 0.95;
+  /// Autocorrelation time in samples up to which residuals count as white: errors are a tenth
+  /// larger there.
+  double white_time = 1.2;
+  /// Part of the residual's sum of squares that the estimates leave at least. Where hardly anything
+  /// is left, nobody knows how much there was.
+  double least_left = 0.1;
+
+  /// A weak direction is told by the parameters with this part of its largest component or more.
+  double told_part = 0.1;
+  /// An exponent this close to 1 or -1 is told as a product or a ratio.
+  double whole_exponent = 0.05;
+
+  /// A guess is changed by this part ...
+  double guess_change = 0.1;
+  /// ... and an estimate rests on it that moves by more than this part of its value, or more than
+  /// its standard error.
+  double guess_move = 0.01;
+
+  /// Other observer gains are higher and lower by this factor: enough for the weights of slow and
+  /// fast residuals to differ clearly.
+  double other_gain = 3.0;
+  /// Standard errors, of both fits together, that a move at another gain must exceed: less is
+  /// chance in 19 of 20.
+  double gain_errors = 2.0;
+  /// Another gain is named if it leaves no more than this part of the free-running error.
+  double better_gain = 0.8;
+
+  /// Standard errors that a move with a rival must exceed. There is no chance in it, for both
+  /// models are fitted to the same recordings.
+  double rival_errors = 1.0;
+
+  /// Significance of the likelihood ratio at which scatter counts. Scatter that is left out costs
+  /// coverage, chance that is counted widens intervals a little (bench/results/scatter.md).
+  double scatter_significance = 0.2;
+  /// Standard deviation, on the scale of u, of what one group leaves open: far more than anything
+  /// that is determined.
+  double open_deviation = 10.0;
+  /// A stretch of the only recording has so many samples, for its colour to be known ...
+  std::ptrdiff_t stretch_rows = 400;
+  /// ... and there are no more than so many: enough for a variance, and each as long as can be.
+  std::ptrdiff_t most_stretches = 6;
+};
+
+}  // namespace axisfit

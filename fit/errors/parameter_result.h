@@ -1,0 +1,32 @@
+// One estimate and what is known of it.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fit/errors/error_budget.h"
+
+namespace axisfit {
+
+/// A quantity whose value is a guess, and what becomes of an estimate when that changes.
+struct GuessInfluence {
+  std::string name;
+  double elasticity = 0.0;  ///< d ln estimate / d ln guess
+};
+
+struct ParameterResult {
+  std::string name;
+  double value = 0.0;
+  ParameterUncertainty uncertainty;        ///< what the budget comes to, unless the model is wrong
+  ErrorBudget budget{};                    ///< sampling and input noise; the rest is found by run()
+  std::vector<GuessInfluence> rests_on{};  ///< see guesses.h; found by run()
+};
+
+inline std::vector<double> values_of(std::span<const ParameterResult> parameters) {
+  std::vector<double> values;
+  for (const ParameterResult& p : parameters) values.push_back(p.value);
+  return values;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,68 @@
+#include "fit/estimate/other_gains.h"
+
+#include <array>
+
+#include "base/parallel.h"
+#include "fit/estimate/quick_fit.h"
+#include "fit/solve/parameters.h"
+
+namespace axisfit {
+namespace {
+
+bool keeps_its_gain(const Job& job) { return job.options.observer == ObserverMode::fixed; }
+
+/// The fit at another gain, from where this one ended.
+FitResult fit_at(Job job, const FitResult& fit, double gain, const RunContext& context) {
+  set_initial_values(job, values_of(fit));
+  job.options = quick_fit(job.options);
+  job.options.observer_gain = gain;
+  return estimate(job, context.quiet());
+}
+
+/// Mean square of the free-running errors on the recordings to validate, in the scatter of each
+/// signal; none where there are no such recordings, or the simulation does not finish.
+std::optional<double> free_running_error(const Job& job, const FitResult& fit) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    if (job.recordings[r].role != Role::validate) continue;
+    if (!fit.recordings[r].free_running.finished) return std::nullopt;
+    for (const SignalError& e : fit.recordings[r].signals) {
+      sum += e.nrmse_percent * e.nrmse_percent;
+      ++count;
+    }
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
+}  // namespace
+
+std::vector<FitResult> fits_at_other_gains(const Job& job, const FitResult& fit,
+                                           const RunContext& context, const ErrorOptions& options) {
+  if (!keeps_its_gain(job) || !(fit.observer_gain > 0.0) || !fit.usable) return {};
+  const ThreadPool pool(job.options.threads);
+  const std::array factors{1.0 / options.other_gain, options.other_gain};
+  std::vector<FitResult> fits(factors.size());
+  parallel_for(fits.size(), [&](std::size_t k) {
+    fits[k] = fit_at(job, fit, factors[k] * fit.observer_gain, context);
+  });
+  std::erase_if(fits, [](const FitResult& f) { return !f.usable; });
+  return fits;
+}
+
+std::optional<double> better_gain(const Job& job, const FitResult& fit,
+                                  std::span<const FitResult> others, const ErrorOptions& options) {
+  // The options speak of an error, not of its square.
+  double least =
+      options.better_gain * options.better_gain * free_running_error(job, fit).value_or(0.0);
+  std::optional<double> found;
+  for (const FitResult& other : others)
+    if (const auto error = free_running_error(job, other); error && *error < least) {
+      least = *error;
+      found = other.observer_gain;
+    }
+  return found;
+}
+
+}  // namespace axisfit

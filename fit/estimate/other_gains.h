@@ -1,0 +1,25 @@
+// The fit of a job again, at observer gains beside its own: what gain_error.h needs.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "fit/errors/error_options.h"
+#include "fit/estimate/estimate.h"
+
+namespace axisfit {
+
+/// Fits a job of fixed observer gain again at a third and at three times that gain, from the fit's
+/// values: those of them that are usable. None of other jobs, or of a fit that is not usable.
+std::vector<FitResult> fits_at_other_gains(const Job& job, const FitResult& fit,
+                                           const RunContext& context = {},
+                                           const ErrorOptions& options = {});
+
+/// The gain of the other fit whose estimates predict the recordings to validate best, simulated
+/// freely; none where none does clearly better than the fit.
+std::optional<double> better_gain(const Job& job, const FitResult& fit,
+                                  std::span<const FitResult> others,
+                                  const ErrorOptions& options = {});
+
+}  // namespace axisfit
