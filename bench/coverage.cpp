@@ -64,7 +64,7 @@ Job job_of(Rig rig, Scenario scenario, std::uint64_t seed) {
   if (scenario == Scenario::bound)
     rig.model.structure.effects.set(*effect_named("coulomb_friction"));
   job.model = rig.model;
-  job.options.observer = ObserverMode::none;
+  job.options.continuation.reset();
   for (const char* quantity : {"V_L", "B_a", "b_g", "k_g", "T_p"})
     job.free.push_back(free_parameter(job.model, quantity));
   if (scenario == Scenario::bound) {

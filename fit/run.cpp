@@ -215,7 +215,7 @@ void collect_errors(RunResult& result, FitResult& last, const RunContext& contex
   context.report({.phase = "does the observer gain matter?"});
   try {
     collect_gain_errors(result.job(), last, context);
-    if (!result.horizon) last.quiet_gain = tracking_gain(result.job(), last);
+    if (!result.horizon) last.quiet_gain = quiet_gain(result.job(), last);
   } catch (const Interrupted&) {
     result.interrupted = true;
     return;
@@ -296,9 +296,9 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   result.baseline = std::move(job);
   result.options = options;
   parameters_to_profile(result.baseline, options.profiles);
-  if (result.baseline.options.choose_horizon) {
+  if (result.baseline.choose_criterion) {
     result.horizon = choose_horizon(result.baseline, context);
-    set_criterion(result.baseline.options, result.horizon->trials[result.horizon->chosen]);
+    result.baseline.options.criterion = result.horizon->best().criterion;
   }
   result.first = estimate_with_noise(result.baseline, context);
   result.interrupted = result.first.interrupted;

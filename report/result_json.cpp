@@ -233,8 +233,8 @@ Json horizon_json(const HorizonChoice& choice) {
           {"stretch_s", choice.longest},
           {"chosen", choice.chosen},
           {"trials", list(choice.trials, [](const HorizonTrial& t) {
-             return Json{{"observer_gain", t.observer_gain},
-                         {"horizon_s", t.horizon},
+             return Json{{"observer_gain", given_gain(t.criterion)},
+                         {"horizon_s", window_length(t.criterion)},
                          {"error", finite(t.error)}};
            })}};
 }
@@ -597,7 +597,7 @@ Json result_json(const RunResult& run_result) {
                                   : Json(nullptr);
   if (run_result.selection) json.update(selection_json(run_result));
   json.update(Json{{"observer_gain", fit.observer_gain},
-                   {"horizon_s", job.options.horizon},
+                   {"horizon_s", window_length(job.options.criterion)},
                    {"stages", list(fit.stages,
                                    [](const Stage& s) {
                                      return Json{{"observer_gain", s.observer_gain},

@@ -6,6 +6,7 @@
 
 #include "bench/simulated.h"
 #include "bench/speed/work.h"
+#include "fit/criterion/gains.h"
 #include "fit/solve/residual.h"
 #include "io/config/axis_file.h"
 

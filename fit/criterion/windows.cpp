@@ -50,13 +50,13 @@ WindowStart start_at(const Recording& recording, std::size_t sample) {
 
 }  // namespace
 
-std::vector<std::size_t> first_samples(const Recording& recording, double horizon) {
+std::vector<std::size_t> first_samples(const Recording& recording, double length) {
   constexpr std::size_t kFewest = 10;
   const std::size_t samples = recording.times.size();
   const double duration = recording.times.back() - recording.times.front();
   const auto most = static_cast<double>(std::max<std::size_t>(1, samples / kFewest));
   const auto windows =
-      static_cast<std::size_t>(std::clamp(std::round(duration / horizon), 1.0, most));
+      static_cast<std::size_t>(std::clamp(std::round(duration / length), 1.0, most));
   std::vector<std::size_t> first;
   for (std::size_t k = 0; k < windows; ++k) first.push_back(k * samples / windows);
   return first;
@@ -65,10 +65,11 @@ std::vector<std::size_t> first_samples(const Recording& recording, double horizo
 std::vector<WindowStart> window_starts(const Job& job, std::size_t index) {
   const Recording& recording = job.recordings[index];
   std::vector<WindowStart> starts;
-  if (!(job.options.horizon > 0.0) || recording.command.meaning == Meaning::reference ||
+  const double length = window_length(job.options.criterion);
+  if (!(length > 0.0) || recording.command.meaning == Meaning::reference ||
       (recording.find(Signal::position) == nullptr && recording.find(Signal::velocity) == nullptr))
     return starts;
-  for (const std::size_t sample : first_samples(recording, job.options.horizon))
+  for (const std::size_t sample : first_samples(recording, length))
     starts.push_back(start_at(recording, sample));
   // The model's own state, from which it begins, may be known.
   if (recording.initial_state == InitialState::given || estimates_initial_state(job, index))

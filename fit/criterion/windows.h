@@ -29,14 +29,14 @@ struct WindowStart {
   double position_deviation = 1.0, velocity_deviation = 1.0;  ///< within which they are sought
 };
 
-/// The first samples of the windows of a recording, of about equal length, close to the horizon
+/// The first samples of the windows of a recording, of about equal length, close to the one given
 /// (s), and of ten samples at least.
-std::vector<std::size_t> first_samples(const Recording& recording, double horizon);
+std::vector<std::size_t> first_samples(const Recording& recording, double length);
 
-/// The windows of a recording with the job's horizon, and for their states
-/// what the samples around say: nothing of what was not recorded. None where the simulation runs
-/// through: without a horizon, under a controller (whose loop forgets by itself), and where neither
-/// position nor velocity was recorded.
+/// The windows of a recording by the job's criterion, and for their states what the samples around
+/// say: nothing of what was not recorded. None where the simulation runs
+/// through: by another criterion, under a controller (whose loop forgets by itself), and where
+/// neither position nor velocity was recorded.
 std::vector<WindowStart> window_starts(const Job& job, std::size_t recording);
 
 /// How many states of windows a fit of the job estimates besides its parameters.

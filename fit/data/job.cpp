@@ -73,8 +73,8 @@ FreeParameter free_parameter(const QuantityEntry& entry, double initial) {
   return p;
 }
 
-bool is_ignored(const QuantityEntry& entry, ObserverMode observer) {
-  return observer == ObserverMode::fixed &&
+bool is_ignored(const QuantityEntry& entry, const Criterion& criterion) {
+  return tracks(criterion) &&
          (entry.signal == Signal::position || entry.signal == Signal::velocity) &&
          (entry.quantity.symbol == "lag" || entry.quantity.symbol == "delay" ||
           entry.quantity.symbol == "drift");

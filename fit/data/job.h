@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "fit/data/criterion.h"
 #include "fit/data/filter.h"
 #include "sim/command.h"
 #include "sim/model.h"
@@ -135,28 +136,16 @@ FreeParameter free_parameter(const QuantityEntry& entry, double initial);
 /// That of this name on a prismatic joint. Throws std::invalid_argument for an unknown one.
 FreeParameter free_parameter(std::string_view name, double initial);
 
-/// How the simulation is made to track the data while it is fitted, see observer.h.
-enum class ObserverMode {
-  continuation,  ///< with a high observer gain at first, then ever lower ones, at last zero
-  fixed,         ///< with one gain to the end: a prediction-error fit
-  none,          ///< never: plain least squares on the free-running simulation
-};
-
-/// Whether an observer that lasts to the end takes this quantity to be zero: the lag or delay of a
-/// position or velocity. A simulation that tracks a late signal is late itself.
-bool is_ignored(const QuantityEntry& entry, ObserverMode observer);
+/// Whether a fit by this criterion takes the quantity to be zero: while it tracks to the end the
+/// lag or delay of a position or velocity. A simulation that tracks a late signal is late itself.
+bool is_ignored(const QuantityEntry& entry, const Criterion& criterion);
 
 enum class Loss { squares, huber };
 
 struct FitOptions {
-  ObserverMode observer = ObserverMode::continuation;
-  /// 1/s (velocity recorded) or rad/s (position alone). Of the fixed observer gain, or where the
-  /// continuation starts; zero: from the sampling interval, see continuation.h.
-  double observer_gain = 0.0;
-  /// s, of the windows in which a fit without observer runs free, each from a state that is fitted,
-  /// see windows.h; zero: the whole recording is one.
-  double horizon = 0.0;
-  bool choose_horizon = false;  ///< the criterion is or was chosen, see horizon.h
+  Criterion criterion;
+  /// None: plain least squares from the start. Tracking takes none, see is_continued().
+  std::optional<Continuation> continuation = Continuation{};
   Loss loss = Loss::squares;
   double huber_width = 3.0;  ///< residuals above this many sigma count linearly
   int max_iterations = 50;   ///< of each stage of the continuation
@@ -168,6 +157,8 @@ struct FitOptions {
   int threads = 0;             ///< 0: as many as the machine has
   double step = 0.5e-3;        ///< s, of the integrator
   int input_noise_draws = 64;  ///< see input_noise.h; their standard deviation errs by 9 %
+
+  bool is_continued() const { return continuation && !tracks(criterion); }
 };
 
 /// What the machine may be asked for. What is not given is taken to be what the recordings covered,
@@ -186,6 +177,8 @@ struct Job {
   std::vector<FreeParameter> free;
   std::vector<std::size_t> guessed{};  ///< quantities whose values are guesses, in quantity_list()
   FitOptions options;
+  /// run() chooses options.criterion, or has chosen it, see horizon.h; else it is given.
+  bool choose_criterion = false;
 
   Vocabulary vocabulary() const { return vocabulary_of(model.structure); }
   /// What a quantity is on the job's axis.

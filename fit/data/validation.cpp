@@ -261,9 +261,10 @@ class JobCheck {
 
   /// What the criterion of the fit asks of a recording.
   void check_criterion(const Recording& r) {
-    const FitOptions& options = job_.options;
-    if (options.observer == ObserverMode::fixed) check_tracked(r);
-    if (r.role != Role::fit || !(options.choose_horizon || options.horizon > 0.0)) return;
+    const Criterion& criterion = job_.options.criterion;
+    if (tracks(criterion)) check_tracked(r);
+    const bool has_windows = job_.choose_criterion || std::holds_alternative<Windows>(criterion);
+    if (r.role != Role::fit || !has_windows) return;
     if (r.command.meaning == Meaning::reference)
       add(Rule::horizon,
           fmt::format("the axis is under its controller in '{}', which brings it back by itself: "
@@ -297,7 +298,7 @@ class JobCheck {
   }
 
   bool is_late(const QuantityEntry& entry, const Recording& r) const {
-    return is_ignored(entry, job_.options.observer) && r.find(*entry.signal) != nullptr;
+    return is_ignored(entry, job_.options.criterion) && r.find(*entry.signal) != nullptr;
   }
 
   void add_late_instrument(const QuantityEntry& entry) {
@@ -371,8 +372,9 @@ class JobCheck {
     const FitOptions& o = job_.options;
     for (const auto& [what, value, least] :
          std::initializer_list<std::tuple<const char*, double, double>>{
-             {"observer_gain", o.observer_gain, 0.0},
-             {"horizon", o.horizon, 0.0},
+             {"observer_gain", given_gain(o.criterion), 0.0},
+             {"initial_observer_gain", o.continuation ? o.continuation->start_gain : 0.0, 0.0},
+             {"horizon", window_length(o.criterion), 0.0},
              {"huber_width", o.huber_width, 0.1},
              {"max_iterations", o.max_iterations, 1.0},
              {"tolerance", o.tolerance, 0.0},

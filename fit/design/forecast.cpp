@@ -3,7 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "fit/estimate/continuation.h"
+#include "fit/criterion/gains.h"
+#include "fit/solve/solve.h"
 
 namespace axisfit {
 
@@ -11,7 +12,7 @@ Forecast forecast(const Job& job, const std::vector<double>& values) {
   Forecast result;
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values);
-  Linearization at = linearize(job, space, u, final_observer_gain(job));
+  Linearization at = linearize(job, space, u, final_gain(job));
   result.finite = at.finite;
   if (!at.finite) return result;
   at.residuals.setZero();  // what the data are does not matter, only where they would be

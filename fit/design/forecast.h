@@ -20,7 +20,7 @@ struct Forecast {
   std::vector<SeriesRows> series;  ///< the columns
 };
 
-/// Of the recordings that are to be fitted, free running, or at the rate of a fixed observer gain.
+/// Of the recordings that are to be fitted, free running, or at a fixed observer gain.
 Forecast forecast(const Job& job, const std::vector<double>& values);
 
 /// What a motion must do for a parameter to be seen, in words that follow "needs"; empty where

@@ -4,8 +4,9 @@
 #include <chrono>
 
 #include "base/parallel.h"
-#include "fit/estimate/continuation.h"
+#include "fit/criterion/gains.h"
 #include "fit/estimate/estimate.h"
+#include "fit/solve/solve.h"
 
 namespace axisfit {
 
@@ -18,7 +19,7 @@ RunTimeEstimate estimate_run_time(const Job& job) {
   double spent = 0.0;
   for (int turn = 0; turn < 5 && spent < 0.2; ++turn) {
     const auto begin = Clock::now();
-    linearize(job, space, u, final_observer_gain(job));
+    linearize(job, space, u, final_gain(job));
     const double time = std::chrono::duration<double>(Clock::now() - begin).count();
     run_time.evaluation = turn == 0 ? time : std::min(run_time.evaluation, time);
     spent += time;
@@ -26,7 +27,7 @@ RunTimeEstimate estimate_run_time(const Job& job) {
   // Evaluations on the two threads of one machine, medians over recordings that were explained or
   // not (bench/results/run_times.md). Without a continuation there are fewer attempts.
   constexpr double kStartUp = 0.03, kSearch = 0.05;  // s
-  const bool attempts = job.options.observer == ObserverMode::continuation;
+  const bool attempts = job.options.is_continued();
   const double unexplained = attempts ? 1500.0 : 500.0;
   const double starts = std::max(1, job.options.starts);
   const double threads = thread_count(job.options.threads);

@@ -170,7 +170,7 @@ std::size_t stretches_of(const Linearization& at, std::size_t recording,
 /// Whether what happens in a stretch of the only fitted recording has little to do with those
 /// before.
 bool forgets_within_stretches(const Job& job, const ErrorOptions& options) {
-  if (job.options.observer == ObserverMode::fixed) return true;
+  if (tracks(job.options.criterion)) return true;
   const auto fitted = std::ranges::find(job.recordings, Role::fit, &Recording::role);
   const std::size_t windows =
       window_starts(job, static_cast<std::size_t>(fitted - job.recordings.begin())).size();

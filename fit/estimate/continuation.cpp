@@ -6,11 +6,36 @@
 #include <optional>
 
 #include "base/random.h"
-#include "fit/solve/residual.h"
-#include "sim/sampling.h"
+#include "fit/criterion/gains.h"
 
 namespace axisfit {
 namespace {
+
+/// When a fit starts again, from where, and when it has seen enough. Costs are reduced costs where
+/// nothing else is said.
+struct StartOptions {
+  /// Below it an end explains the data. Noise of the stated size leaves 1.
+  double explained = 1.1;
+  /// Below it an end is near the noise, and not the wrong one of many: something small is missing.
+  double near = 5.0;
+  /// By which the gain is lowered for the second start. A high one feeds the noise of the readings
+  /// into the simulation, which can bias weakly determined parameters for good.
+  double lower_gain = 5.0;
+  /// Factor within which a start is perturbed, either way: about what initial values are off.
+  double perturbation = 3.0;
+  /// Perturbations of an attempt. Where nothing could be simulated so far each costs little: then
+  /// more of them are tried.
+  int perturbations = 8, first_perturbations = 16;
+  /// A perturbed start is followed if its cost while tracking is below this part of that of the
+  /// best end: local minima show there already.
+  double promising = 0.9;
+  /// So many perturbed starts that lead, within this part of its cost, to where the best end tracks
+  /// confirm it.
+  int confirmations = 3;
+  double confirming = 0.01;
+  /// An end whose cost is above this part of the former best is the same one, found more exactly.
+  double same_end = 0.99;
+};
 
 double longest_duration(const Job& job) {
   double longest = 0.0;
@@ -19,34 +44,29 @@ double longest_duration(const Job& job) {
   return longest;
 }
 
-bool can_track(const Job& job) {
-  return std::ranges::any_of(job.recordings, [](const Recording& r) {
-    return r.role == Role::fit && observer_for(r, 1.0).active();
-  });
-}
-
-/// A start within a factor of three of another, by a fixed sequence: fits are repeatable.
-Eigen::VectorXd perturbed(const ParameterSpace& space, Eigen::VectorXd u, int attempt) {
-  std::mt19937_64 generator(static_cast<std::uint64_t>(attempt));
+/// A start within a factor of another, by a fixed sequence: fits are repeatable.
+Eigen::VectorXd perturbed(const ParameterSpace& space, Eigen::VectorXd u, double factor,
+                          int number) {
+  std::mt19937_64 generator(static_cast<std::uint64_t>(number));
   for (std::size_t i = 0; i < space.size(); ++i) {
     if (!space[i].logarithmic) continue;  // linear ones have no factor, and converge by themselves
     const double z = 2.0 * uniform(generator) - 1.0;
     double& x = u[static_cast<Eigen::Index>(i)];
-    x = std::clamp(x + z * std::log(3.0), space.internal(i, space[i].lower),
+    x = std::clamp(x + z * std::log(factor), space.internal(i, space[i].lower),
                    space.internal(i, space[i].upper));
   }
   return u;
 }
 
-/// The stages of one continuation, from `rate` down to a free-running simulation.
-class Continuation {
+/// The way from a high observer gain down to the free run, stage by stage.
+class Descent {
  public:
-  Continuation(const Job& job, const ParameterSpace& space,
-               const std::function<void(const Stage&)>& progress, const RunContext& context)
+  Descent(const Job& job, const ParameterSpace& space,
+          const std::function<void(const Stage&)>& progress, const RunContext& context)
       : job_(job), space_(space), progress_(progress), context_(context) {}
 
-  /// Solves at one rate; `final` with the full accuracy.
-  SolveResult solve_stage(const Eigen::VectorXd& start, double rate, bool final) {
+  /// Solves at one gain; `final` with the full accuracy.
+  SolveResult solve_stage(const Eigen::VectorXd& start, double gain, bool final) {
     SolveOptions options;
     options.max_iterations = job_.options.max_iterations;
     options.function_tolerance = job_.options.tolerance;
@@ -55,36 +75,37 @@ class Continuation {
       options.function_tolerance = 1e-4;
       options.penalize_distance_from_start = true;
     }
-    SolveResult solved = solve(job_, space_, start, rate, options, context_);
+    SolveResult solved = solve(job_, space_, start, gain, options, context_);
     iterations_ += solved.iterations;
-    stages_.push_back({rate, solved.reduced_cost, solved.iterations, solved.usable});
+    stages_.push_back({gain, solved.reduced_cost, solved.iterations, solved.usable});
     return solved;
   }
 
-  /// Reports what was found while tracking with the gain `rate`.
-  SolveResult solve_tracking(const Eigen::VectorXd& start, double rate) {
-    SolveResult tracking = solve_stage(start, rate, false);
+  /// Solves while tracking with this gain, the first stage of a descent.
+  SolveResult solve_tracking(const Eigen::VectorXd& start, double gain) {
+    SolveResult tracking = solve_stage(start, gain, false);
     report();
     return tracking;
   }
 
-  SolveResult run(const Eigen::VectorXd& start, double rate) {
-    return run(solve_tracking(start, rate), rate);
+  /// From a start, tracking with this gain, down to the free run.
+  SolveResult run(const Eigen::VectorXd& start, double gain) {
+    return run(solve_tracking(start, gain), gain);
   }
 
-  /// From what hold() found. Not usable where an earlier path went the same way.
-  SolveResult run(SolveResult tracking, double rate) {
-    // Below this rate the observer cannot do anything within the recording any more.
-    const double slowest = 1.0 / longest_duration(job_);
+  /// From what solve_tracking() found. Not usable where an earlier descent went the same way.
+  SolveResult run(SolveResult tracking, double gain) {
+    // Below it the observer cannot do anything within the recording any more.
+    const double lowest = 1.0 / longest_duration(job_);
     double ratio = 3.0;
     double previous_cost = tracking.reduced_cost;
-    while (tracking.usable && rate > 0.0) {
-      double next = rate / ratio;
-      if (next < slowest) next = 0.0;
+    while (tracking.usable && gain > 0.0) {
+      double next = gain / ratio;
+      if (next < lowest) next = 0.0;
       SolveResult solved = solve_stage(tracking.u, next, next == 0.0);
       Stage& latest = stages_.back();
-      // The residual may grow as the hold loosens, if the model lacks something, but not by leaps:
-      // those mean that the simulation lost the data between two rates.
+      // The residual may grow as the gain falls, if the model lacks something, but not by leaps:
+      // those mean that the simulation lost the data between two gains.
       const bool lost = !solved.usable || latest.reduced_cost > 3.0 * previous_cost + 1.0;
       latest.accepted = !lost || ratio < 1.3;
       report();
@@ -98,23 +119,10 @@ class Continuation {
       }
       previous_cost = latest.reduced_cost;
       tracking = std::move(solved);
-      rate = next;
+      gain = next;
       ratio = std::min(ratio * 2.0, 20.0);
     }
     return tracking;
-  }
-
-  /// Whether an earlier path came by here, so that its end would be this one's, too. If not, later
-  /// ones will know that this one did.
-  bool is_known_minimum(double rate, const SolveResult& solved) {
-    constexpr double kSame = 1e-2;  // of costs, and of the parameters that the data determine
-    const bool known = std::ranges::any_of(visited_, [&](const VisitedMinimum& place) {
-      return std::abs(place.rate - rate) < kSame * rate &&
-             std::abs(place.cost - solved.cost) < kSame * solved.cost &&
-             (place.u - solved.u).lpNorm<Eigen::Infinity>() < kSame;
-    });
-    if (!known) visited_.push_back({rate, solved.cost, solved.u});
-    return known;
   }
 
   void report() const {
@@ -124,8 +132,21 @@ class Continuation {
   int iterations() const { return iterations_; }
 
  private:
+  /// Whether an earlier descent came by here, so that its end would be this one's, too. If not,
+  /// later ones will know that this one did.
+  bool is_known_minimum(double gain, const SolveResult& solved) {
+    constexpr double kSame = 1e-2;  // of costs, and of the parameters that the data determine
+    const bool known = std::ranges::any_of(visited_, [&](const VisitedMinimum& place) {
+      return std::abs(place.gain - gain) < kSame * gain &&
+             std::abs(place.cost - solved.cost) < kSame * solved.cost &&
+             (place.u - solved.u).lpNorm<Eigen::Infinity>() < kSame;
+    });
+    if (!known) visited_.push_back({gain, solved.cost, solved.u});
+    return known;
+  }
+
   struct VisitedMinimum {
-    double rate = 0.0, cost = 0.0;
+    double gain = 0.0, cost = 0.0;
     Eigen::VectorXd u;
   };
 
@@ -133,95 +154,128 @@ class Continuation {
   const ParameterSpace& space_;
   const std::function<void(const Stage&)>& progress_;
   const RunContext& context_;
-  std::vector<VisitedMinimum> visited_;  ///< minima met, of all paths
+  std::vector<VisitedMinimum> visited_;  ///< minima met, of all descents
   std::vector<Stage> stages_;
   int iterations_ = 0;
 };
 
-}  // namespace
+/// The best end of the descents so far.
+struct BestEnd {
+  SolveResult solved;
+  std::optional<double> tracking_cost;  ///< where it leads when it tracks again, if that is known
 
-double initial_observer_gain(const Job& job) {
-  if (job.options.observer_gain > 0.0) return job.options.observer_gain;
-  double rate = std::numeric_limits<double>::infinity();
-  for (const Recording& r : job.recordings) {
-    if (r.role != Role::fit || !observer_for(r, 1.0).active()) continue;
-    rate =
-        std::min(rate, (r.find(Signal::velocity) != nullptr ? 1.0 : 0.3) / mean_interval(r.times));
+  bool is_below(double reduced_cost) const {
+    return solved.usable && solved.reduced_cost < reduced_cost;
   }
-  return rate;
-}
+};
 
-double final_observer_gain(const Job& job) {
-  return job.options.observer == ObserverMode::fixed ? initial_observer_gain(job) : 0.0;
-}
+/// What some perturbations of a start led to, while tracking.
+struct Perturbed {
+  std::optional<Eigen::VectorXd> promising{};  ///< the best of those that may end better
+  int confirmations = 0;                       ///< how many lead where the best end does
+};
+
+/// Descents from the initial values `start` and from elsewhere, by one strategy after the other
+/// while the best end does not explain the data. `gain`: where they begin.
+class Starts {
+ public:
+  Starts(Descent& descent, const ParameterSpace& space, const Eigen::VectorXd& start, double gain)
+      : descent_(descent), space_(space), start_(start), gain_(gain) {}
+
+  SolveResult best_end(int attempts) const {
+    BestEnd best = descend({}, start_, gain_);
+    if (attempts < 2) return best.solved;
+    best = descend_again(std::move(best));
+    if (best.is_below(options_.explained)) return best.solved;
+    best = descend_again(descend(std::move(best), start_, gain_ / options_.lower_gain));
+    return descend_from_perturbed(std::move(best), attempts).solved;
+  }
+
+ private:
+  BestEnd descend(BestEnd best, const Eigen::VectorXd& from, double gain) const {
+    return better_of(std::move(best), descent_.run(from, gain));
+  }
+
+  /// From the best end: one that tracks again often leaves a wrong valley for the right one. Once,
+  /// and not where the end is near the noise.
+  BestEnd descend_again(BestEnd best) const {
+    if (!best.solved.usable || best.is_below(options_.near) || best.tracking_cost) return best;
+    SolveResult tracking = descent_.solve_tracking(best.solved.u, gain_);
+    best.tracking_cost = tracking.cost;
+    return better_of(std::move(best), descent_.run(std::move(tracking), gain_));
+  }
+
+  /// From elsewhere: even while tracking, a controller that saturates has local minima.
+  BestEnd descend_from_perturbed(BestEnd best, int attempts) const {
+    int confirmations = 0;
+    for (int attempt = 2; attempt < attempts && !best.is_below(options_.near); ++attempt) {
+      if (best.solved.usable && !best.tracking_cost)
+        best.tracking_cost = descent_.solve_tracking(best.solved.u, gain_).cost;
+      const Perturbed found = perturb(best, attempt, confirmations);
+      confirmations = found.confirmations;
+      if (found.promising)
+        best = descend_again(descend(std::move(best), *found.promising, gain_));
+      else if (confirmations >= options_.confirmations)
+        break;
+    }
+    return best;
+  }
+
+  /// Those of one attempt, after so many confirmations in earlier ones.
+  Perturbed perturb(const BestEnd& best, int attempt, int confirmations) const {
+    const double cost = best.tracking_cost.value_or(std::numeric_limits<double>::infinity());
+    double least = options_.promising * cost;
+    Perturbed found{.confirmations = confirmations};
+    const auto most = [&] {
+      return found.promising || best.solved.usable ? options_.perturbations
+                                                   : options_.first_perturbations;
+    };
+    for (int i = 0; i < most(); ++i) {
+      const int number = attempt * options_.first_perturbations + i;
+      const SolveResult tracking =
+          descent_.solve_tracking(perturbed(space_, start_, options_.perturbation, number), gain_);
+      if (tracking.usable && std::abs(tracking.cost - cost) < options_.confirming * cost)
+        ++found.confirmations;
+      if (!found.promising && found.confirmations >= options_.confirmations) break;
+      if (!tracking.usable || tracking.cost >= least) continue;
+      least = tracking.cost;
+      found.promising = tracking.u;
+    }
+    return found;
+  }
+
+  BestEnd better_of(BestEnd best, SolveResult end) const {
+    if (best.solved.usable && !(end.usable && end.cost < best.solved.cost)) return best;
+    const bool is_same = best.solved.usable && end.cost > options_.same_end * best.solved.cost;
+    best.solved = std::move(end);
+    if (!is_same) best.tracking_cost.reset();
+    return best;
+  }
+
+  const StartOptions options_;
+  Descent& descent_;
+  const ParameterSpace& space_;
+  const Eigen::VectorXd& start_;
+  const double gain_;
+};
+
+}  // namespace
 
 ContinuationResult run_continuation(const Job& job, const ParameterSpace& space,
                                     const Eigen::VectorXd& start,
                                     const std::function<void(const Stage&)>& progress,
                                     const RunContext& context) {
-  Continuation continuation(job, space, progress, context);
+  Descent descent(job, space, progress, context);
   ContinuationResult result;
-  if (job.options.observer != ObserverMode::continuation || !can_track(job)) {
-    result.last = continuation.solve_stage(start, final_observer_gain(job), true);
-    continuation.report();
+  if (job.options.is_continued() && can_track(job)) {
+    const Starts starts(descent, space, start, highest_gain(job));
+    result.last = starts.best_end(job.options.attempts);
   } else {
-    const double rate = initial_observer_gain(job);
-    // An end that is near the noise is not the wrong one of many: something small is missing.
-    constexpr double kExplained = 1.1, kNear = 5.0;
-    const auto explained = [&](double reduced_cost) {
-      return result.last.usable && result.last.reduced_cost < reduced_cost;
-    };
-    std::optional<double> known;  // cost of the best end when it tracks again
-    const auto accept_if_better = [&](SolveResult solved) {
-      if (result.last.usable && !(solved.usable && solved.cost < result.last.cost)) return;
-      const bool same_end = result.last.usable && solved.cost > 0.99 * result.last.cost;
-      result.last = std::move(solved);
-      if (!same_end) known.reset();
-    };
-    const auto track_with_best = [&] {
-      SolveResult tracking = continuation.solve_tracking(result.last.u, rate);
-      known = tracking.cost;
-      return tracking;
-    };
-    const auto follow = [&](const Eigen::VectorXd& from, double at_rate) {
-      accept_if_better(continuation.run(from, at_rate));
-      // Held again, an end in a wrong valley often finds the right one.
-      const bool wrong = result.last.usable && !explained(kNear) && !known;
-      if (wrong && job.options.attempts > 1)
-        accept_if_better(continuation.run(track_with_best(), rate));
-    };
-    follow(start, rate);
-    // Where the end does not explain the data, start again from a lower gain: a high one feeds the
-    // measurement noise into the simulation, which can bias weakly determined parameters for good.
-    if (!explained(kExplained) && job.options.attempts > 1) follow(start, rate / 5.0);
-    // And from elsewhere: even while tracking, a controller that saturates has local minima. They
-    // show there already, so that only a start with a lower tracking cost has to be followed. One
-    // that cannot even be simulated costs little: then more perturbations are tried. Several that
-    // end where the best did confirm it.
-    constexpr int kPerturbations = 8, kFirstPerturbations = 16, kConfirmed = 3;
-    int confirmed = 0;
-    for (int attempt = 2; attempt < job.options.attempts; ++attempt) {
-      if (explained(kNear)) break;
-      if (result.last.usable && !known) track_with_best();
-      const double best = known.value_or(std::numeric_limits<double>::infinity());
-      double least = 0.9 * best;
-      std::optional<Eigen::VectorXd> from;
-      for (int move = 0; move < (from || result.last.usable ? kPerturbations : kFirstPerturbations);
-           ++move) {
-        const SolveResult tracking = continuation.solve_tracking(
-            perturbed(space, start, attempt * kFirstPerturbations + move), rate);
-        if (tracking.usable && std::abs(tracking.cost - best) < 0.01 * best) ++confirmed;
-        if (!from && confirmed >= kConfirmed) break;
-        if (!tracking.usable || tracking.cost >= least) continue;
-        least = tracking.cost;
-        from = tracking.u;
-      }
-      if (confirmed >= kConfirmed && !from) break;
-      if (from) follow(*from, rate);
-    }
+    result.last = descent.solve_stage(start, final_gain(job), true);
+    descent.report();
   }
-  result.last.iterations = continuation.iterations();
-  result.stages = continuation.stages();
+  result.last.iterations = descent.iterations();
+  result.stages = descent.stages();
   return result;
 }
 

@@ -20,14 +20,9 @@ struct ContinuationResult {
   std::vector<Stage> stages;  ///< of all attempts, in turn
 };
 
-/// The observer gain at which the continuation starts by default: as high as the sampling allows, 1
-/// per sample interval for a recorded velocity and 0.3 for position alone.
-double initial_observer_gain(const Job& job);
-
-/// The observer gain at which the fit ends: zero unless the job fixes it.
-double final_observer_gain(const Job& job);
-
-/// Fits from u, through all stages of job.options.observer. `progress` is called after every stage.
+/// Fits from u: from highest_gain() down to the free run, and again from elsewhere while the end
+/// does not explain the recordings; or at final_gain() alone, where the job has no continuation or
+/// nothing can be tracked. `progress` is called after every stage.
 ContinuationResult run_continuation(const Job& job, const ParameterSpace& space,
                                     const Eigen::VectorXd& u,
                                     const std::function<void(const Stage&)>& progress = {},

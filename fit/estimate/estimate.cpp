@@ -10,9 +10,11 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "fit/criterion/gains.h"
 #include "fit/data/noise.h"
 #include "fit/errors/input_noise.h"
 #include "fit/estimate/continuation.h"
+#include "fit/estimate/recipes.h"
 #include "fit/solve/parameters.h"
 #include "fit/solve/residual.h"
 
@@ -195,7 +197,7 @@ FitResult estimate(const Job& job, const RunContext& context, std::span<const do
   result.message = solved.message;
   result.iterations = solved.iterations;
   result.stages = best.result.stages;
-  result.observer_gain = final_observer_gain(job);
+  result.observer_gain = final_gain(job);
   result.recordings.resize(job.recordings.size());
   parallel_for(job.recordings.size(), [&](std::size_t r) {
     result.recordings[r] = evaluate_recording(job, space, r, solved.u, result.observer_gain);
@@ -234,7 +236,7 @@ FitResult evaluated(const Job& job) {
   const Eigen::VectorXd none(0);
   FitResult result;
   result.status = Status::converged;
-  result.observer_gain = final_observer_gain(job);
+  result.observer_gain = final_gain(job);
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     result.recordings.push_back(evaluate_recording(job, space, r, none, result.observer_gain));
   return result;
@@ -243,10 +245,7 @@ FitResult evaluated(const Job& job) {
 FitResult estimate_with_noise(Job& job, const RunContext& context, std::span<const double> from) {
   FitResult result = estimate(job, context, from);
   Job again = job;
-  again.options.starts = 1;
-  // It is at the minimum already, and follows it.
-  if (again.options.observer == ObserverMode::continuation)
-    again.options.observer = ObserverMode::none;
+  again.options = recipe::polish(job.options);
   constexpr int kTurns = 20;
   constexpr double kStays = 1e-4;
   for (int turn = 0; turn < kTurns && result.usable; ++turn) {

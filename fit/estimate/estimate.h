@@ -107,7 +107,7 @@ struct FitResult {
   /// 1/s, at which what was estimated predicts the recordings to validate better; see
   /// other_gains.h.
   std::optional<double> better_gain{};
-  /// 1/s, at which noise of the inputs would not add up, see tracking_gain().
+  /// 1/s, at which noise of the inputs would not add up, see quiet_gain().
   std::optional<double> quiet_gain{};
   int iterations = 0;         ///< of the best start, all stages
   std::vector<Stage> stages;  ///< of the best start

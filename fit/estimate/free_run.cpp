@@ -10,7 +10,7 @@ namespace axisfit {
 
 std::vector<double> free_run_errors(Job job, std::span<const double> values, std::size_t index,
                                     double horizon) {
-  job.options.horizon = horizon;
+  job.options.criterion = Windows{horizon};
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values);
   constexpr double kKnown = 0.1;

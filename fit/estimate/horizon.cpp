@@ -6,12 +6,13 @@
 #include <mutex>
 
 #include "base/parallel.h"
+#include "fit/criterion/gains.h"
 #include "fit/criterion/windows.h"
 #include "fit/data/initial_state.h"
 #include "fit/estimate/continuation.h"
 #include "fit/estimate/estimate.h"
 #include "fit/estimate/free_run.h"
-#include "fit/estimate/quick_fit.h"
+#include "fit/estimate/recipes.h"
 #include "sim/sampling.h"
 
 namespace axisfit {
@@ -95,21 +96,23 @@ Job without(Job job, const Stretch& stretch) {
   return job;
 }
 
+/// A window that no piece fills: the free run of all of it, from a fitted state.
+constexpr Criterion kWholePiece = Windows{std::numeric_limits<double>::max()};
+
 /// A simulation that tracks a late signal is late itself.
 bool tracks_in_time(const Job& job) {
   const std::vector<QuantityEntry>& list = quantity_list(job.vocabulary());
   Model<double> model = job.model;
   const std::vector<double*> values = members(model);
   for (const QuantityEntry& entry : list)
-    if (is_ignored(entry, ObserverMode::fixed) && *values[entry.index] != 0.0) return false;
-  return std::ranges::none_of(job.free, [&](const FreeParameter& p) {
-    return is_ignored(list[p.quantity], ObserverMode::fixed);
-  });
+    if (is_ignored(entry, Tracking{}) && *values[entry.index] != 0.0) return false;
+  return std::ranges::none_of(
+      job.free, [&](const FreeParameter& p) { return is_ignored(list[p.quantity], Tracking{}); });
 }
 
 std::vector<HorizonTrial> criteria_for(const Job& job, const std::vector<Stretch>& stretches) {
   std::vector<HorizonTrial> trials;
-  if (tracks_in_time(job)) trials.push_back({.observer_gain = initial_observer_gain(job)});
+  if (tracks_in_time(job)) trials.push_back({Tracking{highest_gain(job)}});
   double shortest = std::numeric_limits<double>::infinity(), interval = 0.0;
   for (const Stretch& stretch : stretches) {
     shortest = std::min(shortest, stretch.duration);
@@ -117,23 +120,12 @@ std::vector<HorizonTrial> criteria_for(const Job& job, const std::vector<Stretch
   }
   constexpr double kSamples = 30.0;  // of a window, at least
   for (const double share : {0.01, 0.03, 0.1, 0.3, 1.0})
-    if (share * shortest >= kSamples * interval) trials.push_back({.horizon = share * shortest});
-  trials.emplace_back();
+    if (share * shortest >= kSamples * interval) trials.push_back({Windows{share * shortest}});
+  trials.push_back({FreeRun{}});
   return trials;
 }
 
 }  // namespace
-
-void set_criterion(FitOptions& options, const HorizonTrial& criterion) {
-  options.horizon = criterion.horizon;
-  if (criterion.observer_gain > 0.0) {
-    options.observer = ObserverMode::fixed;
-    options.observer_gain = criterion.observer_gain;
-  } else if (options.observer == ObserverMode::fixed) {
-    options.observer = ObserverMode::continuation;
-    options.observer_gain = 0.0;
-  }
-}
 
 HorizonChoice choose_horizon(const Job& job, const RunContext& context) {
   const ThreadPool pool(job.options.threads);
@@ -146,8 +138,8 @@ HorizonChoice choose_horizon(const Job& job, const RunContext& context) {
   // From a poor start it is a fit that tracks, or did at first, that gets near; the others begin
   // there.
   Job tracking = job;
-  set_criterion(tracking.options, choice.trials.front());
-  tracking.options.tolerance = quick_fit(job.options).tolerance;
+  tracking.options = recipe::rough(job.options);
+  tracking.options.criterion = choice.trials.front().criterion;
   const FitResult near = estimate(tracking, context.quiet());
   if (near.status == Status::failed)
     throw NoHorizon("horizon: auto: the model cannot be simulated at any start: " + near.message);
@@ -159,16 +151,11 @@ HorizonChoice choose_horizon(const Job& job, const RunContext& context) {
   Progress all{.phase = "choosing the horizon", .of = static_cast<int>(fits)};
   parallel_for(fits, [&](std::size_t i) {
     context.check_stop();
-    const HorizonTrial& trial = choice.trials[i / stretches.size()];
+    const Criterion& criterion = choice.trials[i / stretches.size()].criterion;
     const Stretch& stretch = stretches[i % stretches.size()];
     Job rest = without(job, stretch);
-    rest.options = quick_fit(rest.options);
-    set_criterion(rest.options, trial);
-    if (!(trial.observer_gain > 0.0)) {
-      rest.options.observer = ObserverMode::none;
-      // The whole of each piece.
-      if (trial.horizon == 0.0) rest.options.horizon = std::numeric_limits<double>::max();
-    }
+    rest.options = recipe::polish(recipe::quick(job.options));
+    rest.options.criterion = std::holds_alternative<FreeRun>(criterion) ? kWholePiece : criterion;
     rest.options.threads = 1;
     set_initial_values(rest, from);
     const ParameterSpace space(rest);

@@ -15,8 +15,7 @@ namespace axisfit {
 
 /// One of the criteria, and how it did.
 struct HorizonTrial {
-  double observer_gain = 0.0;  ///< 1/s; above zero the simulation tracks to the end: one step ahead
-  double horizon = 0.0;        ///< s, of the windows; zero without observer: the whole recording
+  Criterion criterion;
   /// Root of the mean square over the stretches left out and the fitted signals, of the free run
   /// from how the stretch begins, per standard deviation of the signal. Infinite where a fit or a
   /// run failed.
@@ -28,6 +27,8 @@ struct HorizonChoice {
   double longest = 0.0;  ///< s, the longest of them
   std::vector<HorizonTrial> trials;
   std::size_t chosen = 0;  ///< with the smallest error
+
+  const HorizonTrial& best() const { return trials[chosen]; }
 };
 
 /// With no horizon can the model be fitted and simulated.
@@ -39,8 +40,5 @@ struct NoHorizon : std::runtime_error {
 /// ahead, unless the signal that is tracked lags. The job's recordings must have windows, see
 /// window_starts(). Throws NoHorizon, and Interrupted after a stop.
 HorizonChoice choose_horizon(const Job& job, const RunContext& context = {});
-
-/// Lets fits go by that criterion. `choose_horizon` stays, to say that it was chosen.
-void set_criterion(FitOptions& options, const HorizonTrial& criterion);
 
 }  // namespace axisfit

@@ -3,19 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/criterion/gains.h"
 #include "fit/errors/input_noise.h"
-#include "fit/estimate/continuation.h"
-#include "fit/solve/residual.h"
+#include "fit/solve/solve.h"
 #include "sim/sampling.h"
 
 namespace axisfit {
 
 std::optional<double> kalman_gain(const Job& job, const std::vector<double>& values) {
-  const double high = initial_observer_gain(job);
+  const double high = highest_gain(job);
   if (!std::isfinite(high)) return std::nullopt;
   Job few = job;
   few.options.input_noise_draws = 8;
-  few.options.horizon = 0.0;
+  few.options.criterion = Tracking{high};
   const ParameterSpace space(few);
   const Eigen::VectorXd u = space.internal(values);
   const Linearization at = linearize(few, space, u, high);
@@ -39,7 +39,7 @@ std::optional<double> kalman_gain(const Job& job, const std::vector<double>& val
   return gain;
 }
 
-std::optional<double> tracking_gain(const Job& job, const FitResult& fit) {
+std::optional<double> quiet_gain(const Job& job, const FitResult& fit) {
   constexpr double kFarMore = 9.0;  // of the mean square, over that of the readings
   const bool is_moved = fit.usable && fit.observer_gain == 0.0 && fit.at_solution &&
                         fit.at_solution->input_noise &&
@@ -47,9 +47,9 @@ std::optional<double> tracking_gain(const Job& job, const FitResult& fit) {
   return is_moved ? kalman_gain(job, values_of(fit)) : std::nullopt;
 }
 
-bool had_to_track(const FitOptions& asked, const FitOptions& used) {
-  return asked.observer != ObserverMode::fixed && used.observer == ObserverMode::fixed &&
-         !asked.choose_horizon;
+bool had_to_track(const Job& asked, const Job& used) {
+  return !tracks(asked.options.criterion) && tracks(used.options.criterion) &&
+         !asked.choose_criterion;
 }
 
 }  // namespace axisfit

@@ -1,4 +1,5 @@
-// The observer gain that noise of the recorded inputs and of the readings ask for.
+// The rungs of the ladder of gains (fit/criterion/gains.h) that noise of the recorded inputs and of
+// the readings asks for.
 #pragma once
 
 #include <optional>
@@ -12,7 +13,7 @@ namespace axisfit {
 /// accelerates, at these values of the free parameters: with it the errors of a prediction one step
 /// ahead are white. At a lower one noise of the inputs adds up in the simulation, at a higher one
 /// that of the readings drives it. The lowest of all `fit` recordings, and no higher than
-/// initial_observer_gain(). Nothing where every input is exact, or no simulation can track.
+/// highest_gain(). Nothing where every input is exact, or no simulation can track.
 ///
 /// Noise of standard deviation s_a in the acceleration, s_x in a recorded position or s_v in a
 /// recorded velocity, from sample to sample, gives a bandwidth of sqrt(s_a / s_x) or s_a / s_v.
@@ -22,10 +23,10 @@ std::optional<double> kalman_gain(const Job& job, const std::vector<double>& val
 /// That gain, for a free run that noise of the inputs moves by more than three times the noise of
 /// the readings: its residual says little of the model, and its estimates err more than those of a
 /// fit that tracks. Nothing for any other fit.
-std::optional<double> tracking_gain(const Job& job, const FitResult& fit);
+std::optional<double> quiet_gain(const Job& job, const FitResult& fit);
 
-/// Whether a search that was `asked` for a free run came to track because of that noise. A horizon
-/// that is chosen may be to track, too: that is what was asked for.
-bool had_to_track(const FitOptions& asked, const FitOptions& used);
+/// Whether a search that was `asked` for a free run came to track because of that noise. A
+/// criterion that is chosen may be to track, too: that is what was asked for.
+bool had_to_track(const Job& asked, const Job& used);
 
 }  // namespace axisfit

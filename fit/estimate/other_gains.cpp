@@ -3,19 +3,17 @@
 #include <array>
 
 #include "base/parallel.h"
-#include "fit/estimate/quick_fit.h"
+#include "fit/estimate/recipes.h"
 #include "fit/solve/parameters.h"
 
 namespace axisfit {
 namespace {
 
-bool keeps_its_gain(const Job& job) { return job.options.observer == ObserverMode::fixed; }
-
 /// The fit at another gain, from where this one ended.
 FitResult fit_at(Job job, const FitResult& fit, double gain, const RunContext& context) {
   set_initial_values(job, values_of(fit));
-  job.options = quick_fit(job.options);
-  job.options.observer_gain = gain;
+  job.options = recipe::quick(job.options);
+  job.options.criterion = Tracking{gain};
   return estimate(job, context.quiet());
 }
 
@@ -40,7 +38,7 @@ std::optional<double> free_running_error(const Job& job, const FitResult& fit) {
 
 std::vector<FitResult> fits_at_other_gains(const Job& job, const FitResult& fit,
                                            const RunContext& context, const ErrorOptions& options) {
-  if (!keeps_its_gain(job) || !(fit.observer_gain > 0.0) || !fit.usable) return {};
+  if (!tracks(job.options.criterion) || !(fit.observer_gain > 0.0) || !fit.usable) return {};
   const ThreadPool pool(job.options.threads);
   const std::array factors{1.0 / options.other_gain, options.other_gain};
   std::vector<FitResult> fits(factors.size());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "fit/criterion/gains.h"
 #include "fit/search/score.h"
 
 namespace axisfit {

@@ -5,6 +5,7 @@
 #include <complex>
 #include <numbers>
 
+#include "fit/criterion/gains.h"
 #include "fit/solve/residual.h"
 #include "sim/sampling.h"
 

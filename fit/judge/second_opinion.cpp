@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include "fit/estimate/recipes.h"
 #include "fit/judge/grade.h"
 #include "fit/solve/solve.h"
 
@@ -41,8 +42,7 @@ InverseStart try_inverse_start(Job& job, FitResult& fit, const RunContext& conte
     return InverseStart::not_tried;
 
   Job again = job;
-  again.options.starts = 1;
-  again.options.attempts = 1;
+  again.options = recipe::once(job.options);
   FitResult other = estimate_with_noise(again, context, from);
   again.options = job.options;
   const auto rank = [](const FitResult& f, double c) {

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "fit/estimate/continuation.h"
+#include "fit/criterion/gains.h"
 #include "fit/search/backlash.h"
 #include "fit/solve/parameters.h"
 #include "sim/equations.h"
@@ -103,7 +103,7 @@ bool is_constant(const Job& job, const QuantityEntry& entry, double declared) {
          declared != neutral(entry.quantity) && declared > entry.quantity.lower &&
          declared < entry.quantity.upper &&
          (!entry.signal ||
-          (is_recorded(job, *entry.signal) && !is_ignored(entry, job.options.observer)));
+          (is_recorded(job, *entry.signal) && !is_ignored(entry, job.options.criterion)));
 }
 
 /// The range of a shape that may be negative, such as a place: it has no scale of its own, and is
@@ -180,7 +180,7 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
     for (const std::string_view part : {"bias", "gain", "lag", "delay", "drift"}) {
       const QuantityEntry& entry =
           job.entry(index_of_quantity(std::string(signal.name) + "." + std::string(part)));
-      if (is_ignored(entry, job.options.observer)) continue;
+      if (is_ignored(entry, job.options.criterion)) continue;
       Candidate candidate = single(entry.name, "sensor", entry);
       if (part == "lag") candidate.probes = later(scales);
       candidate.is_timing = part == "delay" || part == "drift";

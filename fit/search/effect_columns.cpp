@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/parallel.h"
+#include "fit/criterion/gains.h"
 #include "fit/solve/jet.h"
 #include "fit/solve/parameters.h"
 #include "fit/solve/solve.h"

@@ -2,18 +2,14 @@
 
 #include <algorithm>
 
-#include "fit/estimate/quick_fit.h"
-#include "fit/search/score.h"
+#include "fit/estimate/recipes.h"
 #include "fit/solve/parameters.h"
 
 namespace axisfit {
 
 FitResult refit(const Job& job, const RunContext& context, int max_iterations) {
   Job quick = job;
-  quick.options = quick_fit(job.options);
-  quick.options.max_iterations = std::min(job.options.max_iterations, max_iterations);
-  if (job.options.observer == ObserverMode::continuation)
-    quick.options.observer_gain = score_gains(job).front();
+  quick.options = recipe::refit(job, max_iterations);
   return estimate(quick, context.quiet());
 }
 
@@ -26,8 +22,7 @@ void resume(ExtendedModel& e, const RunContext& context) {
   constexpr int kMany = 100;
   Job near = e.job;
   set_initial_values(near, values_of(e.fit));
-  if (near.options.observer == ObserverMode::continuation)
-    near.options.observer = ObserverMode::none;
+  near.options = recipe::polish(near.options);
   e.fit = refit(near, context, kMany);
   e.residuals = residual_series(e.job, e.fit);
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "fit/criterion/gains.h"
 #include "fit/search/shortlist.h"
 #include "sim/effects/effects.h"
 
@@ -57,7 +58,7 @@ class RoundTrial {
   /// free run is scored, too: an instrument that errs misleads whatever tracks it.
   std::vector<double> gains_to_score() const {
     constexpr double kClose = 25.0;
-    const bool is_free = model_.job.options.observer != ObserverMode::fixed;
+    const bool is_free = !tracks(model_.job.options.criterion);
     if (is_free && options_.explained) return {0.0};
     std::vector<double> gains = score_gains(model_.job);
     if (const auto close = close_gain(model_.job, values_of(model_.fit), context_))

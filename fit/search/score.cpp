@@ -7,7 +7,8 @@
 
 #include "base/linear_algebra.h"
 #include "base/parallel.h"
-#include "fit/estimate/continuation.h"
+#include "fit/criterion/gains.h"
+#include "fit/estimate/recipes.h"
 #include "fit/search/effect_columns.h"
 #include "fit/search/periods.h"
 #include "fit/solve/residual.h"
@@ -258,12 +259,6 @@ void refine_shapes(const Job& fixed, const EffectColumns& columns, const Scorer&
   }
 }
 
-/// Whether the job leaves it to the search at which observer gains it scores.
-bool has_choice_of_gains(const Job& job) {
-  const bool is_given = job.options.observer == ObserverMode::fixed && !job.options.choose_horizon;
-  return !is_given && std::isfinite(initial_observer_gain(job));
-}
-
 /// The fit at an observer gain that a score test starts from. Not usable: nothing finite.
 SolveResult tracking_fit(const Job& job, const ParameterSpace& space,
                          const std::vector<double>& values, double rate,
@@ -274,9 +269,8 @@ SolveResult tracking_fit(const Job& job, const ParameterSpace& space,
   return solve(job, space, space.internal(values), rate, options, context);
 }
 
-/// Smooth effects are then a few parts in ten thousand off, and four times as quick.
 Job with_coarse_steps(Job job) {
-  job.options.step *= 4.0;
+  job.options = recipe::coarse(job.options);
   return job;
 }
 
@@ -355,12 +349,6 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double r
   return test.usable ? test : scored(job, values, rate, curves, context);
 }
 
-std::vector<double> score_gains(const Job& job) {
-  const double first = initial_observer_gain(job);
-  if (!has_choice_of_gains(job)) return {first};
-  return {first / 30.0, first / 100.0};
-}
-
 std::optional<double> close_gain(const Job& job, const std::vector<double>& values,
                                  const RunContext& context) {
   constexpr double kLeastChiSquare = 100.0;  // per sample: ten times the noise
@@ -368,7 +356,7 @@ std::optional<double> close_gain(const Job& job, const std::vector<double>& valu
   const Job coarse = with_coarse_steps(job);
   const ParameterSpace space(coarse);
   for (const double part : {1.0, 1.0 / 3.0, 1.0 / 10.0}) {
-    const double gain = part * initial_observer_gain(job);
+    const double gain = part * highest_gain(job);
     const SolveResult fit = tracking_fit(coarse, space, values, gain, context);
     if (fit.usable && fit.reduced_cost >= kLeastChiSquare) return gain;
   }

@@ -44,11 +44,9 @@ struct ScoreTest {
 ScoreTest score_test(const Job& job, const std::vector<double>& values, double observer_gain,
                      bool curves = false, const RunContext& context = {});
 
-/// The observer gains (1/s) at which a job's residual is scored in any case.
-std::vector<double> score_gains(const Job& job);
-
-/// A higher one for what is large: the highest at which the residual still is many times the noise.
-/// What is missing shows there where it acts. At a lower gain the simulation drifts away from the
+/// A further rung of the ladder of gains (fit/criterion/gains.h) for what is large: the highest of
+/// three at which the residual still is many times the noise. What is missing shows there where it
+/// acts. At a lower gain the simulation drifts away from the
 /// data, and what depends on the place or the speed is read off the wrong one. None where nothing
 /// is that large.
 std::optional<double> close_gain(const Job& job, const std::vector<double>& values,

@@ -11,6 +11,7 @@
 #include "fit/criterion/windows.h"
 #include "fit/estimate/horizon.h"
 #include "fit/estimate/kalman_gain.h"
+#include "fit/estimate/recipes.h"
 #include "fit/search/pruning.h"
 #include "fit/search/rivals.h"
 #include "fit/search/round.h"
@@ -23,11 +24,8 @@ namespace {
 
 /// The model, refitted with a simulation that tracks the data.
 SelectionStep tracking(SelectionStep model, double gain, const RunContext& context) {
-  FitOptions& options = model.job.options;
-  options.observer = ObserverMode::fixed;
-  options.observer_gain = gain;
-  options.horizon = 0.0;
-  options.choose_horizon = false;
+  model.job.options.criterion = Tracking{gain};
+  model.job.choose_criterion = false;
   model.fit = refit_from(model.job, values_of(model.fit), context);
   return model;
 }
@@ -35,10 +33,7 @@ SelectionStep tracking(SelectionStep model, double gain, const RunContext& conte
 /// Fits with the full accuracy from close by.
 FitResult final_fit(Job job, const std::vector<double>& values, const RunContext& context) {
   set_initial_values(job, values);
-  job.options.starts = 1;
-  job.options.attempts = 1;
-  if (job.options.observer == ObserverMode::continuation)
-    job.options.observer_gain = score_gains(job).back();
+  job.options = recipe::final_fit(job);
   return estimate(job, context.quiet());
 }
 
@@ -110,7 +105,7 @@ class EffectSelector {
     const bool appends = accepted().size() > named.chain.accepted().size();
     // A simulation that tracks the data shows a curve also beside effects that imitate a part of
     // it.
-    const bool tracks = declared_job().options.observer == ObserverMode::fixed;
+    const bool tracks = axisfit::tracks(declared_job().options.criterion);
     if (named.chain.accepted().empty() || (tracks && !appends) || !can_gain_by_a_curve()) return;
     provisional_ = true;
     restart(chain().declared());
@@ -157,7 +152,7 @@ class EffectSelector {
   void search_together(const std::vector<AcceptedEffect>& known) {
     constexpr double kProvisionalChance = 0.05;
     const SelectionStep declared = chain().declared();
-    const bool is_continued = declared.job.options.observer == ObserverMode::continuation;
+    const bool is_continued = declared.job.options.is_continued();
     if (is_continued) restart(tracking(declared, score_gains(declared.job).front(), context_));
     while (current().fit.usable && has_room() && !explained() && round(false, kProvisionalChance)) {
     }
@@ -366,17 +361,21 @@ std::vector<std::string> EffectSelector::small_effects() const {
   return names;
 }
 
-/// What was found by another criterion, with the fits that these options ask for. Of the declared
-/// model such a fit may be known.
-EffectSelection refitted(EffectSelection selection, const FitOptions& options,
+/// What was found by another criterion, with the fits that this one asks for, which was or was not
+/// chosen. Of the declared model such a fit may be known.
+EffectSelection refitted(EffectSelection selection, const Criterion& criterion, bool is_chosen,
                          const FitResult* declared, const RunContext& context) {
+  const auto take_criterion = [&](Job& job) {
+    job.options.criterion = criterion;
+    job.choose_criterion = is_chosen;
+  };
   std::vector<SelectionStep>& models = selection.models;
   SelectionStep& last = selection.result;
-  last.job.options = options;
+  take_criterion(last.job);
   context.report({.phase = "final fit"});
   last.fit = models.size() > 1 ? final_fit(last.job, values_of(last.fit), context) : *declared;
   for (SelectionStep& model : models) {
-    model.job.options = options;
+    take_criterion(model.job);
     // Where blocks are held out, they are left out of these fits alone.
     const bool is_known = !selection.held_out_blocks;
     if (is_known && declared != nullptr && &model == &models.front()) {
@@ -401,23 +400,19 @@ EffectSelection refitted(EffectSelection selection, const FitOptions& options,
   return selection;
 }
 
-bool is_same_criterion(const FitOptions& a, const FitOptions& b) {
-  return a.observer == b.observer && a.observer_gain == b.observer_gain && a.horizon == b.horizon;
-}
-
 }  // namespace
 
 EffectSelection select_effects(const Job& job, const FitResult& first,
                                const SelectionOptions& options, const RunContext& context) {
   const ThreadPool pool(job.options.threads);
   const SelectionStep declared{"", job, first};
-  const bool is_chosen = job.options.choose_horizon;
-  std::optional<double> least_gain = tracking_gain(job, first);
+  const bool is_chosen = job.choose_criterion;
+  std::optional<double> least_gain = quiet_gain(job, first);
   const bool is_moved = least_gain.has_value();
   // The states with which windows begin take part of what is missing upon themselves, and every
   // fit with them takes minutes. A simulation that was chosen to track may follow the noise.
   const bool tracks = first.usable && (window_states(job) > 0 || is_moved ||
-                                       (is_chosen && job.options.observer == ObserverMode::fixed));
+                                       (is_chosen && axisfit::tracks(job.options.criterion)));
   // Nor at a gain at which noise of the inputs adds up.
   if (tracks && !is_moved) least_gain = kalman_gain(job, values_of(first));
   const SelectionStep start =
@@ -426,7 +421,7 @@ EffectSelection select_effects(const Job& job, const FitResult& first,
              : declared;
   EffectSelection selection = EffectSelector(start.job, start.fit, options, context).run();
   try {
-    FitOptions criterion = job.options;
+    Criterion criterion = job.options.criterion;
     // What predicts best changes with the model.
     if (is_chosen && !selection.interrupted && selection.models.size() > 1) {
       Job extended = selection.result.job;
@@ -434,16 +429,16 @@ EffectSelection select_effects(const Job& job, const FitResult& first,
       set_initial_values(extended, values_of(selection.result.fit));
       try {
         selection.horizon = choose_horizon(extended, context);
-        set_criterion(criterion, selection.horizon->trials[selection.horizon->chosen]);
+        criterion = selection.horizon->best().criterion;
       } catch (const NoHorizon&) {
         // The one that was chosen for the declared model stays.
       }
     }
     // A free run that noise moves would not keep what was found.
     if (is_moved && !is_chosen && selection.models.size() > 1) return selection;
-    const bool is_other = !is_same_criterion(criterion, job.options);
+    const bool is_other = criterion != job.options.criterion;
     if (!selection.interrupted && (tracks || is_other))
-      selection = refitted(selection, criterion, is_other ? nullptr : &first, context);
+      selection = refitted(selection, criterion, is_chosen, is_other ? nullptr : &first, context);
   } catch (const Interrupted&) {
     selection.interrupted = true;
   }

@@ -135,10 +135,9 @@ Hash& operator<<(Hash& hash, const FreeParameter& parameter) {
 
 Hash& operator<<(Hash& hash, const FitOptions& options) {
   // How the fit goes about it is in the start and the options of each problem.
-  const auto& [observer, observer_gain, horizon, choose_horizon, loss, huber_width, max_iterations,
-               tolerance, attempts, starts, spread, seed, threads, step, input_noise_draws] =
-      options;
-  return hash << horizon << loss << huber_width << step;
+  const auto& [criterion, continuation, loss, huber_width, max_iterations, tolerance, attempts,
+               starts, spread, seed, threads, step, input_noise_draws] = options;
+  return hash << window_length(criterion) << loss << huber_width << step;
 }
 
 Hash& operator<<(Hash& hash, const SolveOptions& options) {
@@ -149,8 +148,9 @@ Hash& operator<<(Hash& hash, const SolveOptions& options) {
 }
 
 Hash& operator<<(Hash& hash, const Job& job) {
-  // Names, limits of experiments and which values are guesses say nothing of the problem.
-  const auto& [axis, model, limits, recordings, free, guessed, options] = job;
+  // Names, limits of experiments, which values are guesses and who chose the criterion say nothing
+  // of the problem.
+  const auto& [axis, model, limits, recordings, free, guessed, options, choose_criterion] = job;
   hash << model << recordings.size();
   for (const Recording& r : recordings) hash << r;
   hash << free.size();

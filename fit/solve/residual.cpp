@@ -114,14 +114,6 @@ std::pair<double, double> robust(double r, double k) {
 
 }  // namespace
 
-Observer observer_for(const Recording& recording, double rate) {
-  if (!(rate > 0.0)) return {};
-  const bool position = recording.find(Signal::position) != nullptr;
-  if (recording.find(Signal::velocity) != nullptr) return Observer::of_velocity(rate, position);
-  if (position) return Observer::of_position(rate);
-  return {};
-}
-
 SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& space,
                                       std::size_t index, const double* u,
                                       const Observer& observer) {
@@ -177,7 +169,8 @@ SimulatedRecording simulate_recording(const Job& job, const Recording& recording
 std::optional<SimulatedRecording> simulate_in_windows(const Job& job, const ParameterSpace& space,
                                                       std::size_t index, const double* u,
                                                       double share) {
-  if (!(job.options.horizon > 0.0)) return std::nullopt;
+  const double length = window_length(job.options.criterion);
+  if (!(length > 0.0)) return std::nullopt;
   Job fitted = job;
   Recording& recording = fitted.recordings[index];
   recording.role = Role::fit;
@@ -185,7 +178,7 @@ std::optional<SimulatedRecording> simulate_in_windows(const Job& job, const Para
   recording.held_out.clear();
   if (share < 1.0) {
     constexpr double kFewest = 20.0;
-    std::vector<std::size_t> bounds = first_samples(recording, job.options.horizon);
+    std::vector<std::size_t> bounds = first_samples(recording, length);
     bounds.push_back(recording.times.size());
     for (std::size_t k = 0; k + 1 < bounds.size(); ++k) {
       const auto samples = static_cast<double>(bounds[k + 1] - bounds[k]);

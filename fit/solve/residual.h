@@ -25,15 +25,12 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
 SimulatedRecording simulate_recording(const Job& job, const Recording& recording,
                                       const Model<double>& model, const Observer& observer);
 
-/// The same without an observer, in the windows of the job's horizon, from the states that suit the
-/// recording best: all of it, or this share at the beginning of each window, 20 samples at least.
-/// None where it has no windows.
+/// The same without an observer, in the windows of the job's criterion, from the states that suit
+/// the recording best: all of it, or this share at the beginning of each window, 20 samples at
+/// least. None where it has no windows.
 std::optional<SimulatedRecording> simulate_in_windows(const Job& job, const ParameterSpace& space,
                                                       std::size_t recording, const double* u,
                                                       double share = 1.0);
-
-/// The observer of a recording at a rate: to its velocity, or else to its position, or none.
-Observer observer_for(const Recording& recording, double rate);
 
 /// The axis at one instant of a simulation.
 struct AxisInstant {
@@ -52,7 +49,7 @@ struct Disturbances {
 /// by measurement, without the samples that are left out. One parameter block: the whole vector u
 /// of the space.
 ///
-/// Without an observer the simulation runs free in the windows of the job's horizon. Their states
+/// Without an observer the simulation runs free in the windows of the job's criterion. Their states
 /// are then those that suit the recording best at u, and the columns of the Jacobian lack what
 /// these could make, see windows.h: the gradient of the sum of squares is exact.
 ///

@@ -1,5 +1,6 @@
 #include "fit/solve/solve.h"
 
+#include "fit/criterion/gains.h"
 #include "fit/solve/journal.h"
 #include "fit/solve/residual.h"
 

@@ -25,18 +25,18 @@ const NumberWithUnit kHorizon{"s", 1e-4, 1e6};
 
 Section fit_keys() {
   const FitOptions defaults;
-  const NumberWithUnit rate{"1/s", 1e-3, 1e6};
+  const NumberWithUnit gain{"1/s", 1e-3, 1e6};
   return {
       Key::optional("observer",
                     AnyOf{{Choice{{{std::string(kContinuation),
                                     "high gain at first, then lower and lower, finally zero"},
                                    {std::string(kNone), "free-running from the initial values"}}},
-                           Map{{Key::required("fixed", rate, "constant observer gain")}}}},
-                    ObserverMode::continuation,
+                           Map{{Key::required("fixed", gain, "constant observer gain")}}}},
+                    0,  // continuation
                     "observer that makes the simulation track the recorded velocity and position "
                     "during the fit"),
       Key::optional(
-          "initial_observer_gain", rate,
+          "initial_observer_gain", gain,
           DefaultText{
               "1 / sampling interval; 0.3 / sampling interval if only the position is recorded"},
           "observer gain at which a continuation starts"),
@@ -183,12 +183,12 @@ class JobReader {
     FitOptions& options = result_.job.options;
     ConfigMap map(node, keys_below(job_keys(), "fit"));
     if (const auto observer = map.optional("observer")) read_observer(*observer, options);
-    std::optional<double> first_rate;
-    if (const auto rate = map.read("initial_observer_gain", first_rate)) {
-      if (options.observer == ObserverMode::continuation)
-        options.observer_gain = first_rate.value_or(0.0);
+    std::optional<double> start_gain;
+    if (const auto gain = map.read("initial_observer_gain", start_gain)) {
+      if (options.is_continued())
+        options.continuation->start_gain = start_gain.value_or(0.0);
       else
-        rate->error("initial_observer_gain needs observer: continuation");
+        gain->error("initial_observer_gain needs observer: continuation");
     }
     if (const auto horizon = map.optional("horizon")) read_horizon(*horizon, options);
     map.read("loss", options.loss);
@@ -204,34 +204,36 @@ class JobReader {
   }
 
   static void read_observer(const ConfigNode& node, FitOptions& options) {
-    if (node.text() == kContinuation) {
-      options.observer = ObserverMode::continuation;
-    } else if (node.text() == kNone) {
-      options.observer = ObserverMode::none;
+    if (node.text() == kContinuation) return;  // the default
+    if (node.text() == kNone) {
+      options.continuation.reset();
     } else if (!node.is_map()) {
       node.error("observer must be continuation, none, or a fixed gain such as {fixed: 300 1/s}");
     } else {
       const auto& forms = std::get<AnyOf>(find_key(keys_below(job_keys(), "fit"), "observer").form);
       ConfigMap fixed(node, std::get<Map>(forms.forms.back()).keys);
-      options.observer = ObserverMode::fixed;
-      fixed.read("fixed", options.observer_gain);
+      Tracking tracking;
+      fixed.read("fixed", tracking.gain);
+      options.criterion = tracking;
       fixed.finish();
     }
   }
 
   void read_horizon(const ConfigNode& node, FitOptions& options) {
-    options.choose_horizon = node.text() == kAuto;
-    if (options.choose_horizon || node.text() == kWhole) return;
     const std::string text = node.text();
+    result_.job.choose_criterion = text == kAuto;
+    if (text == kAuto || text == kWhole) return;
     if (text.find_first_of("0123456789") == std::string::npos) {
       node.error("horizon must be whole, auto, or a time with its unit, such as 2 s");
       return;
     }
-    options.horizon = node.as_number_with_unit(kHorizon).value_or(0.0);
-    if (options.observer == ObserverMode::fixed)
+    const std::optional<double> length = node.as_number_with_unit(kHorizon);
+    if (tracks(options.criterion))
       node.error(
           "with a fixed observer nothing runs free: remove 'horizon', or let it be chosen with "
           "'horizon: auto'");
+    else if (length)
+      options.criterion = Windows{*length};
   }
 
   void read_limits(const ConfigNode& node) {

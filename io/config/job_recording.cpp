@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "fit/criterion/gains.h"
 #include "fit/data/derivative.h"
 #include "fit/data/initial_state.h"
 #include "fit/data/noise.h"

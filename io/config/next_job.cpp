@@ -58,10 +58,10 @@ std::string next_job_text(const JobFile& declared, const Job& reached, const std
         for (auto column : recording[columns])
           if (YAML::Node file = column.second["file"]) file = moved(file.Scalar(), data, folder);
   }
-  if (had_to_track(declared.job.options, reached.options)) {
+  if (had_to_track(declared.job, reached)) {
     YAML::Node fit = job["fit"], observer;
     for (const char* key : {"horizon", "initial_observer_gain"}) fit.remove(key);
-    observer["fixed"] = with_unit(reached.options.observer_gain, "1/s");
+    observer["fixed"] = with_unit(given_gain(reached.options.criterion), "1/s");
     fit["observer"] = observer;
   }
   for (auto entry : job["free"])

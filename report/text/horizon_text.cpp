@@ -7,10 +7,11 @@
 
 namespace axisfit {
 
-std::string horizon_name(const HorizonTrial& criterion) {
-  if (criterion.observer_gain > 0.0)
-    return fmt::format("one step ahead, observer gain {:.3g} 1/s", criterion.observer_gain);
-  if (criterion.horizon > 0.0) return fmt::format("windows of {:.3g} s", criterion.horizon);
+std::string horizon_name(const Criterion& criterion) {
+  if (tracks(criterion))
+    return fmt::format("one step ahead, observer gain {:.3g} 1/s", given_gain(criterion));
+  if (const double length = window_length(criterion); length > 0.0)
+    return fmt::format("windows of {:.3g} s", length);
   return "whole recordings";
 }
 
@@ -20,7 +21,7 @@ std::string horizon_text(const RunResult& run_result) {
   std::vector<std::vector<std::string>> rows{{"", "error", ""}};
   for (std::size_t t = 0; t < choice.trials.size(); ++t) {
     const HorizonTrial& trial = choice.trials[t];
-    rows.push_back({horizon_name(trial),
+    rows.push_back({horizon_name(trial.criterion),
                     std::isfinite(trial.error) ? fmt::format("{:.3g} %", 100.0 * trial.error)
                                                : "not simulated",
                     t == choice.chosen ? "chosen" : ""});

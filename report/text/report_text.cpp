@@ -135,7 +135,7 @@ const char* mark_of(NoiseSource noise) {
 }
 
 std::string errors_text(const Job& job, const FitResult& result) {
-  const bool prediction = job.options.observer == ObserverMode::fixed;
+  const bool prediction = tracks(job.options.criterion);
   std::vector<std::vector<std::string>> rows{
       {"", "rmse", "of range", "noise", "red. chi2", "unit", ""}};
   if (prediction) rows.front().back() = "prediction rmse";

@@ -51,7 +51,7 @@ std::string uncertainty_text(const Job& job, const FitResult& result);
 std::string second_opinion_text(const RunResult& run_result);
 
 /// "windows of 2 s"
-std::string horizon_name(const HorizonTrial& criterion);
+std::string horizon_name(const Criterion& criterion);
 /// By what horizon the fit was made, and why; empty where that was not chosen.
 std::string horizon_text(const RunResult& run_result);
 

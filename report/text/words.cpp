@@ -316,12 +316,12 @@ std::string verdict_text(const EffectSelection& selection) {
 
 std::string judges_text(const RunResult& run_result) {
   std::vector<std::string> sentences;
-  const FitOptions& used = run_result.job().options;
-  if (had_to_track(run_result.baseline.options, used))
+  const Job& used = run_result.job();
+  if (had_to_track(run_result.baseline, used))
     sentences.push_back(fmt::format(
         "The {} moves a free run by far more than the readings are in doubt. All models therefore "
         "track the recordings, as with 'observer: {{fixed: {:.3g} 1/s}}'.",
-        input_noise_text(run_result.job()), used.observer_gain));
+        input_noise_text(used), given_gain(used.options.criterion)));
   if (run_result.selection->held_out_blocks)
     sentences.push_back(
         "No recording has the role validate: every second tenth of each recording was held out "
@@ -402,8 +402,8 @@ std::string motion_text(const Motion& motion, Vocabulary vocabulary) {
 
 std::string simulation_name(const FitOptions& options, bool tracks) {
   if (!tracks) return "free-running simulation";
-  if (options.horizon > 0.0)
-    return fmt::format("simulation in windows of {:.3g} s", options.horizon);
+  if (const double length = window_length(options.criterion); length > 0.0)
+    return fmt::format("simulation in windows of {:.3g} s", length);
   return "tracking simulation";
 }
 

@@ -29,8 +29,7 @@ inline Job scattering_machine(int recordings, double scatter, std::uint64_t seed
     job.recordings.push_back(std::move(recording));
   }
   job.free = {free_parameter("M", 10.0), free_parameter("B_a", 30.0)};
-  job.options.observer = ObserverMode::fixed;
-  job.options.observer_gain = 5.0;
+  job.options.criterion = Tracking{5.0};
   job.options.step = 2e-3;
   return job;
 }

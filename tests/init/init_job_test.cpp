@@ -94,7 +94,7 @@ TEST_F(InitJobTest, ThePapersAxisIsRecognised) {
   EXPECT_EQ(file.job.model.structure.drive, Drive::velocity_loop);
   EXPECT_EQ(file.job.options.starts, 8);  // the gear makes wrong minima
   file.job.options.starts = 1;
-  file.job.options.observer = ObserverMode::none;  // quicker; it starts at the truth
+  file.job.options.continuation.reset();  // quicker; it starts at the truth
   const auto found = fitted(file);
   EXPECT_NEAR(found.at("V_L"), 2.7, 0.01);
   EXPECT_NEAR(found.at("k_g"), 5e6, 5e4);

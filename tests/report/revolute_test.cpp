@@ -144,22 +144,20 @@ TEST_F(RevoluteAxis, GoesOnTrackingIfTheSearchDid) {
   for (const char* fit : {"", "fit: {observer: none, horizon: 2 s, seed: 7}\n",
                           "fit: {initial_observer_gain: 100 1/s, seed: 7}\n"}) {
     const JobFile file = read_job_file(folder_.write("job.yaml", job_ + fit));
-    EXPECT_EQ(job_after(file, file.job).options.observer, file.job.options.observer);
+    const FitOptions again = job_after(file, file.job).options;
+    EXPECT_EQ(again.criterion, file.job.options.criterion);
+    EXPECT_EQ(again.continuation, file.job.options.continuation);
     Job reached = file.job;
-    reached.options.observer = ObserverMode::fixed;
-    reached.options.observer_gain = 25.0;
-    reached.options.horizon = 0.0;
+    reached.options.criterion = Tracking{25.0};
     const FitOptions next = job_after(file, reached).options;
-    EXPECT_EQ(next.observer, ObserverMode::fixed);
-    EXPECT_EQ(next.observer_gain, 25.0);
-    EXPECT_EQ(next.horizon, 0.0);
+    EXPECT_EQ(next.criterion, reached.options.criterion);
     EXPECT_EQ(next.seed, file.job.options.seed);
   }
-  // A horizon that is chosen is chosen anew.
+  // A criterion that is chosen is chosen anew.
   const JobFile file = read_job_file(folder_.write("job.yaml", job_ + "fit: {horizon: auto}\n"));
   Job reached = file.job;
-  reached.options.observer = ObserverMode::fixed;
-  EXPECT_TRUE(job_after(file, reached).options.choose_horizon);
+  reached.options.criterion = Tracking{};
+  EXPECT_TRUE(job_after(file, reached).choose_criterion);
 }
 
 TEST_F(RevoluteAxis, RefusesTheWordsOfALoadThatSlides) {

@@ -68,7 +68,7 @@ std::vector<Broken> broken() {
   };
   const auto of_fixed = [](Rule rule, std::function<void(Job&)> make) {
     return Broken{rule, [make](Job& job) {
-                    job.options.observer = ObserverMode::fixed;
+                    job.options.criterion = Tracking{};
                     make(job);
                   }};
   };
@@ -182,13 +182,13 @@ std::vector<Broken> broken() {
                }),
       {Rule::horizon,
        [](Job& job) {
-         job.options.horizon = 1.0;
+         job.options.criterion = Windows{1.0};
          job.recordings[0].measurements.resize(1);
          job.recordings[0].measurements[0].signal = Signal::acceleration;
        }},
       {Rule::horizon,
        [](Job& job) {
-         job.options.choose_horizon = true;
+         job.choose_criterion = true;
          job.model.structure.closed_loop = true;
          job.recordings[0].command.meaning = Meaning::reference;
        }},

@@ -19,7 +19,7 @@ class InputNoiseTest : public testing::Test {
  protected:
   static Job job(double sigma, std::uint64_t seed = 1) {
     Job job = two_recordings(slide(), slide(), {"M", "B_a"}, 6.0, {Signal::velocity}, seed);
-    job.options.observer = ObserverMode::none;
+    job.options.continuation.reset();
     add_input_noise(job, sigma, seed);
     return job;
   }

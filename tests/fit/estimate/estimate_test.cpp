@@ -63,7 +63,7 @@ TEST(Estimate, FindsTheTruthFromAPoorStart) {
 // Without the observer the ringing leaves the fit in a local minimum: what continuation is for.
 TEST(Estimate, NeedsTheContinuation) {
   Job job = example_job();
-  job.options.observer = ObserverMode::none;
+  job.options.continuation.reset();
   EXPECT_GT(estimate(job).reduced_chi_square, 2.0);
 }
 

@@ -110,7 +110,7 @@ TEST(InverseDynamics, KeepsTheGainOfTheDriveWhereTheMassIsFree) {
 
 TEST(SecondOpinion, BeginsAgainWhereNoMinimumWasFound) {
   Job job = Slide(30.0).job(1);
-  job.options.observer = ObserverMode::none;
+  job.options.continuation.reset();
   job.options.max_iterations = 12;
   FitResult fit = estimate_with_noise(job);
   ASSERT_FALSE(fit.usable);

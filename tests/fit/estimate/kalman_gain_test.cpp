@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fit/estimate/continuation.h"
+#include "fit/criterion/gains.h"
 #include "tests/fit/example.h"
 
 namespace axisfit {
@@ -33,7 +33,7 @@ TEST(KalmanGain, IsThatOfANoisyAcceleration) {
 
 TEST(KalmanGain, IsNoHigherThanTheSamplingAllows) {
   const Job job = noisy(20.0, {Signal::velocity});
-  EXPECT_EQ(*kalman_gain(job, kValues), initial_observer_gain(job));
+  EXPECT_EQ(*kalman_gain(job, kValues), highest_gain(job));
 }
 
 TEST(KalmanGain, IsNothingWithoutNoiseOfTheInputOrASignalToTrack) {
@@ -44,14 +44,13 @@ TEST(KalmanGain, IsNothingWithoutNoiseOfTheInputOrASignalToTrack) {
 TEST(KalmanGain, IsAskedForWhereNoiseOfTheInputMovesAFreeRun) {
   Job job = noisy(0.1, {Signal::position});
   const FitResult free = estimate(job);
-  const std::optional<double> gain = tracking_gain(job, free);
+  const std::optional<double> gain = quiet_gain(job, free);
   ASSERT_TRUE(gain);
   EXPECT_EQ(gain, kalman_gain(job, values_of(free)));
   // A fit that tracks at it has the smaller errors.
-  job.options.observer = ObserverMode::fixed;
-  job.options.observer_gain = *gain;
+  job.options.criterion = Tracking{*gain};
   const FitResult tracking = estimate(job);
-  EXPECT_FALSE(tracking_gain(job, tracking));
+  EXPECT_FALSE(quiet_gain(job, tracking));
   for (std::size_t i = 0; i < job.free.size(); ++i) {
     const ParameterUncertainty &of_free = free.parameters[i].uncertainty,
                                &of_tracking = tracking.parameters[i].uncertainty;
@@ -59,7 +58,7 @@ TEST(KalmanGain, IsAskedForWhereNoiseOfTheInputMovesAFreeRun) {
     EXPECT_NEAR(tracking.parameters[i].value, kValues[i], 3.0 * of_tracking.standard_error);
   }
   const Job quiet = noisy(1e-3, {Signal::position});
-  EXPECT_FALSE(tracking_gain(quiet, estimate(quiet)));
+  EXPECT_FALSE(quiet_gain(quiet, estimate(quiet)));
 }
 
 }  // namespace

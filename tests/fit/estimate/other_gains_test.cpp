@@ -15,8 +15,7 @@ Job tracking_job(bool has_friction) {
   if (!has_friction) friction.strengths[0].second = 0.0;
   Job job = two_recordings(slide(), slide(), {"M", "B_a"});
   job.recordings = {recorded(friction.truth(), fit_motion(), 30.0, 3, {Signal::position})};
-  job.options.observer = ObserverMode::fixed;
-  job.options.observer_gain = 9.0;
+  job.options.criterion = Tracking{9.0};
   return job;
 }
 
@@ -54,7 +53,7 @@ TEST(OtherGains, AreOfUsableFitsWithFixedObserversAlone) {
   fit.usable = false;
   EXPECT_TRUE(fits_at_other_gains(job, fit).empty());
   fit.usable = true;
-  job.options.observer = ObserverMode::continuation;
+  job.options.criterion = FreeRun{};
   EXPECT_TRUE(fits_at_other_gains(job, fit).empty());
 }
 

@@ -418,7 +418,7 @@ class DeterminationTest : public testing::Test {
     for (const FreeParameter& p : job_.free) values.push_back(p.initial);
     const std::vector<double> strengths{friction};
     job_ = with_candidate(job_, candidate_, values, strengths, {});
-    job_.options.observer = ObserverMode::none;
+    job_.options.continuation.reset();
     result_ = estimate(job_);
   }
   Determination determination_now() {

@@ -73,7 +73,7 @@ TEST_P(EffectColumnsOf, AreThoseOfASimulationWithEachEffect) {
 }
 
 TEST_P(EffectColumnsOf, LackWhatTheStatesOfWindowsCouldMake) {
-  job_.options.horizon = 0.3;
+  job_.options.criterion = Windows{0.3};
   for (Recording& r : job_.recordings) r.initial_state = InitialState::data;
   const EffectColumns columns(job_, 0.0, {});
   std::vector<EffectSetting> settings;

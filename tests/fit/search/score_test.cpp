@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "fit/estimate/continuation.h"
+#include "fit/criterion/gains.h"
 #include "fit/search/select_effects.h"
 #include "tests/fit/search/hidden_effects.h"
 
@@ -63,7 +63,7 @@ TEST(CloseGain, IsTheHighestAtWhichTheResidualStandsOutOfTheNoise) {
     const Job job = two_recordings(truth, slide(), {"M", "B_a"}, 60.0, {Signal::velocity});
     const auto gain = close_gain(job, {20.0, 30.0});
     ASSERT_TRUE(gain) << level;
-    EXPECT_DOUBLE_EQ(*gain, initial_observer_gain(job) / part) << level;
+    EXPECT_DOUBLE_EQ(*gain, highest_gain(job) / part) << level;
   }
   add_effect<CoulombFriction>(truth).F_c = 1.0;
   EXPECT_FALSE(close_gain(two_recordings(truth, slide(), {"M", "B_a"}), {20.0, 30.0}));
@@ -74,8 +74,7 @@ TEST(CloseGain, IsNothingWhereTheJobGivesOne) {
   add_effect<CoulombFriction>(truth).F_c = 200.0;
   Job job = two_recordings(truth, slide(), {"M", "B_a"}, 60.0, {Signal::velocity});
   ASSERT_TRUE(close_gain(job, {20.0, 30.0}));
-  job.options.observer = ObserverMode::fixed;
-  job.options.observer_gain = 30.0;
+  job.options.criterion = Tracking{30.0};
   EXPECT_FALSE(close_gain(job, {20.0, 30.0}));
 }
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "fit/criterion/gains.h"
 #include "fit/design/discrimination.h"
-#include "fit/estimate/continuation.h"
 #include "fit/estimate/horizon.h"
 #include "fit/search/rival_models.h"
 #include "tests/fit/search/selection.h"
@@ -125,7 +125,7 @@ TEST(SelectEffects, AddsNothingToAModelThatHasEverything) {
 TEST(SelectEffects, FindsEffectsForAFitInWindows) {
   const HiddenEffect secret = hidden_effect_named("stroke_spring");
   Job job = secret.job();
-  job.options.horizon = 0.5;
+  job.options.criterion = Windows{0.5};
   const FitResult first = estimate(job);
   const EffectSelection selection = select_effects(job, first);
   EXPECT_EQ(accepted(selection), Names{secret.name});
@@ -133,8 +133,8 @@ TEST(SelectEffects, FindsEffectsForAFitInWindows) {
   ASSERT_EQ(selection.models.size(), 2u);
   EXPECT_EQ(values_of(selection.models.front().fit), values_of(first));
   for (const SelectionStep& model : selection.models) {
-    EXPECT_EQ(model.job.options.horizon, job.options.horizon);
-    EXPECT_EQ(model.job.options.observer, job.options.observer);
+    EXPECT_EQ(model.job.options.criterion, job.options.criterion);
+    EXPECT_TRUE(model.job.options.is_continued());
   }
   for (const auto& [name, value] : secret.strengths) expect_found(selection, name, value);
   EXPECT_EQ(selection.result.fit.observer_gain, 0.0);
@@ -145,25 +145,22 @@ TEST(SelectEffects, SeesWhatAHorizonThatWasChosenHides) {
   Model<double> truth = slide();
   add_effect<ConstantForce>(truth).F_0 = 1.0;
   Job job = two_recordings(truth, slide(), {"M", "B_a"}, 6.0, {Signal::velocity});
-  set_criterion(job.options, {.observer_gain = initial_observer_gain(job)});
+  job.options.criterion = Tracking{highest_gain(job)};
   const FitResult first = estimate(job);
   const EffectSelection as_given = select_effects(job, first);
   EXPECT_EQ(accepted(as_given), Names{});
   EXPECT_FALSE(as_given.horizon);
 
-  job.options.choose_horizon = true;
+  job.choose_criterion = true;
   const EffectSelection selection = select_effects(job, first);
   EXPECT_EQ(accepted(selection), Names{"constant_force"});
   expect_found(selection, "constant_force.F_0", 1.0);
   // With the effect another horizon may be best: all models are fitted by that.
   ASSERT_TRUE(selection.horizon);
-  FitOptions chosen = job.options;
-  set_criterion(chosen, selection.horizon->trials[selection.horizon->chosen]);
   ASSERT_EQ(selection.models.size(), 2u);
   for (const SelectionStep& model : selection.models) {
-    EXPECT_EQ(model.job.options.observer, chosen.observer);
-    EXPECT_EQ(model.job.options.observer_gain, chosen.observer_gain);
-    EXPECT_EQ(model.job.options.horizon, chosen.horizon);
+    EXPECT_EQ(model.job.options.criterion, selection.horizon->best().criterion);
+    EXPECT_TRUE(model.job.choose_criterion);
   }
 }
 
@@ -179,7 +176,7 @@ TEST(SelectEffects, SeesWhatNoiseOfTheInputHidesFromAFreeRun) {
   EXPECT_EQ(accepted(selection), Names{"coulomb_friction"});
   expect_found(selection, "coulomb_friction.F_c", 8.0);
   // With the effect, too, the free run would be off by as much.
-  EXPECT_EQ(selection.result.job.options.observer, ObserverMode::fixed);
+  EXPECT_TRUE(tracks(selection.result.job.options.criterion));
   EXPECT_GT(selection.result.fit.observer_gain, 0.0);
   EXPECT_TRUE(selection.explained);
 }
@@ -187,7 +184,7 @@ TEST(SelectEffects, SeesWhatNoiseOfTheInputHidesFromAFreeRun) {
 TEST(SelectEffects, FitsAllSamplesInWindowsWhereBlocksWereHeldOut) {
   Job job = hidden_effect_named("stroke_spring").job();
   job.recordings.resize(1);
-  job.options.horizon = 0.5;
+  job.options.criterion = Windows{0.5};
   const EffectSelection selection = select_effects(job, estimate(job));
   ASSERT_TRUE(selection.held_out_blocks);
   ASSERT_EQ(selection.models.size(), 2u);

@@ -49,8 +49,7 @@ TEST(Shortlist, HasWhatASimplerEffectGainsAsWellAsSecond) {
 // In a simulation that tracks, an effect that enters linearly gains what its score promises.
 TEST(Shortlist, PromisesWhatTheAcceptanceTestFinds) {
   Job job = with_friction(3.0);
-  job.options.observer = ObserverMode::fixed;
-  job.options.observer_gain = 30.0;
+  job.options.criterion = Tracking{30.0};
   const FitResult fit = estimate(job);
   ASSERT_TRUE(fit.usable);
   const Shortlist list = shortlist(job, values_of(fit), score_gains(job), false, 6);

@@ -179,7 +179,7 @@ TEST(JournalTest, TheKeyDependsOnAllThatTheSolutionFollowsFrom) {
       [](Problem& p) { p.job.options.loss = Loss::huber; },
       [](Problem& p) { p.job.options.huber_width = 4.0; },
       [](Problem& p) { p.job.options.step = 1e-3; },
-      [](Problem& p) { p.job.options.horizon = 0.5; },
+      [](Problem& p) { p.job.options.criterion = Windows{0.5}; },
       [](Problem& p) { p.u[1] = std::nextafter(2.0, 3.0); },
       [](Problem& p) { p.rate = 0.0; },
       [](Problem& p) { p.options.max_iterations = 7; },

@@ -235,15 +235,14 @@ TEST(RecordingCost, HuberJacobianIsThatOfDifferences) {
 }
 
 /// Relative errors of M and B_a that a fit finds in exact samples of an axis, `interval` s apart,
-/// while it is held firmly to the signal. The command is a chirp from 1 to 17 Hz in fine stairs.
-std::pair<double, double> errors_when_held(const Model<double>& truth, Signal signal, double rate,
-                                           double interval, double jitter = 0.0) {
+/// while it tracks the signal closely. The command is a chirp from 1 to 17 Hz in fine stairs.
+std::pair<double, double> errors_when_tracking(const Model<double>& truth, Signal signal,
+                                               double gain, double interval, double jitter = 0.0) {
   constexpr double kDuration = 2.0, kStair = 1e-4;
   Job job;
   job.model = truth;
   job.options.threads = 1;
-  job.options.observer = ObserverMode::fixed;
-  job.options.observer_gain = rate;
+  job.options.criterion = Tracking{gain};
   Recording& recording = job.recordings.emplace_back();
   recording.name = "fit";
   const int samples = static_cast<int>(std::lround(kDuration / interval));
@@ -280,9 +279,10 @@ Model<double> rubbing_slide() {
 
 // Chords between the samples would make M heavier by 1.8 % at 4 ms and 0.44 % at 2 ms.
 TEST(StrongObserver, ToAnExactPositionFindsTheTruthToFourthOrder) {
-  const auto [mass, friction] = errors_when_held(rubbing_slide(), Signal::position, 100.0, 4e-3);
+  const auto [mass, friction] =
+      errors_when_tracking(rubbing_slide(), Signal::position, 100.0, 4e-3);
   const auto [finer_mass, finer_friction] =
-      errors_when_held(rubbing_slide(), Signal::position, 100.0, 2e-3);
+      errors_when_tracking(rubbing_slide(), Signal::position, 100.0, 2e-3);
   std::cout << "M " << mass << " and " << finer_mass << ", B_a " << friction << " and "
             << finer_friction << "\n";
   EXPECT_LT(std::abs(mass), 4e-4);
@@ -293,7 +293,7 @@ TEST(StrongObserver, ToAnExactPositionFindsTheTruthToFourthOrder) {
 
 TEST(StrongObserver, FindsItInUnevenSamplesToo) {
   const auto [mass, friction] =
-      errors_when_held(rubbing_slide(), Signal::position, 100.0, 4e-3, 0.3);
+      errors_when_tracking(rubbing_slide(), Signal::position, 100.0, 4e-3, 0.3);
   std::cout << "M " << mass << ", B_a " << friction << "\n";
   EXPECT_LT(std::abs(mass), 1e-3);
   EXPECT_LT(std::abs(friction), 1e-3);
@@ -301,7 +301,7 @@ TEST(StrongObserver, FindsItInUnevenSamplesToo) {
 
 // Chords would make B_a smaller by 9.8 %.
 TEST(StrongObserver, ToAnExactVelocityFindsTheTruth) {
-  const auto [mass, friction] = errors_when_held(motor_axis(), Signal::velocity, 200.0, 2e-3);
+  const auto [mass, friction] = errors_when_tracking(motor_axis(), Signal::velocity, 200.0, 2e-3);
   std::cout << "M " << mass << ", B_a " << friction << "\n";
   EXPECT_LT(std::abs(mass), 1e-3);
   EXPECT_LT(std::abs(friction), 1e-2);

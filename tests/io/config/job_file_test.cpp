@@ -198,7 +198,8 @@ TEST_F(JobFileTest, ReadsTheShippedPaperJob) {
   }
 
   const FitOptions defaults;
-  EXPECT_EQ(job.options.observer, ObserverMode::continuation);
+  EXPECT_EQ(job.options.criterion, Criterion(FreeRun{}));
+  EXPECT_EQ(job.options.continuation, Continuation{});
   EXPECT_EQ(job.options.loss, Loss::squares);
   EXPECT_EQ(job.options.max_iterations, defaults.max_iterations);
   EXPECT_EQ(job.options.starts, 1);
@@ -700,8 +701,7 @@ TEST_F(JobFileTest, ReadsEveryOptionOfTheFit) {
   step: 1 ms
 )");
   const FitOptions& options = file.job.options;
-  EXPECT_EQ(options.observer, ObserverMode::fixed);
-  EXPECT_DOUBLE_EQ(options.observer_gain, 5000.0);
+  EXPECT_DOUBLE_EQ(std::get<Tracking>(options.criterion).gain, 5000.0);
   EXPECT_EQ(options.loss, Loss::huber);
   EXPECT_EQ(options.huber_width, 2.5);
   EXPECT_EQ(options.max_iterations, 7);
@@ -709,15 +709,29 @@ TEST_F(JobFileTest, ReadsEveryOptionOfTheFit) {
   EXPECT_EQ(options.seed, 11u);
   EXPECT_EQ(options.spread, 2.0);
   EXPECT_DOUBLE_EQ(options.step, 1e-3);
-  EXPECT_EQ(read(std::string(kJob) + "fit: {observer: none}\n").job.options.observer,
-            ObserverMode::none);
-  EXPECT_EQ(read(kJob).job.options.horizon, 0.0);
-  EXPECT_EQ(read(std::string(kJob) + "fit: {horizon: whole}\n").job.options.horizon, 0.0);
-  EXPECT_DOUBLE_EQ(read(std::string(kJob) + "fit: {horizon: 200 ms}\n").job.options.horizon, 0.2);
-  EXPECT_TRUE(read(std::string(kJob) + "fit: {horizon: auto}\n").job.options.choose_horizon);
-  const JobFile first = read(std::string(kJob) + "fit: {initial_observer_gain: 20 1/s}\n");
-  EXPECT_EQ(first.job.options.observer, ObserverMode::continuation);
-  EXPECT_DOUBLE_EQ(first.job.options.observer_gain, 20.0);
+}
+
+TEST_F(JobFileTest, TheCriterionComesFromObserverAndHorizon) {
+  const auto with = [&](const std::string& keys) {
+    return read(std::string(kJob) + "fit: {" + keys + "}\n").job;
+  };
+  const Criterion whole = FreeRun{};
+  EXPECT_EQ(with("observer: none").options.criterion, whole);
+  EXPECT_FALSE(with("observer: none").options.continuation);
+  EXPECT_EQ(with("horizon: whole").options.criterion, whole);
+  EXPECT_FALSE(with("horizon: whole").choose_criterion);
+  const Job windows = with("observer: none, horizon: 200 ms");
+  EXPECT_DOUBLE_EQ(std::get<Windows>(windows.options.criterion).length, 0.2);
+  EXPECT_FALSE(windows.options.is_continued());
+  EXPECT_TRUE(with("horizon: 200 ms").options.is_continued());
+  const Job first = with("initial_observer_gain: 20 1/s");
+  EXPECT_EQ(first.options.criterion, whole);
+  EXPECT_DOUBLE_EQ(first.options.continuation->start_gain, 20.0);
+  EXPECT_TRUE(with("horizon: auto").choose_criterion);
+  const Job either = with("observer: {fixed: 30 1/s}, horizon: auto");
+  EXPECT_TRUE(either.choose_criterion);
+  EXPECT_DOUBLE_EQ(std::get<Tracking>(either.options.criterion).gain, 30.0);
+  EXPECT_FALSE(either.options.is_continued());
 }
 
 TEST_F(JobFileTest, MatAndCsvGiveTheSameJob) {

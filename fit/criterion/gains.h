@@ -1,0 +1,50 @@
+// The ladder of observer gains: how closely a simulation tracks its recording, from the highest
+// gain that the sampling allows down to zero, the free run.
+//
+//   rung             who asks for it, and why
+//   highest_gain()   The continuation starts there, unless the job gives a gain: close to the data
+//                    the cost has one minimum. Tracking without a gain of its own stays there.
+//   close_gain()     (fit/search/score.h) A score test of what is large, the highest of three from
+//                    highest_gain() down to a tenth of it: what is missing shows where it acts.
+//   kalman_gain()    (fit/estimate/kalman_gain.h) Where the inputs are noisy: a lower gain lets
+//                    their noise add up, a higher one lets in that of the readings. A search that
+//                    tracks goes no lower.
+//   quiet_gain()     (fit/estimate/kalman_gain.h) The same, for a free run that noise of the inputs
+//                    moves so far that it should track.
+//   score_gains()    Score tests in any case: a 30th and a 100th of the highest. There is little
+//                    noise there, and what is slow shows. Refits of a search start at the first of
+//                    them, its final fit at the second.
+//   1 / duration     Below it an observer does nothing: the continuation goes on to zero.
+//   final_gain()     The fit ends there: zero, or that of Tracking.
+//
+// Any of them is 1/s on a recorded velocity, rad/s on a position alone.
+#pragma once
+
+#include <vector>
+
+#include "fit/data/job.h"
+#include "sim/observer.h"
+
+namespace axisfit {
+
+/// The observer of a recording with this gain: of its velocity, or else of its position, or none.
+Observer observer_for(const Recording& recording, double gain);
+
+/// Whether an observer can track any recording to be fitted.
+bool can_track(const Job& job);
+
+/// That which the job gives, or else as high as the sampling allows: 1 per sample interval for a
+/// recorded velocity and 0.3 for position alone, of the recording to be fitted where that is
+/// lowest. Infinite where nothing can be tracked.
+double highest_gain(const Job& job);
+
+/// At which the fit ends: zero unless it tracks to the end.
+double final_gain(const Job& job);
+
+/// Whether the job leaves it to the search at which gains it scores.
+bool has_choice_of_gains(const Job& job);
+
+/// At which a job's residual is scored in any case, the highest first: without a choice one alone.
+std::vector<double> score_gains(const Job& job);
+
+}  // namespace axisfit
