@@ -1,10 +1,13 @@
 // Axes for exports that are simulated elsewhere.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <map>
 #include <string>
 #include <utility>
 
+#include "exports/export.h"
 #include "sim/rig.h"
 #include "tests/sim/axes.h"
 
@@ -51,6 +54,29 @@ inline std::map<std::string, Rig> axes() {
   voltage.axis.F_s = 30.0;
   all.emplace("voltage", of_model(voltage));
   return all;
+}
+
+/// A slide that a current moves, 20 kg and 2 kg of its motor.
+inline Rig slide() {
+  Rig rig;
+  rig.name = "slide";
+  rig.model = driven_mass(20.0);
+  rig.model.axis.K_f = 40.0;
+  rig.model.axis.B_a = 30.0;
+  return rig;
+}
+
+/// It with dry friction.
+inline Rig rubbing_slide() {
+  Rig rig = slide();
+  add_effect<CoulombFriction>(rig.model).F_c = 4.0;
+  return rig;
+}
+
+/// Of an export that is one file.
+inline std::string only_file(const Export& made) {
+  EXPECT_EQ(made.files.size(), 1u);
+  return made.files.front().second;
 }
 
 }  // namespace axisfit

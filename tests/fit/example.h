@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "base/random.h"
 #include "fit/estimate/estimate.h"
 #include "fit/solve/residual.h"
 #include "fit/solve/solve.h"
 #include "sim/rig.h"
+#include "tests/base/noise.h"
 #include "tests/sim/axes.h"
 
 namespace axisfit {
@@ -136,21 +136,6 @@ inline FitResult result_at_start(const Job& job) {
   result.at_solution = std::make_shared<const Linearization>(linearize(job, space, u, 0.0));
   return result;
 }
-
-/// White normal noise of unit variance, the same on every machine.
-class Normal {
- public:
-  explicit Normal(std::uint64_t seed) : generator_(seed) {}
-  double operator()() { return normal(generator_); }
-  std::vector<double> values(std::size_t n) {
-    std::vector<double> list(n);
-    for (double& x : list) x = (*this)();
-    return list;
-  }
-
- private:
-  std::mt19937_64 generator_;
-};
 
 /// The inputs as recorded with noise of `sigma` (V) that never reached the axis.
 inline void add_input_noise(Job& job, double sigma, std::uint64_t seed = 1) {

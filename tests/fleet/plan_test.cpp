@@ -1,69 +1,20 @@
 #include "fleet/plan.h"
 
 #include <gtest/gtest.h>
-#include <sqlite3.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "base/parallel.h"
-#include "fleet/alarms.h"
-#include "fleet/factory.h"
-#include "fleet/slurm.h"
 #include "io/config/diagnostics.h"
-#include "tests/apps/files.h"
+#include "tests/fleet/small_fleet.h"
 
 namespace axisfit {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// What a call throws; empty if nothing.
-template <class Call>
-std::string message_of(Call&& call) {
-  try {
-    call();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
-}
-
-/// A factory of three axes and five nights.
-class PlanTest : public ::testing::Test {
- protected:
-  PlanTest() {
-    FactoryOptions options;
-    options.axes = 3;
-    options.nights = 5;
-    options.missing = options.wrong = options.worn = 0.0;
-    write_factory(factory(), options);
-  }
-  std::string factory() const { return folder_.path() + "/factory"; }
-  FleetFile fleet() const { return read_fleet_file(factory() + "/fleet.yaml"); }
-  std::string plan_folder(const std::string& name = "plan") const {
-    return folder_.path() + "/" + name;
-  }
-  Plan planned(const std::string& name = "plan") const {
-    write_plan(fleet(), plan_folder(name), Retry::none);
-    return read_plan(plan_folder(name));
-  }
-  /// The history's results as text, but for the time that they took.
-  std::string history() const {
-    std::string text;
-    for (NightResult night : History(fleet().history).results()) {
-      night.seconds = 0.0;
-      text += to_json(night).dump() + "\n";
-    }
-    return text;
-  }
-  fs::path recording(const std::string& axis, int night) const {
-    return fs::path(factory()) / "recordings" / axis /
-           ("2026-09-0" + std::to_string(night) + ".csv");
-  }
-
-  TempFolder folder_;
-};
+using PlanTest = SmallFleet;
 
 TEST_F(PlanTest, IsTheSameInAnyShardsAndAfterAnyLoss) {
   work_on(planned(), {}, {});
@@ -186,155 +137,6 @@ TEST_F(PlanTest, ResultsThatAreNoneAreToldByName) {
   std::ofstream(plan.folder + "/items.jsonl") << "[";
   EXPECT_NE(message_of([&] { read_plan(plan.folder); }).find("is no plan"), std::string::npos);
   EXPECT_NE(message_of([&] { read_plan(factory()); }).find("is that a plan?"), std::string::npos);
-}
-
-TEST_F(PlanTest, ItemsComeFromAManifestToo) {
-  folder_.write("factory/list.csv",
-                "axis, night, file\nleft,1,recordings/axis-0001/2026-09-01.csv\n"
-                "left,2,recordings/axis-0001/2026-09-02.csv\n");
-  std::string job = folder_.read("factory/night.yaml");
-  job.replace(job.find("recordings/{axis}/{night}.csv"), 29, "{file}");
-  folder_.write("factory/night.yaml", job);
-  folder_.write("factory/fleet.yaml", "job: night.yaml\nmanifest: list.csv\n");
-  const Plan plan = planned();
-  ASSERT_EQ(plan.items.size(), 2u);
-  EXPECT_EQ(work_on(plan, {}, {}).failed, 0u);
-  const std::string before = find_items(fleet())[1].fingerprint;
-  fs::last_write_time(recording("axis-0001", 2), fs::file_time_type::clock::now());
-  EXPECT_NE(find_items(fleet())[1].fingerprint, before);
-  sqlite3* list = nullptr;
-  ASSERT_EQ(sqlite3_open((factory() + "/list.db").c_str(), &list), SQLITE_OK);
-  ASSERT_EQ(
-      sqlite3_exec(list,
-                   "CREATE TABLE items(axis, night, file); INSERT INTO items VALUES('left', 1, "
-                   "'recordings/axis-0001/2026-09-01.csv')",
-                   nullptr, nullptr, nullptr),
-      SQLITE_OK);
-  sqlite3_close(list);
-  folder_.write("factory/fleet.yaml", "job: night.yaml\nmanifest: list.db\n");
-  const std::vector<FleetItem> items = find_items(fleet());
-  ASSERT_EQ(items.size(), 1u);
-  EXPECT_EQ(items[0].values.at("file"), "recordings/axis-0001/2026-09-01.csv");
-  folder_.write("factory/fleet.yaml", "job: night.yaml\nmanifest: none.db\n");
-  EXPECT_NE(message_of([&] { find_items(fleet()); }).find("manifest '"), std::string::npos);
-  folder_.write("factory/fleet.yaml", "job: night.yaml\nmanifest: list.csv\n");
-  folder_.write("factory/list.csv", "axis,night\nleft,1\nleft,1\n");
-  EXPECT_NE(message_of([&] { find_items(fleet()); }).find("axis left has night 1 twice"),
-            std::string::npos);
-  folder_.write("factory/list.csv", "axis,night\nleft\n");
-  EXPECT_NE(message_of([&] { find_items(fleet()); }).find("line 2: 1 fields"), std::string::npos);
-  folder_.write("factory/list.csv", "axis\nleft\n");
-  EXPECT_NE(message_of([&] { find_items(fleet()); }).find("no column 'night'"), std::string::npos);
-}
-
-TEST_F(PlanTest, MistakesInFleetFilesAreTold) {
-  const auto says = [&](const std::string& text, const std::string& expected) {
-    folder_.write("factory/fleet.yaml", text);
-    const std::string found = message_of([&] { find_items(fleet()); });
-    EXPECT_NE(found.find(expected), std::string::npos) << found;
-  };
-  says("items: a/{axis}/{night}.csv\n", "'job' is missing");
-  says("job: night.yaml\n", "give 'items' or 'manifest'");
-  says("job: night.yaml\nitems: '{axis}.csv'\n", "fleet.yaml:2:8: the pattern has no {night}");
-  says("job: none.yaml\nitems: '{axis}/{night}.csv'\n", "none.yaml' cannot be read");
-  says("job: night.yaml\nitems: '{axis}/{night}.csv'\nlimits: {B_a: much}\n",
-       "a limit is a number with its unit");
-  says("job: night.yaml\nitems: 'nowhere/{axis}/{night}.csv'\n", "there are no such axes");
-}
-
-TEST_F(PlanTest, HistoriesAreOnlyReplacedByHistories) {
-  const std::string path = folder_.path() + "/other.sqlite";
-  sqlite3* other = nullptr;
-  ASSERT_EQ(sqlite3_open(path.c_str(), &other), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(other, "CREATE TABLE mine(a)", nullptr, nullptr, nullptr), SQLITE_OK);
-  EXPECT_NE(message_of([&] { History h(path); }).find("no history of a fleet"), std::string::npos);
-  sqlite3_close(other);
-  const std::string own = folder_.path() + "/own.sqlite";
-  { const History made(own); }
-  ASSERT_EQ(sqlite3_open(own.c_str(), &other), SQLITE_OK);
-  sqlite3_exec(other, "PRAGMA user_version = 99", nullptr, nullptr, nullptr);
-  sqlite3_close(other);
-  EXPECT_NE(message_of([&] { History h(own); }).find("is of version 99"), std::string::npos);
-  EXPECT_NE(message_of([&] {
-              History h(folder_.write("text",
-                                      "no database at all, but text that "
-                                      "is long enough to be read as one, "
-                                      "which has a header of 100 bytes"));
-            }).find("history '"),
-            std::string::npos);
-}
-
-TEST(Slurm, ScriptsWorkOnAShardAndMerge) {
-  SlurmOptions options;
-  options.tasks = 50;
-  options.program = "/opt/it's/axisfit-fleet";
-  options.partition = "night";
-  const std::string array = array_script("/data/plan", options);
-  EXPECT_NE(array.find("#SBATCH --array=0-49\n"), std::string::npos);
-  EXPECT_NE(array.find("#SBATCH --requeue\n"), std::string::npos);
-  EXPECT_NE(array.find("#SBATCH --partition=night\n"), std::string::npos);
-  EXPECT_NE(array.find("exec '/opt/it'\\''s/axisfit-fleet' work '/data/plan' --shard "
-                       "\"$SLURM_ARRAY_TASK_ID/50\"\n"),
-            std::string::npos)
-      << array;
-  EXPECT_NE(merge_script("/data/plan", options).find(" merge '/data/plan'\n"), std::string::npos);
-}
-
-/// An axis with B_a of 60 to 66 N s/m on 30 nights.
-std::vector<NightResult> worn_axis() {
-  std::vector<NightResult> nights;
-  for (int i = 0; i < 30; ++i) {
-    NightResult night;
-    night.axis = "x";
-    night.night = "2026-09-" + std::string(i < 9 ? "0" : "") + std::to_string(i + 1);
-    night.status = "explained";
-    const double wiggle = 0.1 * ((i * 7) % 5 - 2);
-    night.parameters = {{"B_a", "N s/m", 60.0 + wiggle + (i >= 20 ? 0.6 * (i - 19) : 0.0), 0.2}};
-    if (i >= 12) night.effects = {"periodic_force, period 0.012 m"};
-    nights.push_back(night);
-  }
-  return nights;
-}
-
-TEST(Alarms, SayWhatChangedSinceWhenAndWhereItLeads) {
-  const FleetReport report = look_at(worn_axis(), {1000, {{"B_a", {0.07, "N s/mm"}}}});
-  ASSERT_GE(report.alarms.size(), 2u);
-  const Alarm& effect = report.alarms.front();
-  EXPECT_EQ(effect.kind, Alarm::Kind::effect);
-  EXPECT_EQ(effect.night, "2026-09-14");  // the second night on which it was there
-  EXPECT_EQ(effect.text, "periodic_force, period 0.012 m has appeared, since 2026-09-13.");
-  const Alarm& last = report.alarms.back();
-  EXPECT_EQ(last.what, "B_a");
-  EXPECT_NE(last.text.find("B_a up "), std::string::npos) << last.text;
-  EXPECT_NE(last.text.find("At this rate the limit of 0.07 N s/mm is met in "), std::string::npos)
-      << last.text;
-  EXPECT_EQ(report.alarms[1].night.substr(0, 8), "2026-09-");
-  EXPECT_LE(report.alarms[1].night, "2026-09-23");
-  EXPECT_NE(message_of([&] {
-              look_at(worn_axis(), {1000, {{"B_a", {1.0, "kg"}}}});
-            }).find("limit of B_a:"),
-            std::string::npos);
-}
-
-TEST(Alarms, ALimitIsPassedOnlyFromItsOtherSide) {
-  std::vector<NightResult> nights = worn_axis();
-  for (NightResult& night : nights)
-    night.parameters[0].value = 120.0 - night.parameters[0].value;  // falls from 60
-  const auto last_text = [&](double limit) {
-    return look_at(nights, {1000, {{"B_a", {limit, "N s/m"}}}}).alarms.back().text;
-  };
-  EXPECT_NE(last_text(58.0).find("The limit of 58 N s/m is passed."), std::string::npos)
-      << last_text(58.0);
-  EXPECT_EQ(last_text(70.0).find("limit"), std::string::npos) << last_text(70.0);
-  EXPECT_NE(last_text(40.0).find("the limit of 40 N s/m is met in "), std::string::npos)
-      << last_text(40.0);
-}
-
-TEST(Alarms, KnowDatesAndNumbers) {
-  const auto days = days_of({"2026-02-27", "2026-03-01"});
-  EXPECT_EQ(days.at("2026-03-01") - days.at("2026-02-27"), 2.0);
-  EXPECT_EQ(days_of({"7", "12"}).at("12"), 12.0);
-  EXPECT_EQ(days_of({"b", "a"}).at("b"), 1.0);
 }
 
 }  // namespace

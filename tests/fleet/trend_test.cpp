@@ -11,28 +11,6 @@
 namespace axisfit {
 namespace {
 
-TEST(Cusum, RunLengthIsThatOfTheLiterature) {
-  // D. C. Montgomery, Introduction to Statistical Quality Control, table of two-sided charts with
-  // k = 0.5: 168 for h = 4, 465 for h = 5.
-  EXPECT_NEAR(mean_run_length(4.0, 0.5), 168.0, 1.0);
-  EXPECT_NEAR(mean_run_length(5.0, 0.5), 465.0, 2.0);
-  EXPECT_NEAR(mean_run_length(threshold_for(1000.0)), 1000.0, 1.0);
-}
-
-TEST(Cusum, AlarmsAsOftenAsItsThresholdSays) {
-  std::mt19937_64 generator(1);
-  Cusum chart(threshold_for(200.0));
-  int alarms = 0;
-  constexpr int kNights = 200'000;
-  constexpr double kExpected = kNights / 200.0;
-  for (int i = 0; i < kNights; ++i)
-    if (chart.add(normal(generator))) {
-      ++alarms;
-      chart.restart();
-    }
-  EXPECT_NEAR(alarms, kExpected, 4.0 * std::sqrt(kExpected));
-}
-
 /// A parameter of 100 with standard errors of 0.5 to 1 and an own scatter, which follows a channel
 /// by 1 per unit.
 Trend course(std::uint64_t seed, std::size_t nights, double scatter, double jump = 0.0,

@@ -1,88 +1,23 @@
 // Jobs that are made for recordings: the reader takes them, and they end in a fit.
 #include "init/init_job.h"
 
-#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <matio.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <map>
 #include <string>
 
 #include "fit/estimate/estimate.h"
-#include "init/starter_axis.h"
-#include "io/config/axis_file.h"
 #include "io/config/job_file.h"
-#include "tests/apps/files.h"
-#include "tests/apps/fit_job.h"
+#include "tests/init/made_job.h"
 
 namespace axisfit {
 namespace {
 
 namespace fs = std::filesystem;
-
-class InitJobTest : public ::testing::Test {
- protected:
-  /// Makes a job in the folder.
-  InitialJob make(std::vector<std::string> recordings, const std::string& axis = {},
-                  std::optional<double> gain = {}, const std::vector<ColumnAnswer>& answers = {}) {
-    for (std::string& r : recordings)
-      if (!fs::path(r).is_absolute()) r = folder_.path(r);
-    InitialJob made = initial_job(recordings, axis, folder_.path(), gain, answers);
-    for (const auto& [name, contents] : made.files) folder_.write(name, contents);
-    return made;
-  }
-
-  JobFile read() { return read_job_file(folder_.path("job.yaml")); }
-
-  std::map<std::string, double> fitted(const JobFile& file) {
-    const FitResult result = estimate(file.job);
-    EXPECT_TRUE(result.usable) << result.message;
-    std::map<std::string, double> values;
-    for (const ParameterResult& p : result.parameters) {
-      EXPECT_TRUE(p.uncertainty.determined) << p.name;
-      values[p.name] = p.value;
-    }
-    return values;
-  }
-
-  /// A driven mass: M = 12 kg, B_a = 40 N s/m, F_c = 15 N and F_0 = 4 N at K_f = 60 N/V.
-  Table driven(std::uint64_t seed = 1) {
-    const std::string axis = folder_.write(
-        "true.yaml",
-        "drive: force_source\ntransmission: rigid\n"
-        "parameters: {K_f: 60 N/V, M: 12 kg, B_a: 40 N s/m}\n"
-        "effects: {coulomb_friction: {F_c: 15 N}, constant_force: {F_0: 4 N}}\n"
-        "instruments: {velocity: {noise: 1 mm/s}, acceleration: {noise: 0.05 m/s^2}}\n"
-        "controller: {counts_per_revolution: 3141592}\n");
-    return record_levels(axis, {{2.0, -2.0, 1.0, -1.5, 0.5, -0.8}, 0.3}, 1.8,
-                         {Signal::position, Signal::velocity, Signal::acceleration}, 500.0, seed);
-  }
-
-  /// Its columns time, command, position, velocity and acceleration, renamed and scaled.
-  Table renamed(Table table, const std::vector<std::pair<std::string, double>>& columns) {
-    EXPECT_EQ(table.columns.size(), columns.size());
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      table.columns[c].name = columns[c].first;
-      for (double& x : table.columns[c].values) x *= columns[c].second;
-    }
-    return table;
-  }
-
-  static void expect_the_driven_mass(const std::map<std::string, double>& found, double scale) {
-    ASSERT_EQ(found.size(), 4u);
-    EXPECT_NEAR(found.at("M"), 12.0 * scale, 0.3 * scale);
-    EXPECT_NEAR(found.at("B_a"), 40.0 * scale, 2.0 * scale);
-    EXPECT_NEAR(found.at("coulomb_friction.F_c"), 15.0 * scale, 1.0 * scale);
-    EXPECT_NEAR(found.at("constant_force.F_0"), 4.0 * scale, 0.5 * scale);
-  }
-
-  TempFolder folder_;
-};
 
 TEST_F(InitJobTest, ThePapersAxisIsRecognised) {
   make({AXISFIT_TESTDATA "/clean-fit.csv", AXISFIT_TESTDATA "/clean-validate.csv"});
@@ -125,16 +60,6 @@ TEST_F(InitJobTest, ATemperatureAndASupplyBecomeChannels) {
   const std::string text = folder_.read("job.yaml");
   EXPECT_NE(text.find("Not used: temperature, humidity"), std::string::npos) << text;
   expect_the_driven_mass(fitted(file), 1.0);
-}
-
-TEST_F(InitJobTest, WhatTheRecordingsLeaveOpenIsNotFree) {
-  make({AXISFIT_TESTDATA "/clean-slow.csv"}, AXISFIT_CONFIGS "/axes/x.yaml");
-  EXPECT_EQ(folder_.names(), (std::set<std::string>{"job.yaml"}));
-  const std::string text = folder_.read("job.yaml");
-  EXPECT_NE(text.find("\n  # V_L: {}   not free: no recorded signal depends on it"),
-            std::string::npos)
-      << text;
-  for (const FreeParameter& p : read().job.free) EXPECT_NE(quantity_list()[p.quantity].name, "V_L");
 }
 
 TEST_F(InitJobTest, UnitsAndSignsComeFromNamesAndDerivatives) {
@@ -184,29 +109,6 @@ TEST_F(InitJobTest, AnglesMakeARevoluteJoint) {
   EXPECT_NEAR(found.at("B_a"), 0.2, 0.01);
   EXPECT_NEAR(found.at("coulomb_friction.T_c"), 0.25, 0.01);
   EXPECT_NEAR(found.at("constant_torque.T_0"), 0.15, 0.01);
-}
-
-// Each machine of the list is an axis file that is valid, and the job begins with it.
-TEST_F(InitJobTest, AMachineIsTakenByItsName) {
-  for (const MachineAxis& machine : machine_axes()) {
-    Diagnostics diagnostics;
-    const auto rig = read_axis(
-        *ConfigNode::parse(std::string(machine.text), "axis.yaml", diagnostics), diagnostics);
-    EXPECT_TRUE(rig && diagnostics.empty()) << machine.name;
-  }
-  folder_.write(
-      "a.csv",
-      renamed(driven(),
-              {{"t_s", 1.0}, {"iq [A]", 1.0}, {"pos [mm]", 1e3}, {"v_mps", 1.0}, {"a_mps2", 1.0}}));
-  const InitialJob made =
-      initial_job({folder_.path("a.csv")}, "linear-motor", folder_.path(), {}, {}, true);
-  for (const auto& [name, contents] : made.files) folder_.write(name, contents);
-  EXPECT_NE(folder_.read("axis.yaml").find("name: slide with a linear motor"), std::string::npos);
-  const JobFile file = read();
-  EXPECT_EQ(file.job.model.structure.drive, Drive::motor_current);
-  expect_the_driven_mass(fitted(file), 1.0);  // both have 60 N/A
-  EXPECT_THROW(initial_job({folder_.path("a.csv")}, "loom", folder_.path(), {}, {}, true),
-               std::runtime_error);
 }
 
 TEST_F(InitJobTest, ARowOfUnitsCountsAsTheNames) {
@@ -264,17 +166,6 @@ TEST_F(InitJobTest, NothingButShortNamesIsEnough) {
   expect_the_driven_mass(fitted(file), 1.0 / 60.0);
 }
 
-TEST_F(InitJobTest, ALargeCurrentLeavesNoRoomBeyondTheBounds) {
-  folder_.write(
-      "a.csv",
-      renamed(driven(),
-              {{"t_s", 1.0}, {"current_a", 20.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}}));
-  make({"a.csv"});
-  const std::string bounds = "coulomb_friction.F_c: {bounds: [0 N, 100000 N]}";
-  EXPECT_NE(folder_.read("job.yaml").find(bounds), std::string::npos) << folder_.read("job.yaml");
-  expect_the_driven_mass(fitted(read()), 20.0 / 60.0);
-}
-
 TEST_F(InitJobTest, AForceNeedsNoGain) {
   Table table = renamed(
       driven(), {{"t_s", 1.0}, {"force_kN", 0.06}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
@@ -300,75 +191,6 @@ TEST_F(InitJobTest, WhatWasMeasuredIsNoStaircase) {
   }
 }
 
-// As that which a servo smooths.
-TEST_F(InitJobTest, AVelocityThatIsLateIsNotUsed) {
-  Table table = renamed(
-      driven(), {{"t_s", 1.0}, {"iq [A]", 1.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
-  table.columns.pop_back();
-  for (const int late : {0, 1, 8}) {
-    std::vector<double>& v = table.columns[3].values;
-    std::shift_right(v.begin(), v.end(), late);
-    std::fill_n(v.begin(), late, v[static_cast<std::size_t>(late)]);
-    make({folder_.write("a.csv", table)});
-    const bool said =
-        folder_.read("job.yaml").find("ms behind the derivative") != std::string::npos;
-    EXPECT_EQ(said, late == 8) << late;
-  }
-}
-
-TEST_F(InitJobTest, NamesCannotBreakOutOfTheFile) {
-  const std::string name = "pos: {x}, # \"q\" - 'a' [mm]";
-  Table table = renamed(
-      driven(), {{"t_s", 1.0}, {"i_A", 1.0}, {name, 1e3}, {"- &x *y", 1.0}, {"!!null ~", 1.0}});
-  folder_.write("true: # a.csv", table);
-  make({"true: # a.csv"});
-  const JobFile file = read();
-  EXPECT_EQ(file.job.recordings[0].file, "true: # a.csv");
-  EXPECT_EQ(file.job.recordings[0].measurements.size(), 1u);
-}
-
-TEST_F(InitJobTest, NamesOfAllKindsAreTaken) {
-  // A micro sign as Windows has it; a line that Unicode breaks, and a bell, in a name.
-  Table table = renamed(driven(), {{"t_s", 1.0},
-                                   {"i_A", 1.0},
-                                   {"x_m", 1.0},
-                                   {"v [\xB5m/s]", 1e6},
-                                   {"a\u2028free: \xB0\a", 1.0}});
-  folder_.write("a.csv", table);
-  make({"a.csv"});
-  EXPECT_EQ(read().job.recordings[0].measurements.size(), 1u);
-  EXPECT_NE(folder_.read("job.yaml").find("# velocity: {column: \"v [µm/s]\", unit: um/s}"),
-            std::string::npos);
-  EXPECT_NE(folder_.read("job.yaml").find("# Not used: aâ€¨free: °? (column 5)\n"),
-            std::string::npos)
-      << folder_.read("job.yaml");
-}
-
-// A flag, a sensor that nobody connected, and a command that the drive was not in: none of them is
-// taken for a signal, nor do they stop anything.
-TEST_F(InitJobTest, WhatNeverChangesIsNotUsed) {
-  Table table = renamed(
-      driven(),
-      {{"t_s", 1.0}, {"i_A", 1.0}, {"x_m", 1.0}, {"velocity_mps", 0.0}, {"torque_enable", 0.0}});
-  for (double& x : table.columns.back().values) x = 1.0;
-  folder_.write("a.csv", table);
-  const InitialJob made = make({"a.csv"});
-  EXPECT_EQ(std::ranges::count(made.guesses, "velocity_mps: not used, for it never changes"), 1);
-  const JobFile file = read();
-  ASSERT_EQ(file.job.recordings[0].measurements.size(), 1u);
-  EXPECT_EQ(file.job.recordings[0].measurements[0].signal, Signal::position);
-  EXPECT_EQ(fitted(file).size(), 4u);
-  EXPECT_NE(folder_.read("job.yaml").find("command: {column: i_A"), std::string::npos);
-}
-
-TEST_F(InitJobTest, ACommandThatNeverChangesIsOne) {
-  Table table = driven();
-  for (double& x : table.columns[1].values) x = 2.0;
-  folder_.write("a.csv", table);
-  make({"a.csv"});
-  EXPECT_NE(folder_.read("job.yaml").find("command: {column: command_v"), std::string::npos);
-}
-
 TEST_F(InitJobTest, ACopyIsRefused) {
   const Table table = driven();
   folder_.write("a.csv", table);
@@ -382,65 +204,6 @@ TEST_F(InitJobTest, ACopyIsRefused) {
           << error.what();
     }
   }
-}
-
-TEST_F(InitJobTest, AKnownGainIsAllThatACurrentNeeds) {
-  Table table = driven();
-  table.columns[1].name = "i_A";
-  folder_.write("a.csv", table);
-  const InitialJob made = make({"a.csv"}, {}, 60.0);
-  EXPECT_TRUE(made.guesses.empty()) << made.guesses.front();
-  const JobFile file = read();
-  EXPECT_EQ(file.job.model.axis.K_f, 60.0);
-  EXPECT_TRUE(file.job.guessed.empty());
-  EXPECT_NEAR(file.job.model.axis.M, 12.0, 2.0);
-  expect_the_driven_mass(fitted(file), 1.0);
-  table.columns[1].name = "force_N";
-  folder_.write("a.csv", table);
-  EXPECT_THROW(make({"a.csv"}, {}, 60.0), std::runtime_error);
-}
-
-// Without the rating, a torque in per cent is no force: K_f, the rated force, is a guess.
-TEST_F(InitJobTest, APartOfARatingNeedsTheGain) {
-  folder_.write("a.csv", renamed(driven(), {{"t_s", 1.0},
-                                            {"TorqueActual [%]", 1.0},
-                                            {"Lage-Ist [mm]", 1e3},
-                                            {"v_mps", 1.0},
-                                            {"a_mps2", 1.0}}));
-  const InitialJob made = make({"a.csv"});
-  ASSERT_EQ(made.guesses.size(), 1u);
-  EXPECT_TRUE(made.guesses[0].starts_with("the drive gain, K_f in axis.yaml")) << made.guesses[0];
-  EXPECT_NE(folder_.read("job.yaml").find("command: {column: \"TorqueActual [%]\", unit: \"%\"}"),
-            std::string::npos)
-      << folder_.read("job.yaml");
-  const JobFile file = read();
-  EXPECT_EQ(file.job.model.structure.drive, Drive::rated_force);
-  EXPECT_EQ(file.job.guessed, std::vector{find_quantity("K_f")->index});
-  expect_the_driven_mass(fitted(file), 1.0 / 60.0);
-}
-
-// One column has one sign. A spring that nobody recorded drives the second recording backwards.
-TEST_F(InitJobTest, TheSignOfAColumnIsThatOfAllRecordings) {
-  Table forward = driven(1), back = driven(2);
-  for (double& x : forward.columns[1].values) x = -x;
-  for (double& x : back.columns[1].values) x = -x;
-  folder_.write("a.csv", forward);
-  folder_.write("b.csv", back);
-  const auto sign_guess = [&] {
-    for (const std::string& text : make({"a.csv", "b.csv"}).guesses)
-      if (text.find("opposite direction") != std::string::npos) return text;
-    return std::string();
-  };
-  std::string text = sign_guess();
-  EXPECT_NE(text.find(" in a, -"), std::string::npos) << text;
-  EXPECT_NE(text.find(": its sign was inverted"), std::string::npos) << text;
-  expect_the_driven_mass(fitted(read()), 1.0 / 60.0);
-  // One of them says the contrary.
-  for (double& x : back.columns[1].values) x = -x;
-  folder_.write("b.csv", back);
-  text = sign_guess();
-  EXPECT_NE(text.find(": is its sign right? It was left as it is"), std::string::npos) << text;
-  EXPECT_EQ(folder_.read("job.yaml").find("sign: -1"), std::string::npos);
 }
 
 // The noise of a signal that stays where it is shows while it moves.
@@ -457,22 +220,6 @@ TEST_F(InitJobTest, AnAxisAtRestForMostOfTheTimeIsFitted) {
   make({"a.csv"});
   const JobFile file = read();
   EXPECT_EQ(file.job.recordings[0].measurements.size(), 2u);
-}
-
-TEST_F(InitJobTest, OneInputServesAllRecordings) {
-  // What a current moves says nothing of what a force does: the force is not in both.
-  Table both = renamed(
-      driven(), {{"t_s", 1.0}, {"force_N", 60.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
-  both.columns.push_back({"i_A", both.columns[1].values});
-  for (double& i : both.columns.back().values) i /= 60.0;
-  folder_.write("a.csv", both);
-  both.columns.erase(both.columns.begin() + 1);
-  for (double& t : both.columns.front().values) t += 1e-4;  // else it would be the same recording
-  folder_.write("b.csv", both);
-  make({"a.csv", "b.csv"});
-  const JobFile file = read();
-  ASSERT_EQ(file.job.recordings.size(), 2u);
-  expect_the_driven_mass(fitted(file), 1.0 / 60.0);
 }
 
 TEST_F(InitJobTest, MatlabVariablesAreColumnsToo) {
@@ -501,32 +248,6 @@ TEST_F(InitJobTest, MatlabVariablesAreColumnsToo) {
             std::string::npos)
       << folder_.read("job.yaml");
   expect_the_driven_mass(fitted(read()), 1.0 / 60.0);
-}
-
-TEST_F(InitJobTest, RecordingsOfOneNameGetDifferentOnes) {
-  fs::create_directories(folder_.path("one"));
-  fs::create_directories(folder_.path("two"));
-  Table table = renamed(
-      driven(), {{"t_s", 1.0}, {"i_A", 1.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
-  folder_.write("one/run.csv", table);
-  for (double& t : table.columns.front().values) t += 1e-4;  // else it would be the same recording
-  folder_.write("two/run.csv", table);
-  make({"one/run.csv", "two/run.csv"});
-  const JobFile file = read();
-  EXPECT_EQ(file.job.recordings[0].file, "one/run.csv");
-  EXPECT_NE(file.job.recordings[0].name, file.job.recordings[1].name);
-}
-
-TEST_F(InitJobTest, AVelocityThatIsAskedForIsACommand) {
-  Table table = record_levels(AXISFIT_CONFIGS "/axes/x.yaml", {{6.0, -4.0, 2.0}, 0.2}, 0.6,
-                              {Signal::velocity}, 500.0);
-  table.columns[1].name = "velocity setpoint [mm/s]";
-  for (double& x : table.columns[1].values) x *= 100.0;  // 10 V for 1 m/s
-  folder_.write("a.csv", table);
-  const InitialJob made = make({"a.csv"});
-  EXPECT_EQ(made.guesses.size(), 2u);
-  const Schedule command = read().job.recordings[0].command;
-  EXPECT_NEAR(command.values.front(), 6.0, 1e-9);
 }
 
 TEST_F(InitJobTest, APositionThatIsAskedForNeedsTheController) {

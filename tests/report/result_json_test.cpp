@@ -6,15 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "base/text_table.h"
 #include "base/version.h"
-#include "fit/design/forecast.h"
 #include "fit/estimate/estimate.h"
 #include "fit/run.h"
 #include "io/config/axis_file.h"
@@ -22,47 +18,10 @@
 #include "report/html/report_page.h"
 #include "report/text/report_text.h"
 #include "report/text/words.h"
-#include "tests/apps/files.h"
-#include "tests/apps/fit_job.h"
+#include "tests/report/found.h"
 
 namespace axisfit {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-std::vector<std::string> keys(const Json& object) {
-  std::vector<std::string> result;
-  for (const auto& [key, value] : object.items()) result.push_back(key);
-  return result;
-}
-
-/// Nobody has to scroll, and no line has blanks at its end.
-void expect_narrow(const std::string& text) {
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    EXPECT_LE(width_of(line), 80u) << line;
-    EXPECT_FALSE(line.ends_with(' ')) << line;
-  }
-}
-
-/// What was found for a job on the recordings of fit_job.h, and what is told of it.
-struct Found {
-  explicit Found(const std::string& job, bool close_the_loop = false) {
-    const TempFolder folder;
-    write_recordings(folder);
-    write_rubbing_mass(folder);
-    const JobFile file = read_job_file(folder.write("job.yaml", job));
-    rig = file.rig;
-    run_result = run(file.job, {.select_effects = close_the_loop});
-    json = result_json(run_result);
-    text = report_text(run_result);
-    expect_narrow(text);
-  }
-  Rig rig;
-  RunResult run_result;
-  Json json;
-  std::string text;
-};
 
 /// No reader of JSON takes nan or inf, and null is only for what the documentation says may lack.
 void expect_finite(const Json& value, const std::string& where) {
@@ -224,48 +183,6 @@ TEST(ResultTest, AFixedCouplingAlsoTellsThePredictionError) {
   EXPECT_NE(fit.text.find("prediction rmse"), std::string::npos);
 }
 
-TEST(ResultTest, ReportHasEveryFreeParameterAndTheVerdict) {
-  const Found fit(fit_job());
-  const std::string& text = fit.text;
-  for (const char* part : {"B_a  arm viscous friction", "V_L  preamplifier limit", "N s/m", "short",
-                           "judge", "validate", "compare", "motor_current", "151 samples",
-                           "* estimated from differences of the samples"})
-    EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
-  EXPECT_NE(text.find("\n" + paragraph(grade_text(fit.run_result.grade, fit.run_result.first))),
-            std::string::npos);
-  EXPECT_EQ(text.find("nan"), std::string::npos);
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    EXPECT_FALSE(line.ends_with(' ')) << line;
-    EXPECT_EQ(line.find('\t'), std::string::npos);
-  }
-}
-
-/// A CSV text with empty fields as NaN.
-struct Csv {
-  explicit Csv(const std::string& text) {
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) {
-      std::vector<std::string> fields(1);
-      for (const char c : line) {
-        if (c == ',')
-          fields.emplace_back();
-        else
-          fields.back() += c;
-      }
-      if (header.empty()) {
-        header = fields;
-        continue;
-      }
-      rows.emplace_back();
-      for (const std::string& f : fields)
-        rows.back().push_back(f.empty() ? std::nan("") : std::strtod(f.c_str(), nullptr));
-    }
-  }
-  std::vector<std::string> header;
-  std::vector<std::vector<double>> rows;
-};
-
 TEST(ResultTest, ResidualsAreMeasuredMinusSimulated) {
   const Found fit(fit_job());
   const Csv csv(residuals_csv(fit.run_result.baseline, fit.run_result.first));
@@ -323,32 +240,6 @@ TEST(ResultTest, ARecordingThatCannotBeSimulatedHasNoErrors) {
   EXPECT_EQ(text.find("nan"), std::string::npos);
   EXPECT_TRUE(text.ends_with(
       std::string("\n").append(paragraph(grade_text(run_result.grade, run_result.first)))));
-}
-
-TEST(ResultTest, LongNamesAndNumbersFitInTheWidth) {
-  const TempFolder folder;
-  write_recordings(folder);
-  std::string text = fit_job("{observer: {fixed: 100 1/s}}");
-  text =
-      replaced(text, "file: short.csv\n", "file: short.csv\n    name: a_recording_of_many_words\n");
-  text = replaced(text, "free:\n",
-                  "effects: {quadratic_drag: {c: 1 N s^2/m^2}, directional_friction: {dB_a: 1 N "
-                  "s/m}, coulomb_friction: {F_c: 1 N}}\nfree:\n"
-                  "  directional_friction.dB_a: {}\n  coulomb_friction.F_c: {}\n"
-                  "  quadratic_drag.c: {initial: 1 N s^2/m^2}\n");
-  RunResult run_result =
-      run(read_job_file(folder.write("job.yaml", text)).job, {.profiles = {"V_L"}});
-  expect_narrow(
-      forecast_text(run_result.job(), forecast(run_result.job(), draw_start(run_result.job(), 0))));
-  for (ParameterResult& p : run_result.first.parameters) {
-    p.value = -5000311.7;
-    p.uncertainty = {
-        .determined = true, .standard_error = 2812.3, .lower = -5005812.0, .upper = -4994890.0};
-  }
-  const std::string report = report_text(run_result);
-  expect_narrow(report);
-  EXPECT_NE(report.find("\n  directional_friction.dB_a\n"), std::string::npos) << report;
-  EXPECT_NE(report.find("-5.0058e+06 .. -4.9949e+06"), std::string::npos) << report;
 }
 
 TEST(ResultTest, AnExplainedResidualIsSaidToBe) {
@@ -467,45 +358,6 @@ TEST(ResultTest, FaultsOfInstrumentsAreTold) {
   EXPECT_NEAR(grid_test[0].at("resolution"), 0.01, 1e-9);
 }
 
-/// The job of the rubbing mass, before anything is fitted.
-JobFile rubbing_file() {
-  const TempFolder folder;
-  write_rubbing_mass(folder);
-  return read_job_file(folder.write("job.yaml", rubbing_job()));
-}
-
-/// Text in which runs of blanks and line ends are one blank.
-std::string on_one_line(const std::string& text) {
-  std::istringstream words(text);
-  std::string line;
-  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
-  return line;
-}
-
-TEST(ResultTest, InstrumentsAreJudgedInTheirUnits) {
-  const Job job = rubbing_file().job;
-  ASSERT_EQ(job.recordings[0].measurements[0].sigma, 0.002);
-  const auto told = [&](const SeriesTest& test) {
-    Diagnosis diagnosis;
-    diagnosis.tests.push_back(test);
-    return on_one_line(instruments_text(job, diagnosis));
-  };
-  SeriesTest drifting;
-  drifting.drift = {.per_second = 3.0, .standard_error = 0.1, .p_value = 1e-6, .span = -4.5};
-  EXPECT_EQ(told(drifting),
-            "The velocity of fitted drifts: its residual changes by 0.006 m/s per second, -0.009 "
-            "m/s in total.");
-  // An outlier's place is one of the series, which lacks what was left out.
-  SeriesTest spoilt;
-  spoilt.series.samples = {10, 20, 50};
-  spoilt.series.values = {4.5, 0.5, -7.5};
-  spoilt.outliers = {0, 2};
-  ASSERT_EQ(job.recordings[0].times[50], 0.2);
-  EXPECT_EQ(told(spoilt),
-            "The velocity of fitted has 2 outliers, the largest 7.5 times the noise at 0.2 s: bad "
-            "readings, or an event simulated one sample early or late.");
-}
-
 TEST(ResultTest, OutliersHaveTheTimesOfTheirSamples) {
   Found fit(rubbing_job());
   SeriesTest& test = fit.run_result.diagnosis->tests[1];
@@ -515,17 +367,6 @@ TEST(ResultTest, OutliersHaveTheTimesOfTheirSamples) {
   EXPECT_EQ(result_json(fit.run_result).at("residual").at("tests")[1].at("outliers"),
             Json::parse(R"([{"time_s": 0.04, "residual_over_sigma": 4.5},
                             {"time_s": 0.2, "residual_over_sigma": -7.5}])"));
-}
-
-TEST(ResultTest, StrongCorrelationsOfEitherSignAreNamed) {
-  FitResult fit;
-  for (const char* name : {"M", "B_a", "K_f"}) fit.parameters.push_back({name, 1.0, {}});
-  fit.reduced_chi_square = 1.0;
-  fit.correlation = Eigen::Matrix3d{{1.0, 0.96, -0.98}, {0.96, 1.0, 0.94}, {-0.98, 0.94, 1.0}};
-  EXPECT_NE(on_one_line(uncertainty_text({}, fit))
-                .find("Strongly correlated: M and K_f (-0.98), M and B_a (0.96)."),
-            std::string::npos)
-      << uncertainty_text({}, fit);
 }
 
 TEST(ResultTest, ASecondOpinionIsToldWhereItContradicts) {
@@ -619,43 +460,6 @@ TEST(ResultTest, NoExperimentIsSuggestedWhereNoneIsSafe) {
   EXPECT_NE(told().find("the simulation does not show what the machine would do"),
             std::string::npos);
   EXPECT_EQ(result_json(run_result).at("next_experiment"), nullptr);
-}
-
-TEST(ResultTest, RunTimesAreSaidToTheirFirstDigit) {
-  Job job;
-  job.options.threads = 1;
-  EXPECT_EQ(on_one_line(run_time_text(job, {.evaluation = 0.01,
-                                            .explained = 0.123,
-                                            .unexplained = 1.77,
-                                            .nothing_missing = 3.4,
-                                            .one_effect = 89.0,
-                                            .no_effect = 1300.0})),
-            "Estimated run time on this machine with 1 thread: 0.1 s if the model explains the "
-            "recordings, otherwise 2 s. With --close-loop: 3 s if nothing is missing, 90 s if one "
-            "effect is, and 20 min or more if no effect suffices.");
-  job.options.threads = 3;
-  EXPECT_NE(on_one_line(run_time_text(job, {})).find("with 3 threads: "), std::string::npos);
-}
-
-TEST(ResultTest, ErrorsOfAHeldSimulationStandBesideTheFreeRunningOnes) {
-  RunResult run_result;
-  EffectSelection& selection = run_result.selection.emplace();
-  selection.result.job = rubbing_file().job;
-  selection.models.resize(1);
-  SignalScore score{{.fitted = true}, SignalErrors{.rmse = 0.5}, SignalErrors{0.25, 3.0, 1.5}};
-  run_result.scores = {{.signals = {score}, .forces = {{}, {}}}};
-  const auto told = [&] { return on_one_line(selection_text(run_result)); };
-  EXPECT_NE(
-      told().find("Errors of the tracking simulation, before and after rmse of range red. chi2 "
-                  "free-running rmse fitted, fit: velocity baseline 0.25 m/s 3 % 1.5 "
-                  "0.5 m/s "),
-      std::string::npos)
-      << told();
-  run_result.scores[0].signals[0].tracking.reset();
-  EXPECT_NE(told().find("Errors of the free-running simulation, before and after rmse of range "
-                        "red. chi2 fitted, fit: velocity baseline 0.5 m/s 0 % 0 Missing force"),
-            std::string::npos)
-      << told();
 }
 
 TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {

@@ -57,13 +57,6 @@ class RevoluteAxis : public ::testing::Test {
            "limits: {travel: [-10 rad, 10 rad], speed: 1000 deg/s}\n";
   }
 
-  /// The job that goes on from a result.
-  Job job_after(const JobFile& file, const Job& reached) const {
-    const std::string text = next_job_text(file, reached, folder_.path("job.yaml"), "",
-                                           folder_.path(), "axis.yaml", "Goes on.");
-    return read_job_file(folder_.write("next.yaml", text)).job;
-  }
-
   /// No metre, newton or kilogram, nor what goes with them. Of an HTML page, only what is read.
   static void expect_turning(const std::string& what, const std::string& text) {
     static const std::regex sliding(
@@ -126,38 +119,6 @@ TEST_F(RevoluteAxis, IsFittedAndToldInItsOwnWords) {
     if (!is_tag) read += c == '>' ? '\n' : c;
   }
   expect_turning("report.html", read);
-}
-
-TEST_F(RevoluteAxis, GoesOnWithTheRolesOfTheResult) {
-  const JobFile file = read_job_file(folder_.write("job.yaml", job_));
-  const auto roles_after = [&](const Job& reached) {
-    std::string roles;
-    for (const Recording& r : job_after(file, reached).recordings)
-      roles += r.role == Role::fit ? "fit " : "validate ";
-    return roles;
-  };
-  EXPECT_EQ(roles_after(file.job), "fit validate ");
-  EXPECT_EQ(roles_after(*with_exchanged_roles(file.job)), "validate fit ");
-}
-
-TEST_F(RevoluteAxis, GoesOnTrackingIfTheSearchDid) {
-  for (const char* fit : {"", "fit: {observer: none, horizon: 2 s, seed: 7}\n",
-                          "fit: {initial_observer_gain: 100 1/s, seed: 7}\n"}) {
-    const JobFile file = read_job_file(folder_.write("job.yaml", job_ + fit));
-    const FitOptions again = job_after(file, file.job).options;
-    EXPECT_EQ(again.criterion, file.job.options.criterion);
-    EXPECT_EQ(again.continuation, file.job.options.continuation);
-    Job reached = file.job;
-    reached.options.criterion = Tracking{25.0};
-    const FitOptions next = job_after(file, reached).options;
-    EXPECT_EQ(next.criterion, reached.options.criterion);
-    EXPECT_EQ(next.seed, file.job.options.seed);
-  }
-  // A criterion that is chosen is chosen anew.
-  const JobFile file = read_job_file(folder_.write("job.yaml", job_ + "fit: {horizon: auto}\n"));
-  Job reached = file.job;
-  reached.options.criterion = Tracking{};
-  EXPECT_TRUE(job_after(file, reached).choose_criterion);
 }
 
 TEST_F(RevoluteAxis, RefusesTheWordsOfALoadThatSlides) {

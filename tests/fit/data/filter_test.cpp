@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <numeric>
 
 #include "fit/data/noise.h"
 #include "tests/fit/example.h"
@@ -220,6 +222,53 @@ TEST(FitOfAFilteredRecording, FindsTheTruthWhereTheFilterIsDeclared) {
     }
     EXPECT_LT(distance_of_stiffness(job), 3.0);
   }
+}
+
+constexpr double kInterval = 1e-3;  // s
+
+/// Amplitude behind the filter of a sine of the frequency f, Hz, away from the ends.
+double gain(double f, double cutoff) {
+  std::vector<double> sine(4001);
+  for (std::size_t i = 0; i < sine.size(); ++i)
+    sine[i] = std::sin(2.0 * std::numbers::pi * f * kInterval * static_cast<double>(i));
+  const auto passed = low_pass(sine, kInterval, cutoff);
+  // The frequencies below have whole numbers of periods in the middle second.
+  double in = 0.0, out = 0.0;
+  for (std::size_t i = 1500; i < 2500; ++i) {
+    in += sine[i] * sine[i];
+    out += sine[i] * passed[i];
+  }
+  return out / in;
+}
+
+TEST(LowPass, LetsAConstantThrough) {
+  for (const double x : low_pass(std::vector<double>(500, 3.0), kInterval, 20.0))
+    EXPECT_NEAR(x, 3.0, 1e-9);
+}
+
+TEST(LowPass, HasNoDelay) {
+  std::vector<double> impulse(2001, 0.0);
+  impulse[1000] = 1.0;
+  const auto response = low_pass(impulse, kInterval, 20.0);
+  EXPECT_NEAR(std::accumulate(response.begin(), response.end(), 0.0), 1.0, 1e-9);
+  EXPECT_EQ(std::ranges::max_element(response) - response.begin(), 1000);
+  for (std::size_t i = 1; i <= 1000; ++i)
+    EXPECT_NEAR(response[1000 + i], response[1000 - i], 1e-10) << i;
+}
+
+TEST(LowPass, HalvesAtTheCutoffAndStopsBeyond) {
+  EXPECT_NEAR(gain(2.0, 20.0), 1.0, 1e-3);
+  EXPECT_NEAR(gain(20.0, 20.0), 0.5, 1e-3);
+  EXPECT_NEAR(gain(18.0, 20.0), std::sqrt(0.5), 0.02);
+  EXPECT_LT(std::abs(gain(40.0, 20.0)), 0.004);  // 1 / (1 + 2^8)
+  EXPECT_LT(std::abs(gain(100.0, 20.0)), 1e-4);
+}
+
+TEST(LowPass, LeavesAloneWhatSamplingCannotSee) {
+  const auto noise = Normal(1).values(100);
+  EXPECT_EQ(low_pass(noise, kInterval, 490.0), noise);
+  EXPECT_EQ(low_pass({1.0}, kInterval, 20.0), std::vector<double>{1.0});
+  EXPECT_TRUE(low_pass({}, kInterval, 20.0).empty());
 }
 
 }  // namespace

@@ -1,0 +1,24 @@
+#include "base/rounding.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace axisfit {
+namespace {
+
+TEST(Rounding, KeepsSignificantDigits) {
+  EXPECT_EQ(round_to_digits(1234.5, 2), 1200.0);
+  EXPECT_EQ(round_to_digits(-0.0012345, 3), -0.00123);
+  EXPECT_EQ(round_to_digits(9.96, 2), 10.0);
+  EXPECT_EQ(round_to_digits(0.0, 3), 0.0);
+}
+
+TEST(Rounding, TakesNumbersOfAnySize) {
+  EXPECT_EQ(round_to_digits(5e-324, 1), 5e-324);
+  EXPECT_EQ(round_to_digits(1.7321e308, 2), 1.7e308);
+  EXPECT_EQ(round_to_digits(-INFINITY, 2), -INFINITY);
+}
+
+}  // namespace
+}  // namespace axisfit

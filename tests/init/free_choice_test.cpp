@@ -1,0 +1,26 @@
+#include "init/free_choice.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "tests/init/made_job.h"
+
+namespace axisfit {
+namespace {
+
+using FreeChoiceTest = InitJobTest;
+
+TEST_F(FreeChoiceTest, WhatTheRecordingsLeaveOpenIsNotFree) {
+  make({AXISFIT_TESTDATA "/clean-slow.csv"}, AXISFIT_CONFIGS "/axes/x.yaml");
+  EXPECT_EQ(folder_.names(), (std::set<std::string>{"job.yaml"}));
+  const std::string text = folder_.read("job.yaml");
+  EXPECT_NE(text.find("\n  # V_L: {}   not free: no recorded signal depends on it"),
+            std::string::npos)
+      << text;
+  for (const FreeParameter& p : read().job.free) EXPECT_NE(quantity_list()[p.quantity].name, "V_L");
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,109 @@
+#include "io/config/job_parameters.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/sim/axes.h"
+
+namespace axisfit {
+namespace {
+
+/// Two recordings of the paper's axis to fit and one to validate, without samples.
+class FreeTest : public ::testing::Test {
+ protected:
+  FreeTest() {
+    job_.model = paper_axis();
+    job_.recordings.resize(3);
+    for (std::size_t r = 0; r < 3; ++r) job_.recordings[r].name = "run-" + std::to_string(r + 1);
+    job_.recordings[2].role = Role::validate;
+  }
+
+  /// What is freed, and what is said of it.
+  std::vector<FreeParameter> free(const std::string& yaml) {
+    Job job = job_;
+    Diagnostics diagnostics;
+    read_free(*ConfigNode::parse(yaml, "job.yaml", diagnostics), job);
+    said_.clear();
+    for (const Diagnostic& d : diagnostics.sorted()) said_ += d.message + "\n";
+    return job.free;
+  }
+  static double range(const char* name, bool upper) {
+    const Quantity& q = find_quantity(name)->quantity;
+    return upper ? q.upper : q.lower;
+  }
+
+  Job job_;
+  std::string said_;
+};
+
+TEST_F(FreeTest, WhatEveryAxisHasIsLogarithmicWithinAHundred) {
+  const FreeParameter p = free("{B_a: }").at(0);
+  EXPECT_EQ(p.initial, 200.0);
+  EXPECT_TRUE(p.logarithmic);
+  EXPECT_EQ(p.lower, 2.0);
+  EXPECT_EQ(p.upper, 20000.0);
+  EXPECT_FALSE(p.prior);
+  EXPECT_FALSE(p.recording);
+  const FreeParameter mass = free("{M: {initial: 50 t}}").at(0);
+  EXPECT_EQ(mass.lower, 500.0);
+  EXPECT_EQ(mass.upper, range("M", true)) << "no further than it makes sense";
+}
+
+TEST_F(FreeTest, WhatMayBeZeroIsLinearInItsRange) {
+  const FreeParameter p = free("{F_s: }").at(0);
+  EXPECT_FALSE(p.logarithmic);
+  EXPECT_EQ(p.lower, range("F_s", false));
+  EXPECT_EQ(p.upper, range("F_s", true));
+  EXPECT_TRUE(free("{F_s: {initial: 2 N, bounds: [1 N, 5 N]}}").at(0).logarithmic)
+      << "where the bounds leave out zero";
+  EXPECT_FALSE(free("{F_s: {initial: 2 N, bounds: [0 N, 5 N]}}").at(0).logarithmic);
+  EXPECT_FALSE(free("{B_a: {scale: linear}}").at(0).logarithmic);
+}
+
+TEST_F(FreeTest, APriorHasAMeanAndASigma) {
+  const FreeParameter p = free("{B_a: {prior: {mean: 150 N s/m, sigma: 20 N s/m}}}").at(0);
+  ASSERT_TRUE(p.prior);
+  EXPECT_EQ(p.prior->mean, 150.0);
+  EXPECT_EQ(p.prior->sigma, 20.0);
+  free("{B_a: {bounds: [180 N s/m, 300 N s/m], prior: {mean: 150 N s/m, sigma: 20 N s/m}}}");
+  EXPECT_EQ(said_,
+            "the prior mean of B_a, 150 N s/m, lies outside its bounds, 180 N s/m to 300 N s/m\n");
+}
+
+TEST_F(FreeTest, PerRecordingIsOneForEachThatIsFitted) {
+  job_.recordings[1].overrides = {{find_quantity("M")->index, 161.0}};
+  const auto list = free("{M: {per_recording: true}}");
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0].recording, 0u);
+  EXPECT_EQ(list[0].initial, 146.0);
+  EXPECT_EQ(list[1].recording, 1u);
+  EXPECT_EQ(list[1].initial, 161.0) << "what is set there";
+  EXPECT_EQ(free("{M: {initial: 100 kg, per_recording: true}}")[1].initial, 100.0);
+}
+
+TEST_F(FreeTest, EveryMistakeIsNamed) {
+  free("{}");
+  EXPECT_EQ(said_, "no free quantity: name at least one to fit\n");
+  free("{B_a: {bounds: [300 N s/m, 400 N s/m]}}");
+  EXPECT_EQ(said_,
+            "the initial value 200 N s/m of B_a lies outside its bounds, 300 N s/m to 400 N s/m\n");
+  free("{F_s: {scale: log}}");
+  EXPECT_EQ(said_,
+            "F_s on a logarithmic scale needs an initial value and a lower bound above zero\n");
+  job_.recordings[1].overrides = {{find_quantity("M")->index, 161.0}};
+  free("{M: }");
+  EXPECT_EQ(said_,
+            "M is fitted for all recordings but set for 'run-2': remove one, or use "
+            "per_recording: true\n");
+  job_.recordings[1].overrides = {{find_quantity("K_f")->index, 1.0}};
+  job_.model.structure.drive = Drive::force_source;
+  free("{K_f: }");
+  EXPECT_EQ(said_,
+            "K_f cannot be fitted to 'run-2', which has no command: its drive_force acts as it "
+            "is\n");
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,130 @@
+#include "io/config/recording_input.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace axisfit {
+namespace {
+
+/// Reads what drives a mass, or the paper's axis, from a recording of 20 samples.
+class InputTest : public ::testing::Test {
+ protected:
+  InputTest() {
+    Column time{"t", {}}, u{"u", {}}, duty{"duty", {}}, volts{"volts", {}};
+    for (int i = 0; i < 20; ++i) {
+      time.values.push_back(0.1 * i);
+      u.values.push_back(i);
+      duty.values.push_back(i % 2 == 0 ? 0.5 : -0.25);
+      volts.values.push_back(48.0 - i);
+    }
+    sources_.tables = {{"a.csv", {"a.csv", {time, u, duty, volts}, {}}}};
+    rig_.model.structure = {Drive::force_source, Transmission::rigid, {}, Joint::prismatic};
+  }
+
+  std::optional<Series> read(const std::string& signals) {
+    diagnostics_ = std::make_unique<Diagnostics>();
+    const auto node =
+        ConfigNode::parse("file: a.csv\ntime: {column: t, unit: s}\nsignals: {" + signals + "}",
+                          "job.yaml", *diagnostics_);
+    ConfigMap map(*node);
+    SeriesReader reader(sources_);
+    reader.open_own(*map.required("file"), "a.csv");
+    reader.read_own_times(*map.required("time"));
+    const ConfigNode of_signals = *map.required("signals");
+    ConfigMap entries(of_signals);
+    recording_ = {};
+    return read_input(of_signals, entries, rig_, reader, recording_);
+  }
+  std::string said() const {
+    std::string text;
+    for (const Diagnostic& d : diagnostics_->sorted()) text += d.message + "\n";
+    return text;
+  }
+
+  RecordingSources sources_;
+  Rig rig_;
+  Recording recording_;
+  std::unique_ptr<Diagnostics> diagnostics_;
+};
+
+TEST_F(InputTest, ACommandIsInTheUnitOfTheDrive) {
+  const auto input = read("command: {column: u, unit: mV, sigma: 2 mV}");
+  ASSERT_TRUE(input) << said();
+  EXPECT_DOUBLE_EQ(input->values[3], 3e-3);
+  EXPECT_DOUBLE_EQ(recording_.command_sigma, 2e-3);
+  EXPECT_EQ(recording_.command_noise, NoiseSource::given);
+  EXPECT_EQ(recording_.command.hold, Hold::zero_order);
+  rig_.model.structure.drive = Drive::motor_current;
+  read("command: {column: u, unit: V}");
+  EXPECT_NE(said().find("'V' cannot be converted to 'A'"), std::string::npos) << said();
+}
+
+TEST_F(InputTest, AForceActsAsItIs) {
+  const auto input = read("drive_force: {column: u, unit: kN}");
+  ASSERT_TRUE(input) << said();
+  EXPECT_EQ(input->values[3], 3000.0);
+  EXPECT_EQ(recording_.command.hold, Hold::linear);
+  ASSERT_EQ(recording_.overrides.size(), 1u);
+  EXPECT_EQ(recording_.overrides[0],
+            (std::pair<std::size_t, double>(find_quantity("K_f")->index, 1.0)));
+}
+
+TEST_F(InputTest, ADutyIsOfASupply) {
+  rig_.model.structure.drive = Drive::motor_voltage;
+  auto input = read("command: {column: duty, unit: \"1\", supply: 24 V}");
+  ASSERT_TRUE(input) << said();
+  EXPECT_EQ(input->values[2], 12.0);
+  input = read("command: {column: duty, unit: \"1\", supply: {column: volts, unit: V}}");
+  ASSERT_TRUE(input) << said();
+  EXPECT_DOUBLE_EQ(input->values[2], 23.0);
+  EXPECT_DOUBLE_EQ(input->values[3], -0.25 * 45.0);
+  rig_.model.structure.drive = Drive::motor_current;
+  read("command: {column: duty, unit: \"1\", supply: 24 V}");
+  EXPECT_EQ(said(), "a duty of a supply makes a voltage: the drive must be one that takes V\n");
+}
+
+TEST_F(InputTest, AReferenceIsFollowedByTheController) {
+  auto input = read("position_reference: {column: u, unit: mm}");
+  ASSERT_TRUE(input) << said();
+  EXPECT_EQ(recording_.command.meaning, Meaning::reference);
+  EXPECT_EQ(input->values[3], 3e-3);
+  rig_.model.structure.drive = Drive::velocity_loop;
+  EXPECT_FALSE(read("position_reference: {column: u, unit: mm}"));
+  EXPECT_EQ(said(),
+            "to compute the command of a position_reference the controller reads the encoder: name "
+            "its column under position, or say 'loop: simulated'\n");
+  input = read("position_reference: {column: u, unit: mm, loop: simulated}");
+  ASSERT_TRUE(input) << said();
+  EXPECT_EQ(recording_.command.meaning, Meaning::reference);
+}
+
+TEST_F(InputTest, AReferenceIsThereAtEverySample) {
+  sources_.tables["a.csv"].columns[1].values[7] = NAN;
+  EXPECT_FALSE(read("position_reference: {column: u, unit: mm}"));
+  EXPECT_EQ(said(),
+            "the controller needs the reference at every sample, and some are missing: trim the "
+            "recording or fill the gaps\n");
+}
+
+TEST_F(InputTest, IsOneAndOnlyOne) {
+  const std::string command = "command: {column: u, unit: V}",
+                    force = "drive_force: {column: u, unit: N}",
+                    reference = "position_reference: {column: u, unit: m}";
+  read("velocity: {column: u, unit: m/s}");
+  EXPECT_EQ(said(),
+            "the axis is driven by a command or a drive_force: name one of them, or the "
+            "position_reference that its controller follows\n");
+  EXPECT_FALSE(read(command + ", " + force));
+  EXPECT_EQ(said(), "give either the command or the drive force, not both: each drives the axis\n");
+  read(command + ", " + reference);
+  EXPECT_EQ(said(), "the recorded command drives the axis: remove position_reference\n");
+  read(force + ", " + reference);
+  EXPECT_EQ(said(), "the recorded force drives the axis: remove position_reference\n");
+}
+
+}  // namespace
+}  // namespace axisfit
