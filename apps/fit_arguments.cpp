@@ -130,7 +130,7 @@ void add_options(CLI::App& app, FitArguments& arguments) {
                       ->excludes(axis)
                       ->check(CLI::IsMember(machine_names()))
                       ->type_name("NAME");
-  const Quantity& gain = find_quantity("K_f", Joint::revolute)->quantity;
+  const Quantity& gain = quantity_list(Joint::revolute)[quantity_index("K_f")].quantity;
   app.add_option("--gain", arguments.gain,
                  "with --init: force in N, or torque in N m, per unit of the recorded current or "
                  "command, or at 100 % of the rating")
@@ -166,7 +166,7 @@ void add_options(CLI::App& app, FitArguments& arguments) {
 
 void complete(const CLI::App& app, int argc, char** argv, FitArguments& arguments) {
   arguments.command = command_line_of(argc, argv);
-  arguments.options.profiles = split(arguments.profiles);
+  arguments.profiled = split(arguments.profiles);
   arguments.options.predict = app.count("--predict") > 0;
   arguments.options.compare = app.count("--compare") > 0;
   if (arguments.compared != "-") arguments.others = split(arguments.compared);

@@ -19,11 +19,12 @@ struct FitArguments {
   std::string output;
   std::string from;
   std::string axis, machine;
-  std::optional<double> gain;        ///< N/V
-  std::vector<std::string> answers;  ///< what columns are
-  std::string profiles, compared;    ///< names with commas, as they were given
-  std::vector<std::string> others;   ///< axis files to compare with
-  std::string motion;                ///< motion file to predict; "-": none
+  std::optional<double> gain;         ///< N/V
+  std::vector<std::string> answers;   ///< what columns are
+  std::string profiles, compared;     ///< names with commas, as they were given
+  std::vector<std::string> profiled;  ///< names of parameters
+  std::vector<std::string> others;    ///< axis files to compare with
+  std::string motion;                 ///< motion file to predict; "-": none
   std::vector<std::string> tolerances;
   bool init = false;
   bool check = false;

@@ -219,6 +219,7 @@ int run_job(const FitArguments& arguments, std::optional<ProgressLine>& line, co
     options_of_run.tolerances.push_back(tolerance_of(text, file.job));
   if (options_of_run.predict && arguments.motion != "-")
     options_of_run.motion = motion_of(arguments.motion, file.rig);
+  set_profiles(arguments.profiled, file.job, options_of_run);
   RunResult& found = result.emplace(run(file.job, options_of_run, context));
   if (found.interrupted && time_limit_reached) found.time_limit = arguments.time_limit;
   const std::string json = result_json(found).dump(2) + "\n";

@@ -1,6 +1,7 @@
 #include "apps/run_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include "io/config/axis_file.h"
 #include "io/config/channels.h"
 #include "io/config/motion_file.h"
+#include "report/text/names.h"
 
 namespace axisfit {
 
@@ -58,6 +60,25 @@ Tolerance tolerance_of(const std::string& text, const Job& job) {
         return {value, unit};
   throw std::runtime_error(
       fmt::format("--within '{}': no signal of the job can be given in {}", text, unit));
+}
+
+void set_profiles(const std::vector<std::string>& names, const Job& job, RunOptions& options) {
+  std::vector<std::string> known;
+  for (const FreeParameter& p : job.free) known.push_back(name_of(job, p));
+  for (const std::string& name : names) {
+    if (name == "all") {
+      options.profile_all = true;
+      continue;
+    }
+    const auto at = std::ranges::find(known, name);
+    if (at == known.end())
+      throw std::runtime_error(
+          fmt::format("--profile: {} is not a free parameter; free parameters are {}", name,
+                      fmt::join(known, ", ")));
+    // After "all" there is none left, and the order of the profiles stays that of the names.
+    if (!options.profile_all)
+      options.profiles.push_back(job.free[static_cast<std::size_t>(at - known.begin())].id());
+  }
 }
 
 MotionToPredict motion_of(const std::string& path, const Rig& rig) {

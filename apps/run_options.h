@@ -1,4 +1,4 @@
-// Options of a run that name files or amounts, as users write them.
+// Options of a run that name files, amounts or parameters, as users write them.
 #pragma once
 
 #include <string>
@@ -19,6 +19,9 @@ std::vector<OtherModel> models_of(const std::vector<std::string>& axis_files, co
 
 /// An allowed error of a signal that the job has, such as "1 mm".
 Tolerance tolerance_of(const std::string& text, const Job& job);
+
+/// Lets the parameters of these names be profiled, or all of them: "all".
+void set_profiles(const std::vector<std::string>& names, const Job& job, RunOptions& options);
 
 /// A motion file, for the rig of the job.
 MotionToPredict motion_of(const std::string& path, const Rig& rig);

@@ -154,8 +154,8 @@ Secret draw_secret(const std::string& name, double low, double high, Draw& draw)
 }
 
 std::size_t quantity(const Secret& secret, const std::string& symbol) {
-  const QuantityEntry* entry = find_quantity(symbol);
-  return (entry != nullptr ? entry : find_quantity(secret.name + "." + symbol))->index;
+  const QuantityEntry* entry = find_quantity(symbol, kSourceVocabulary);
+  return entry != nullptr ? entry->index : quantity_index(secret.name + "." + symbol);
 }
 
 void put(const Secret& secret, double strength, Model<double>& model) {
@@ -334,8 +334,8 @@ Outcome run(const Case& one, const Rig& paper, std::uint64_t seed) {
       outcome.accepted.insert(is_more_of_it ? c.extends : c.name);
     if (trial.decision == Decision::undecided) outcome.undecided.insert(trial.candidate.name);
     outcome.story += fmt::format("    round {} {}: {} (score {:.4g}, {:.3g} %)\n", trial.round,
-                                 trial.candidate.name, reason_text(trial), trial.score,
-                                 trial.improvement.validate_percent);
+                                 trial.candidate.name, reason_text(selection.result.job, trial),
+                                 trial.score, trial.improvement.validate_percent);
   }
   outcome.explained = selection.explained;
   outcome.last = selection.models.back().fit.reduced_chi_square;

@@ -12,6 +12,7 @@
 
 #include "fit/estimate/estimate.h"
 #include "io/config/job_file.h"
+#include "report/text/names.h"
 
 int main(int argc, char** argv) {
   using namespace axisfit;
@@ -28,7 +29,6 @@ int main(int argc, char** argv) {
     p.upper = std::max(p.upper, p.initial * 100.0);
     truth.push_back(p.initial);
   }
-  const ParameterSpace space(job);
   std::vector<double> seconds;
   std::vector<double> worst(job.free.size(), 0.0);
   int reached = 0;
@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
       fmt::print("start {}: reduced chi-square {:.4g} after {:.2f} s; from", start,
                  result.reduced_chi_square, seconds.back());
       for (std::size_t i = 0; i < from.size(); ++i)
-        fmt::print(" {}={:.3g}", space.name(i), from[i]);
+        fmt::print(" {}={:.3g}", name_of(job, job.free[i]), from[i]);
       fmt::print("\n");
     }
   }
@@ -59,6 +59,6 @@ int main(int argc, char** argv) {
              seconds[seconds.size() / 2], seconds.back());
   for (std::size_t i = 0; i < truth.size(); ++i)
     fmt::print("{}: at most {:.1f} standard errors from the value in the axis file\n",
-               space.name(i), worst[i]);
+               name_of(job, job.free[i]), worst[i]);
   return 0;
 }

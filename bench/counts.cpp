@@ -61,8 +61,8 @@ Rig rubbing_mass() {
   rig.model.axis.B_a = 30.0;
   rig.noise[index_of(Signal::velocity)] = 1e-3;
   rig.model.structure.effects.set(*effect_named("stribeck_friction"));
-  *members(rig.model)[find_quantity("stribeck_friction.F_st")->index] = 8.0;
-  *members(rig.model)[find_quantity("stribeck_friction.v_st")->index] = 0.05;
+  *members(rig.model)[quantity_index("stribeck_friction.F_st")] = 8.0;
+  *members(rig.model)[quantity_index("stribeck_friction.v_st")] = 0.05;
   return rig;
 }
 

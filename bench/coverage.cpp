@@ -69,7 +69,7 @@ Job job_of(Rig rig, Scenario scenario, std::uint64_t seed) {
     job.free.push_back(free_parameter(job.model, quantity));
   if (scenario == Scenario::bound) {
     FreeParameter friction;
-    friction.quantity = find_quantity("coulomb_friction.F_c")->index;
+    friction.quantity = quantity_index("coulomb_friction.F_c");
     friction.upper = 1000.0;
     friction.initial = 1.0;
     friction.logarithmic = false;

@@ -30,7 +30,7 @@ inline Recording simulated(const Rig& rig, const Motion& motion, const Recording
 inline FreeParameter free_parameter(Model<double> model, const std::string& name,
                                     double factor = 1.0) {
   FreeParameter p;
-  p.quantity = find_quantity(name)->index;
+  p.quantity = quantity_index(name);
   p.initial = *members(model)[p.quantity] * factor;
   p.lower = p.initial / 100.0;
   p.upper = p.initial * 100.0;

@@ -47,7 +47,7 @@ Reduced reduced_to(const Rig& rig, const std::vector<std::string_view>& effects,
   const auto value = [&](std::string_view effect, std::string_view symbol) {
     const auto e = effect_named(effect);
     return e && structure.effects[*e]
-               ? *values[find_quantity(fmt::format("{}.{}", effect, symbol))->index]
+               ? *values[quantity_index(fmt::format("{}.{}", effect, symbol))]
                : 0.0;
   };
   RigidAxis& axis = reduced.axis;

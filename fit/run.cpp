@@ -1,8 +1,5 @@
 #include "fit/run.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -52,23 +49,18 @@ std::vector<SignalScore> score_signals(const Job& job, const FitResult& fit) {
   return scores;
 }
 
-/// The parameters that are to be profiled.
-std::vector<std::size_t> parameters_to_profile(const Job& job,
-                                               const std::vector<std::string>& names) {
-  const ParameterSpace space(job);
-  std::vector<std::string> known;
-  for (std::size_t i = 0; i < space.size(); ++i) known.push_back(space.name(i));
+/// The places in Job::free of the parameters that are to be profiled.
+std::vector<std::size_t> parameters_to_profile(const Job& job, const RunOptions& options) {
   std::vector<std::size_t> chosen;
-  for (const std::string& name : names) {
-    const auto at = std::ranges::find(known, name);
-    if (at == known.end() && name != "all")
-      throw std::runtime_error(
-          fmt::format("--profile: {} is not a free parameter; free parameters are {}", name,
-                      fmt::join(known, ", ")));
-    for (std::size_t i = 0; i < space.size(); ++i)
-      if ((name == "all" || name == known[i]) && std::ranges::find(chosen, i) == chosen.end())
-        chosen.push_back(i);
+  const auto add = [&](std::size_t place) {
+    if (std::ranges::find(chosen, place) == chosen.end()) chosen.push_back(place);
+  };
+  for (const ParameterId& id : options.profiles) {
+    const auto at = std::ranges::find(job.free, id, &FreeParameter::id);
+    if (at == job.free.end()) throw std::invalid_argument("a parameter to be profiled is not free");
+    add(static_cast<std::size_t>(at - job.free.begin()));
   }
+  for (std::size_t i = 0; i < job.free.size() && options.profile_all; ++i) add(i);
   return chosen;
 }
 
@@ -137,9 +129,9 @@ void run_requested_analyses(RunResult& result, const RunContext& context) {
         std::ranges::none_of(result.diagnosis->forces, &MissingForce::found))
       result.diagnosis.reset();
   }
-  if (result.fit().usable && !options.profiles.empty())
-    result.profiles = profiles(result.job(), result.fit(),
-                               parameters_to_profile(result.job(), options.profiles), context);
+  if (const auto chosen = parameters_to_profile(result.job(), options);
+      result.fit().usable && !chosen.empty())
+    result.profiles = profiles(result.job(), result.fit(), chosen, context);
   // A motion that is simulated with a wrong model could wreck the machine.
   const bool safe = grade_of(result.job(), result.fit(), result.diagnosis).is_usable() &&
                     !held_by_bound(result.job(), result.fit());
@@ -273,7 +265,7 @@ void take_final_estimates(EffectSelection& selection) {
     if (trial.in_model)
       for (ParameterResult& p : trial.parameters) {
         const auto& last = selection.result.fit.parameters;
-        if (const auto found = std::ranges::find(last, p.name, &ParameterResult::name);
+        if (const auto found = std::ranges::find(last, p.id, &ParameterResult::id);
             found != last.end())
           p = *found;
       }
@@ -295,7 +287,7 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   RunResult result;
   result.baseline = std::move(job);
   result.options = options;
-  parameters_to_profile(result.baseline, options.profiles);
+  parameters_to_profile(result.baseline, options);  // fails before the fit
   if (result.baseline.choose_criterion) {
     result.horizon = choose_horizon(result.baseline, context);
     result.baseline.options.criterion = result.horizon->best().criterion;

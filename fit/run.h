@@ -62,7 +62,8 @@ struct OtherModel {
 /// What to do beyond the fit.
 struct RunOptions {
   bool select_effects = false;              ///< add the effects that the model lacks
-  std::vector<std::string> profiles{};      ///< of these parameters; "all": of all
+  std::vector<ParameterId> profiles{};      ///< of these free parameters of the job
+  bool profile_all = false;                 ///< of all, and of those of added effects
   bool suggest_experiment = false;          ///< suggest the motion to record next
   bool predict = false;                     ///< the recordings to validate, with bands
   std::optional<MotionToPredict> motion{};  ///< with `predict`: that as well
@@ -114,9 +115,9 @@ const Experiment* next_experiment(const RunResult& result);
 
 /// Fits the job, analyses its residual and does what the options ask for: all that fit-params does
 /// between reading its files and writing its results. Throws std::invalid_argument if the job
-/// breaks a rule (validate()), std::runtime_error if the options name a parameter that is not free,
-/// and Interrupted if it is stopped before one start of the fit has finished; stopped later, it
-/// returns what is finished.
+/// breaks a rule (validate()) or a parameter that is to be profiled is not free, and Interrupted if
+/// it is stopped before one start of the fit has finished; stopped later, it returns what is
+/// finished.
 RunResult run(Job job, const RunOptions& options = {}, const RunContext& context = {});
 
 /// Samples of a signal that do not count, since the arm rests (fit/data/standstill.h).

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "report/text/names.h"
 #include "report/text/words.h"
 
 namespace axisfit {
@@ -21,12 +22,11 @@ double error_within(const RunResult& run, std::size_t parameter) {
 }
 
 /// "periodic_force, period 0.036 m": a name with its shape, which tells one from another.
-std::string effect_text(const EffectTrial& trial, Vocabulary vocabulary) {
-  std::string text(words_on(vocabulary, trial.candidate.name));
-  for (const QuantityEntry& entry : quantity_list(vocabulary))
-    for (const auto& p : trial.parameters)
-      if (entry.name == p.name && entry.quantity.shape)
-        text += fmt::format(", {} {:.3g} {}", entry.quantity.symbol, p.value, entry.quantity.unit);
+std::string effect_text(const Job& job, const EffectTrial& trial) {
+  std::string text(words_on(job.vocabulary(), trial.candidate.name));
+  for (const ParameterResult& p : trial.parameters)
+    if (const Quantity& quantity = quantity_of(job, p.id); quantity.shape)
+      text += fmt::format(", {} {:.3g} {}", quantity.symbol, p.value, quantity.unit);
   return text;
 }
 
@@ -59,11 +59,11 @@ NightResult night_result(const RunResult& run) {
   for (std::size_t i = 0; i < run.first.parameters.size(); ++i) {
     const ParameterResult& p = run.first.parameters[i];
     if (job.free[i].recording || !run.first.usable) continue;
-    const QuantityEntry& entry = quantity_list(vocabulary)[job.free[i].quantity];
+    const QuantityEntry& entry = job.entry(p.id.quantity);
     if (entry.group == "initial" || p.uncertainty.verdict() != ParameterVerdict::determined)
       continue;
     night.parameters.push_back(
-        {p.name, std::string(entry.quantity.unit), p.value, error_within(run, i)});
+        {name_of(job, p.id), std::string(entry.quantity.unit), p.value, error_within(run, i)});
   }
   for (std::size_t r = 0; r < run.first.recordings.size(); ++r) {
     const RecordingResult& fitted = run.first.recordings[r];
@@ -85,7 +85,7 @@ void add_search(NightResult& night, const RunResult& run) {
   if (!run.selection) return;
   for (const EffectTrial& trial : run.selection->effects)
     if (trial.decision == Decision::accepted)
-      night.effects.push_back(effect_text(trial, run.job().vocabulary()));
+      night.effects.push_back(effect_text(run.job(), trial));
 }
 
 Json to_json(const NightResult& n) {

@@ -31,10 +31,12 @@ bool same(Rig a, Rig b) {
 
 void check_motion(const Folder& folder, const MotionFile& file, const Rig& rig) {
   if (std::holds_alternative<RecordedMotion>(file.motion)) return;
-  const std::string text = format_motion_file(file, "Motion.", vocabulary_of(rig.model.structure));
+  const Vocabulary vocabulary = vocabulary_of(rig.model.structure);
+  const std::string text = format_motion_file(file, "Motion.", vocabulary);
   try {
     const MotionFile again = read_motion_file(folder.write("again.yaml", text), rig);
-    require(format_motion_file(again, "Motion.") == text, "a motion changes when written", text);
+    require(format_motion_file(again, "Motion.", vocabulary) == text,
+            "a motion changes when written", text);
   } catch (const ConfigError& error) {
     require(false, "a motion is not read again", text + error.what());
   }

@@ -162,10 +162,10 @@ int main(int argc, char** argv) {
   add_configs(seeds, project);
   add_draws(seeds);
   Words words(job_keys());
-  words.add(axis_keys());
+  words.add(axis_keys(kSourceVocabulary));
   words.add(motion_keys());
   for (const std::string& type : std::get<Choice>(find_key(motion_keys(), "type").form).names())
-    words.add(motion_keys(type));
+    words.add(motion_keys(type, kSourceVocabulary));
   std::ofstream(fs::path(argv[2]) / "words.dict") << words.dictionary();
   std::cout << seeds.count() << " seeds\n";
 }

@@ -69,7 +69,7 @@ bool DraftRecording::drives_in_newtons() const {
 }
 
 const QuantityEntry& JobDraft::quantity(std::string_view name) const {
-  return quantity_list(vocabulary())[find_quantity(name)->index];
+  return quantity_list(vocabulary())[quantity_index(name)];
 }
 
 std::string JobDraft::say(std::string_view text) const {

@@ -96,7 +96,7 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
   for (const char* effect : {"coulomb_friction", "constant_force"})
     starter.structure.effects.set(*effect_named(effect));
   const auto quantity = [&](const char* name) -> const Quantity& {
-    return quantity_list(vocabulary)[find_quantity(name)->index].quantity;
+    return quantity_list(vocabulary)[quantity_index(name)].quantity;
   };
   if (sound && seen.has_gravity) starter.structure.effects.set(*effect_named("pendulum_gravity"));
   const double most = starter.largest_force =

@@ -26,6 +26,7 @@
 #include "io/config/motion_file.h"
 #include "report/html/report_page.h"
 #include "report/result_json.h"
+#include "report/text/names.h"
 #include "report/text/report_text.h"
 #include "sim/rig.h"
 
@@ -161,9 +162,8 @@ struct PyResult {
 };
 
 std::vector<std::string> names_of(const Job& job) {
-  const ParameterSpace space(job);
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < space.size(); ++i) names.push_back(space.name(i));
+  for (const FreeParameter& p : job.free) names.push_back(name_of(job, p));
   return names;
 }
 
@@ -234,13 +234,12 @@ std::unique_ptr<PyResult> fit(const PyJob& job, const RunOptions& options,
   }
 }
 
-RunOptions options_of(const PyJob& job, bool close_loop, std::vector<std::string> profiles,
+RunOptions options_of(const PyJob& job, bool close_loop, const std::vector<std::string>& profiles,
                       bool suggest_experiment, bool predict, const std::string& motion,
                       const std::vector<std::string>& within, bool compare,
                       const std::vector<std::string>& others) {
   RunOptions options;
   options.select_effects = close_loop;
-  options.profiles = std::move(profiles);
   options.suggest_experiment = suggest_experiment;
   options.predict = predict || !motion.empty();
   options.compare = compare;
@@ -248,6 +247,7 @@ RunOptions options_of(const PyJob& job, bool close_loop, std::vector<std::string
   for (const std::string& text : within)
     options.tolerances.push_back(tolerance_of(text, job.file.job));
   if (!motion.empty()) options.motion = motion_of(motion, job.file.rig);
+  set_profiles(profiles, job.file.job, options);
   return options;
 }
 
@@ -366,15 +366,15 @@ PYBIND11_MODULE(_core, module) {
   module.def("make_job", &make_job, "files"_a, "folder"_a, "recordings"_a);
   module.def(
       "fit",
-      [](const PyJob& job, bool close_loop, std::vector<std::string> profiles,
+      [](const PyJob& job, bool close_loop, const std::vector<std::string>& profiles,
          bool suggest_experiment, bool predict, const std::string& motion,
          const std::vector<std::string>& within, bool compare,
          const std::vector<std::string>& others, std::optional<int> threads,
          std::optional<int> starts, std::optional<std::uint64_t> seed,
          std::optional<double> time_limit, const py::object& progress) {
         return fit(job,
-                   options_of(job, close_loop, std::move(profiles), suggest_experiment, predict,
-                              motion, within, compare, others),
+                   options_of(job, close_loop, profiles, suggest_experiment, predict, motion,
+                              within, compare, others),
                    threads, starts, seed, time_limit, progress);
       },
       "job"_a, "close_loop"_a, "profiles"_a, "suggest_experiment"_a, "predict"_a, "motion"_a,

@@ -5,6 +5,7 @@
 
 #include "base/version.h"
 #include "io/config/axis_file.h"
+#include "report/text/names.h"
 #include "report/text/report_text.h"
 #include "report/text/words.h"
 #include "sim/rig.h"
@@ -118,11 +119,10 @@ Json interval_json(const ParameterUncertainty& u) {
 }
 
 /// What is said of an estimate wherever it stands.
-Json estimate_json(const ParameterResult& p, Vocabulary vocabulary) {
-  const Quantity& quantity =
-      find_quantity(p.name.substr(0, p.name.find('@')), vocabulary)->quantity;
+Json estimate_json(const Job& job, const ParameterResult& p) {
+  const Quantity& quantity = quantity_of(job, p.id);
   const ParameterUncertainty& u = p.uncertainty;
-  Json estimate{{"name", p.name},
+  Json estimate{{"name", name_of(job, p.id)},
                 {"unit", quantity.unit},
                 {"meaning", quantity.meaning},
                 {"value", p.value},
@@ -130,7 +130,8 @@ Json estimate_json(const ParameterResult& p, Vocabulary vocabulary) {
                 {"standard_error", optional(u.determined, u.standard_error)},
                 {"confidence_interval", interval_json(u)}};
   for (const GuessInfluence& guess : p.rests_on)
-    estimate["rests_on"].push_back({{"name", guess.name}, {"elasticity", guess.elasticity}});
+    estimate["rests_on"].push_back(
+        {{"name", name_of(job, guess.id)}, {"elasticity", guess.elasticity}});
   if (p.budget.gain)
     estimate["at_other_gain"] = {{"observer_gain", p.budget.gain->observer_gain},
                                  {"value", p.budget.gain->value}};
@@ -142,12 +143,12 @@ Json estimate_json(const ParameterResult& p, Vocabulary vocabulary) {
 }
 
 template <class Parameters>
-Json estimates_json(const Parameters& parameters, Vocabulary vocabulary) {
-  return list(parameters, [&](const ParameterResult& p) { return estimate_json(p, vocabulary); });
+Json estimates_json(const Job& job, const Parameters& parameters) {
+  return list(parameters, [&](const ParameterResult& p) { return estimate_json(job, p); });
 }
 
-Json parameter_json(const ParameterResult& p, const FreeParameter& free, Vocabulary vocabulary) {
-  Json parameter = estimate_json(p, vocabulary);
+Json parameter_json(const Job& job, const ParameterResult& p, const FreeParameter& free) {
+  Json parameter = estimate_json(job, p);
   parameter.update(Json{{"initial", free.initial},
                         {"lower", free.lower},
                         {"upper", free.upper},
@@ -156,27 +157,28 @@ Json parameter_json(const ParameterResult& p, const FreeParameter& free, Vocabul
 }
 
 /// What is known of the parameters together.
-Json identifiability_json(const ParameterSpace& space, const Eigen::MatrixXd& correlation,
+Json identifiability_json(const Job& job, const Eigen::MatrixXd& correlation,
                           const Identifiability& known) {
-  const auto name = [&](std::size_t i) { return space.name(i); };
+  const auto name = [&](std::size_t i) { return name_of(job, job.free[i]); };
   Json rows = Json::array();
   for (const auto& row : correlation.rowwise()) rows.push_back(list(row, finite));
-  return {
-      {"correlation", std::move(rows)},
-      {"singular_values", known.singular_values},
-      {"without_influence", list(known.without_influence, name)},
-      {"weak_directions", list(known.weak,
-                               [&](const WeakDirection& weak) {
-                                 Json parts = Json::object();
-                                 for (const WeakDirection::Part& part : weak.parts)
-                                   parts[name(part.parameter)] = part.change;
-                                 return Json{{"singular_value", weak.singular_value},
-                                             {"direction", std::move(parts)},
-                                             {"description", weak_direction_text(weak)}};
-                               })},
-      {"combinations", list(known.combinations, [](const Combination& c) {
-         return Json{{"name", c.name}, {"value", c.value}, {"standard_error", c.standard_error}};
-       })}};
+  return {{"correlation", std::move(rows)},
+          {"singular_values", known.singular_values},
+          {"without_influence", list(known.without_influence, name)},
+          {"weak_directions", list(known.weak,
+                                   [&](const WeakDirection& weak) {
+                                     Json parts = Json::object();
+                                     for (const WeakDirection::Part& part : weak.parts)
+                                       parts[name(part.parameter)] = part.change;
+                                     return Json{{"singular_value", weak.singular_value},
+                                                 {"direction", std::move(parts)},
+                                                 {"description", weak_direction_text(job, weak)}};
+                                   })},
+          {"combinations", list(known.combinations, [&](const Combination& c) {
+             return Json{{"name", name_of(job, c)},
+                         {"value", c.value},
+                         {"standard_error", c.standard_error}};
+           })}};
 }
 
 /// What the intervals rest on.
@@ -191,10 +193,10 @@ Json assumptions_json(const FitResult& fit) {
 }
 
 /// What a balance of forces tells without a simulation.
-Json inverse_dynamics_json(const SecondOpinion& opinion, InverseStart start,
-                           Vocabulary vocabulary) {
+Json inverse_dynamics_json(const Job& job, const SecondOpinion& opinion, InverseStart start) {
+  const Vocabulary vocabulary = job.vocabulary();
   const auto& [estimate, contradictions] = opinion;
-  Json parameters = estimates_json(estimate.parameters, vocabulary);
+  Json parameters = estimates_json(job, estimate.parameters);
   for (std::size_t i = 0; i < parameters.size(); ++i)
     parameters[i]["contradicts_fit"] = std::ranges::find(contradictions, i) != contradictions.end();
   return {{"start", text(start)},
@@ -205,14 +207,14 @@ Json inverse_dynamics_json(const SecondOpinion& opinion, InverseStart start,
           {"parameters", std::move(parameters)}};
 }
 
-Json comparison_json(const Comparison& comparison) {
+Json comparison_json(const Job& job, const Comparison& comparison) {
   return {{"horizons_s", comparison.horizons},
           {"judged_horizon_s", comparison.judged},
           {"windows", comparison.windows},
           {"preferred", comparison.preferred},
-          {"models", list(comparison.models, [](const ComparedModel& m) {
+          {"models", list(comparison.models, [&](const ComparedModel& m) {
              Json parameters = Json::object();
-             for (const ParameterResult& p : m.parameters) parameters[p.name] = p.value;
+             for (const ParameterResult& p : m.parameters) parameters[name_of(job, p.id)] = p.value;
              return Json{{"name", m.name},
                          {"parameters", std::move(parameters)},
                          {"missing_force", finite(m.missing_force)},
@@ -239,7 +241,7 @@ Json horizon_json(const HorizonChoice& choice) {
            })}};
 }
 
-Json scatter_json(const Scatter& scatter, const Job& job, const FitResult& fit) {
+Json scatter_json(const Scatter& scatter, const Job& job) {
   return {{"of_stretches", scatter.of_stretches},
           {"groups", list(scatter.groups,
                           [&](const Scatter::Group& g) {
@@ -249,7 +251,7 @@ Json scatter_json(const Scatter& scatter, const Job& job, const FitResult& fit) 
                                         {"to_s", g.to}};
                           })},
           {"parameters", list(scatter.parameters, [&](const ParameterScatter& p) {
-             return Json{{"name", fit.parameters[p.parameter].name},
+             return Json{{"name", name_of(job, job.free[p.parameter])},
                          {"standard_error_within", p.within},
                          {"standard_deviation", p.deviation},
                          {"interval", {p.lower, p.upper}},
@@ -289,11 +291,11 @@ Json motion_json(const MotionPrediction& motion, Vocabulary vocabulary) {
   return {{"motion", motion.name}, {"signals", std::move(signals)}};
 }
 
-Json profile_json(const Profile& profile, const FitResult& fit) {
+Json profile_json(const Job& job, const Profile& profile) {
   const auto end = [](const ProfileEnd& e) {
     return Json{{"value", optional(!e.open, e.value)}, {"open", e.open}};
   };
-  Json json{{"name", fit.parameters[profile.parameter].name},
+  Json json{{"name", name_of(job, job.free[profile.parameter])},
             {"lower", end(profile.lower)},
             {"upper", end(profile.upper)},
             {"threshold", profile.threshold},
@@ -306,19 +308,20 @@ Json profile_json(const Profile& profile, const FitResult& fit) {
   return json;
 }
 
-Json suggestion_json(const Suggestion& s, const FitResult& fit, Vocabulary vocabulary) {
+Json suggestion_json(const Job& job, const Suggestion& s) {
+  const Vocabulary vocabulary = job.vocabulary();
   const std::string travel = key_on(vocabulary, "travel", "m"),
                     speed = key_on(vocabulary, "speed", "m/s");
   Json predicted = Json::array();
-  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
     const ParameterUncertainty& u = s.predicted.parameters[i];
-    predicted.push_back({{"name", fit.parameters[i].name},
+    predicted.push_back({{"name", name_of(job, job.free[i])},
                          {"standard_error", optional(u.determined, u.standard_error)},
                          {"confidence_interval", interval_json(u)}});
   }
   return {{"motion", motion_text(s.experiment.motion, vocabulary)},
           {"duration_s", s.experiment.duration},
-          {"parameter", fit.parameters[s.parameter].name},
+          {"parameter", name_of(job, job.free[s.parameter])},
           {"predicted", std::move(predicted)},
           {"limits",
            {{travel, {*s.limits.lowest, *s.limits.highest}},
@@ -406,7 +409,7 @@ Json closed_form_term_json(const ClosedForm::Term& term) {
           {"form", term.form}};
 }
 
-Json effect_json(const EffectTrial& t, Vocabulary vocabulary) {
+Json effect_json(const Job& job, const EffectTrial& t) {
   const bool judged = t.improvement.comparable;
   Json json{{"name", t.candidate.name},
             {"acts_on", t.candidate.acts_on},
@@ -414,16 +417,16 @@ Json effect_json(const EffectTrial& t, Vocabulary vocabulary) {
             {"decision", decision_name(t.decision)},
             {"accepted", t.decision == Decision::accepted},
             {"in_model", t.in_model},
-            {"reason", reason_text(t, vocabulary)},
+            {"reason", reason_text(job, t)},
             {"round", t.round},
             {"score", t.score},
-            {"parameters", estimates_json(t.parameters, vocabulary)},
+            {"parameters", estimates_json(job, t.parameters)},
             {"p_value", optional(judged, t.improvement.p_value)},
             {"validation_improvement_percent", optional(judged, t.improvement.validate_percent)}};
   if (t.replication)
     json["elsewhere"] = {{"alike", t.replication->is_alike},
                          {"agree", t.replication->is_near},
-                         {"parameters", estimates_json(t.replication->parameters, vocabulary)}};
+                         {"parameters", estimates_json(job, t.replication->parameters)}};
   if (t.closed_form)
     json["closed_form"] = {{"text", closed_form_text(*t.closed_form)},
                            {"terms", list(t.closed_form->terms, closed_form_term_json)},
@@ -466,7 +469,7 @@ Json model_json(const SelectionStep& model, const ModelScore& score) {
   return {{"added", model.added},
           {"reduced_chi_square", finite(model.fit.reduced_chi_square)},
           {"recordings", std::move(recordings)},
-          {"parameters", estimates_json(model.fit.parameters, model.job.vocabulary())}};
+          {"parameters", estimates_json(model.job, model.fit.parameters)}};
 }
 
 /// What only a closed loop has.
@@ -476,9 +479,9 @@ Json selection_json(const RunResult& run_result) {
   Json models = Json::array();
   for (std::size_t i = 0; i < selection.models.size(); ++i)
     models.push_back(model_json(selection.models[i], scores[i]));
-  const Vocabulary vocabulary = run_result.job().vocabulary();
-  Json json{{"effects", list(selection.effects,
-                             [&](const EffectTrial& t) { return effect_json(t, vocabulary); })},
+  const Job& job = run_result.job();
+  Json json{{"effects",
+             list(selection.effects, [&](const EffectTrial& t) { return effect_json(job, t); })},
             {"before", models.front()},
             {"after", models.back()}};
   models.erase(0);
@@ -488,7 +491,7 @@ Json selection_json(const RunResult& run_result) {
                        {"held_out_blocks", selection.held_out_blocks},
                        {"roles_exchanged", run_result.roles_exchanged},
                        {"hints", list(run_result.discriminations, [&](const Discrimination& d) {
-                          return discrimination_text(d, vocabulary);
+                          return discrimination_text(d, job.vocabulary());
                         })}};
   return json;
 }
@@ -556,8 +559,7 @@ Json result_json(const RunResult& run_result) {
                        warnings_for(run_result.baseline, job.recordings[r], run_result.checks[r]),
                        job.vocabulary()));
   for (std::size_t i = 0; i < job.free.size(); ++i)
-    parameters.push_back(
-        parameter_json(fit.parameters[i], as_specified(run_result, i), job.vocabulary()));
+    parameters.push_back(parameter_json(job, fit.parameters[i], as_specified(run_result, i)));
   Json json{{"schema_version", kSchemaVersion},
             {"axisfit", version()},
             {"status", text(fit.status)},
@@ -565,7 +567,7 @@ Json result_json(const RunResult& run_result) {
             {"grade", grade_name(run_result.grade.grade)},
             {"interrupted", run_result.interrupted},
             {"time_limit_reached", run_result.time_limit.has_value()},
-            {"verdict", grade_text(run_result.grade, fit, false, job.vocabulary())},
+            {"verdict", grade_text(job, run_result.grade, fit)},
             {"message", fit.message},
             {"axis", run_result.baseline.axis},
             {"joint", joint_name(job.vocabulary().joint)},
@@ -574,11 +576,11 @@ Json result_json(const RunResult& run_result) {
             {"reduced_chi_square", finite(fit.reduced_chi_square)},
             {"residual",
              run_result.diagnosis ? residual_json(job, *run_result.diagnosis) : Json(nullptr)}};
-  json.update(identifiability_json(ParameterSpace(job), fit.correlation, fit.identifiability));
+  json.update(identifiability_json(job, fit.correlation, fit.identifiability));
   json["assumptions"] = assumptions_json(fit);
   if (run_result.second_opinion)
-    json["inverse_dynamics"] = inverse_dynamics_json(*run_result.second_opinion,
-                                                     run_result.inverse_start, job.vocabulary());
+    json["inverse_dynamics"] =
+        inverse_dynamics_json(job, *run_result.second_opinion, run_result.inverse_start);
   if (run_result.options.predict)
     json["prediction"] = list(run_result.predictions, [&](const RecordingPrediction& p) {
       return prediction_json(p, job);
@@ -586,15 +588,14 @@ Json result_json(const RunResult& run_result) {
   if (run_result.motion)
     json["predicted_motion"] = motion_json(*run_result.motion, job.vocabulary());
   if (run_result.horizon) json["horizon"] = horizon_json(*run_result.horizon);
-  if (run_result.comparison) json["comparison"] = comparison_json(*run_result.comparison);
-  if (run_result.scatter) json["scatter"] = scatter_json(*run_result.scatter, job, fit);
+  if (run_result.comparison) json["comparison"] = comparison_json(job, *run_result.comparison);
+  if (run_result.scatter) json["scatter"] = scatter_json(*run_result.scatter, job);
   if (!run_result.profiles.empty())
     json["profile"] =
-        list(run_result.profiles, [&](const Profile& p) { return profile_json(p, fit); });
+        list(run_result.profiles, [&](const Profile& p) { return profile_json(job, p); });
   if (run_result.options.suggest_experiment)
-    json["next_experiment"] = run_result.suggestion
-                                  ? suggestion_json(*run_result.suggestion, fit, job.vocabulary())
-                                  : Json(nullptr);
+    json["next_experiment"] =
+        run_result.suggestion ? suggestion_json(job, *run_result.suggestion) : Json(nullptr);
   if (run_result.selection) json.update(selection_json(run_result));
   json.update(Json{{"observer_gain", fit.observer_gain},
                    {"horizon_s", window_length(job.options.criterion)},
@@ -631,9 +632,8 @@ Json check_json(const Job& job, const std::vector<RecordingCheck>& checks, const
   Json recordings = Json::array();
   for (std::size_t r = 0; r < checks.size(); ++r)
     recordings.push_back(recording_check_json(job, job.recordings[r], checks[r]));
-  const ParameterSpace space(job);
   Json parameters = Json::array();
-  for (std::size_t i = 0; i < space.size() && forecast.finite; ++i) {
+  for (std::size_t i = 0; i < job.free.size() && forecast.finite; ++i) {
     const ParameterUncertainty& u = forecast.uncertainty.parameters[i];
     Json sensitivity = Json::array();
     for (std::size_t s = 0; s < forecast.series.size(); ++s) {
@@ -645,8 +645,8 @@ Json check_json(const Job& job, const std::vector<RecordingCheck>& checks, const
            {"rms_over_noise",
             forecast.sensitivity(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(s))}});
     }
-    parameters.push_back({{"name", space.name(i)},
-                          {"initial", space[i].initial},
+    parameters.push_back({{"name", name_of(job, job.free[i])},
+                          {"initial", job.free[i].initial},
                           {"verdict", verdict_name(u.verdict())},
                           {"standard_error", optional(u.determined, u.standard_error)},
                           {"sensitivity", std::move(sensitivity)}});
@@ -664,7 +664,7 @@ Json check_json(const Job& job, const std::vector<RecordingCheck>& checks, const
             {"finite", forecast.finite},
             {"parameters", std::move(parameters)}};
   json.update(
-      identifiability_json(space, forecast.uncertainty.correlation, forecast.identifiability));
+      identifiability_json(job, forecast.uncertainty.correlation, forecast.identifiability));
   return json;
 }
 

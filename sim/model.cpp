@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 #include "sim/controller.h"
 
@@ -16,7 +17,7 @@ std::vector<QuantityEntry> make_list(Vocabulary vocabulary) {
     const std::string_view group_on = words_on(vocabulary, group);
     const Quantity on = quantity_on(vocabulary, quantity);
     entries.push_back({full_name(group_on, on), std::string(group_on), on, entries.size(),
-                       effect_named(group), signal_by_name(group)});
+                       effect_named(group), signal_by_name(group, kSourceVocabulary)});
   });
   return entries;
 }
@@ -30,10 +31,18 @@ const std::vector<QuantityEntry>& quantity_list(Vocabulary vocabulary) {
   return with_channels.of(vocabulary, make_list);
 }
 
+const std::vector<QuantityEntry>& quantity_list() { return quantity_list(kSourceVocabulary); }
+
 const QuantityEntry* find_quantity(std::string_view name, Vocabulary vocabulary) {
   const auto& list = quantity_list(vocabulary);
   const auto found = std::ranges::find(list, name, &QuantityEntry::name);
   return found == list.end() ? nullptr : &*found;
+}
+
+std::size_t quantity_index(std::string_view name) {
+  const QuantityEntry* entry = find_quantity(name, kSourceVocabulary);
+  if (entry == nullptr) throw std::logic_error("no quantity '" + std::string(name) + "'");
+  return entry->index;
 }
 
 bool is_used(UsedBy used_by, const Structure& structure) {

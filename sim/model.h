@@ -161,11 +161,17 @@ struct QuantityEntry {
 };
 
 /// The list of all quantities, in the order of visit_quantities, with the names, units and ranges
-/// that they have on the joint. Without one: those by which the sources call them.
-const std::vector<QuantityEntry>& quantity_list(Vocabulary vocabulary = {});
+/// that they have on the joint.
+const std::vector<QuantityEntry>& quantity_list(Vocabulary vocabulary);
+/// The same in kSourceVocabulary: for what does not depend on it, and for names that are not shown.
+const std::vector<QuantityEntry>& quantity_list();
 
 /// The entry with this name, or null.
-const QuantityEntry* find_quantity(std::string_view name, Vocabulary vocabulary = {});
+const QuantityEntry* find_quantity(std::string_view name, Vocabulary vocabulary);
+
+/// The place in the list of the quantity that the sources call so. Throws std::logic_error for a
+/// name that they do not know.
+std::size_t quantity_index(std::string_view name);
 
 /// The model in another scalar type, without derivatives.
 template <class To, class From>

@@ -59,6 +59,6 @@ std::vector<Column> record_with_bands(const Rig& rig, const Motion& motion,
 /// A name and a unit in plain letters: "velocity_mps".
 std::string column_name(std::string_view name, std::string_view unit);
 /// Of a signal on the joint.
-std::string column_name(Signal signal, Vocabulary vocabulary = {});
+std::string column_name(Signal signal, Vocabulary vocabulary);
 
 }  // namespace axisfit

@@ -56,7 +56,7 @@ inline SignalInfo info(Signal signal, Vocabulary vocabulary) {
           words_on(vocabulary, entry.meaning)};
 }
 
-inline std::optional<Signal> signal_by_name(std::string_view name, Vocabulary vocabulary = {}) {
+inline std::optional<Signal> signal_by_name(std::string_view name, Vocabulary vocabulary) {
   for (const SignalInfo& entry : kSignalTable)
     if (words_on(vocabulary, entry.name) == name) return entry.signal;
   return std::nullopt;

@@ -57,6 +57,9 @@ struct Vocabulary {
   bool operator==(const Vocabulary&) const = default;
 };
 
+/// How the sources call all of it.
+inline constexpr Vocabulary kSourceVocabulary;
+
 inline constexpr std::size_t kVocabularies =
     std::size(kGearings) * std::size(kJoints) * std::size(kCommands);
 

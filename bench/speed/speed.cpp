@@ -47,7 +47,7 @@ Trajectory by_differences(const Work& work) {
   const auto states = [&](int parameter) {
     Model<double> model = work.rig.model;
     if (parameter >= 0)
-      *members(model)[find_quantity(kParameters[static_cast<std::size_t>(parameter)])->index] *=
+      *members(model)[quantity_index(kParameters[static_cast<std::size_t>(parameter)])] *=
           1.0 + kStep;
     std::vector<double> values;
     simulate<double>(model, Schedule{{-1.0}, {work.command}}, work.times,

@@ -31,7 +31,7 @@ struct Work {
     auto model = convert<Jet<N>>(rig.model);
     const auto member = members(model);
     for (int k = 0; k < N; ++k) {
-      Jet<N>& p = *member[find_quantity(kParameters[static_cast<std::size_t>(k)])->index];
+      Jet<N>& p = *member[quantity_index(kParameters[static_cast<std::size_t>(k)])];
       p.v[k] = p.a;
     }
     return model;
@@ -76,7 +76,7 @@ class Axis {
         plain_(plain_model_, {}),
         exact_(model_, {}, plain_.parts()) {
     for (std::size_t k = 0; k < parameters_.size(); ++k) {
-      parameters_[k] = members(plain_model_)[find_quantity(kParameters[k])->index];
+      parameters_[k] = members(plain_model_)[quantity_index(kParameters[k])];
       values_[k] = *parameters_[k];
     }
     input_.command = work.command;

@@ -184,9 +184,9 @@ class Filling {
   bool is_parameter(const QuantityEntry& entry, const ActiveTerms& is) const {
     if (entry.signal || entry.group == "controller" || entry.group == "initial") return false;
     if (entry.effect && !is.effects[*entry.effect]) return false;
-    if (entry.index == find_quantity("F_s")->index || entry.index == find_quantity("w")->index)
+    if (entry.index == quantity_index("F_s") || entry.index == quantity_index("w"))
       return is.static_friction;
-    if (entry.index == find_quantity("T_d")->index) return model_.axis.T_d > 0.0;
+    if (entry.index == quantity_index("T_d")) return model_.axis.T_d > 0.0;
     return is_used(entry, structure());
   }
 
@@ -248,8 +248,8 @@ class Filling {
       item.set("value", real(model_.initial[i]));
     }
     all_.set("initial", with_commas(initial));
-    if (!names[find_quantity("r_g")->index].empty()) {
-      const std::string member = "p->" + names[find_quantity("r_g")->index];
+    if (!names[quantity_index("r_g")].empty()) {
+      const std::string member = "p->" + names[quantity_index("r_g")];
       all_.set("radius", structure().gearing == Gearing::radius ? member
                          : structure().joint == Joint::prismatic
                              ? member + " / REAL(" + real(2.0 * std::numbers::pi) + ")"
@@ -261,7 +261,7 @@ class Filling {
                  const std::vector<std::string>& coefficients, std::vector<data>& curves) {
     using Curve = ForceOverPosition<double>;
     const auto member = [&](const char* symbol) {
-      return "a->parameters." + names[find_quantity(effect + "." + symbol)->index];
+      return "a->parameters." + names[quantity_index(effect + "." + symbol)];
     };
     data& item = curves.emplace_back(object());
     item.set("label", effect);
@@ -295,7 +295,7 @@ class Filling {
           return "acceleration(a, y)";
         case Signal::tachometer:
           return fmt::format("a->parameters.{} * y[3]",
-                             quantity_list(vocabulary())[find_quantity("K_t")->index].name);
+                             quantity_list(vocabulary())[quantity_index("K_t")].name);
         case Signal::motor_current:
           return "current(a, y)";
         case Signal::preamplifier_voltage:

@@ -90,7 +90,8 @@ Model<double> read_axis_text(std::istream& in) {
       const std::size_t space = rest.find(' ');
       if (space == std::string::npos) refuse(line);
       channels.push_back({rest.substr(0, space), rest.substr(space + 1), number_in(word, line)});
-    } else if (const QuantityEntry* entry = find_quantity(word); key == "quantity" && entry) {
+    } else if (const QuantityEntry* entry = find_quantity(word, kSourceVocabulary);
+               key == "quantity" && entry) {
       *values[entry->index] = number_in(rest, line);
     } else {
       refuse(line);

@@ -32,7 +32,7 @@ LocalCourse local_course(const std::vector<double>& times, const std::vector<dou
 
 void initial_state_from_data(Recording& recording) {
   const auto set = [&](const char* name, double value) {
-    const std::size_t index = find_quantity(name)->index;
+    const std::size_t index = quantity_index(name);
     const bool given =
         std::ranges::any_of(recording.overrides, [&](const auto& o) { return o.first == index; });
     if (!given) recording.overrides.emplace_back(index, value);

@@ -57,9 +57,7 @@ bool share_samples(const Recording& a, const Recording& b) {
 }
 
 FreeParameter free_parameter(std::string_view name, double initial) {
-  const QuantityEntry* entry = find_quantity(name);
-  if (entry == nullptr) throw std::invalid_argument("unknown quantity '" + std::string(name) + "'");
-  return free_parameter(*entry, initial);
+  return free_parameter(quantity_list()[quantity_index(name)], initial);
 }
 
 FreeParameter free_parameter(const QuantityEntry& entry, double initial) {

@@ -119,6 +119,15 @@ struct Prior {
   double sigma = 0.0;
 };
 
+/// Which free parameter of a job a result tells of. Where several axes are fitted at once, the axis
+/// will belong here.
+struct ParameterId {
+  std::size_t quantity = 0;                ///< index in quantity_list()
+  std::optional<std::size_t> recording{};  ///< the only one it applies to; none: all of them
+
+  bool operator==(const ParameterId&) const = default;
+};
+
 /// A quantity that is estimated.
 struct FreeParameter {
   std::size_t quantity = 0;              ///< index in quantity_list()
@@ -128,12 +137,14 @@ struct FreeParameter {
   double upper = 0.0;
   bool logarithmic = true;  ///< estimated on a logarithmic scale; needs lower > 0
   std::optional<Prior> prior;
+
+  ParameterId id() const { return {quantity, recording}; }
 };
 
 /// The quantity, shared by all recordings, from this initial value within a factor of a hundred, as
 /// far as its range goes; on a linear scale within its whole range if the value is not positive.
 FreeParameter free_parameter(const QuantityEntry& entry, double initial);
-/// That of this name on a prismatic joint. Throws std::invalid_argument for an unknown one.
+/// That which the sources call so. Throws std::logic_error for a name that they do not know.
 FreeParameter free_parameter(std::string_view name, double initial);
 
 /// Whether a fit by this criterion takes the quantity to be zero: while it tracks to the end the

@@ -40,7 +40,7 @@ Job with_next(const Job& job, const std::vector<ResidualSeries>& residuals) {
   Recording recording;
   recording.name = "next";
   recording.times = next_sampling_times(job);
-  const std::size_t start = find_quantity("initial.y0")->index;
+  const std::size_t start = quantity_index("initial.y0");
   for (const auto& [quantity, value] : like.overrides)
     if (quantity == start) recording.overrides.emplace_back(quantity, value);
   for (const Measurement& m : like.measurements) {

@@ -32,7 +32,6 @@ struct ErrorOptions {
   /// A weak direction is told by the parameters with this part of its largest component or more.
   double told_part = 0.1;
   /// An exponent this close to 1 or -1 is told as a product or a ratio.
-  double whole_exponent = 0.05;
 
   /// A guess is changed by this part ...
   double guess_change = 0.1;

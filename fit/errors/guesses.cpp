@@ -50,7 +50,7 @@ std::vector<std::vector<GuessInfluence>> guess_influences(
       if (!known.determined || !std::isfinite(elasticity)) continue;
       const double shift = options.guess_change * std::abs(elasticity);
       if (shift > options.guess_move || shift * std::abs(values[i]) > known.standard_error)
-        influences[i].push_back({space.name(g), elasticity});
+        influences[i].push_back({space[g].id(), elasticity});
     }
   return influences;
 }

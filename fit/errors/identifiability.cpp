@@ -1,23 +1,11 @@
 #include "fit/errors/identifiability.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/linear_algebra.h"
 
 namespace axisfit {
-namespace {
-
-/// "k_g / M", "k_g M", "k_g M^0.5"
-std::string product(const std::string& a, const std::string& b, double exponent, double whole) {
-  if (std::abs(exponent + 1.0) < whole) return a + " / " + b;
-  if (std::abs(exponent - 1.0) < whole) return a + " " + b;
-  return fmt::format("{} {}^{:.2g}", a, b, exponent);
-}
-
-}  // namespace
 
 Identifiability identifiability(const ParameterSpace& space, const Eigen::VectorXd& u,
                                 const Linearization& at, double scale,
@@ -59,7 +47,6 @@ Identifiability identifiability(const ParameterSpace& space, const Eigen::Vector
     const bool shrinks = weak.parts[0].change < 0.0;
     for (WeakDirection::Part& p : weak.parts) {
       if (shrinks) p.change = -p.change;  // the largest grows
-      p.name = space.name(p.parameter);
       p.relative = space[p.parameter].logarithmic;
       const double tenth = 0.1 * p.change;
       p.tenth = p.relative ? std::expm1(tenth) : tenth * space.slope(p.parameter, 0.0);
@@ -74,15 +61,14 @@ Identifiability identifiability(const ParameterSpace& space, const Eigen::Vector
       g[column(a)] = 1.0;
       g[column(b)] = exponent;
       const double error = error_without(m, g);
-      Combination c;
-      c.name = product(weak.parts[0].name, weak.parts[1].name, exponent, options.whole_exponent);
+      Combination c{a, b, exponent};
       c.value =
           std::exp(u[static_cast<Eigen::Index>(a)] + exponent * u[static_cast<Eigen::Index>(b)]);
       c.standard_error = c.value * error;
       // Unless another weak direction hides it, too.
       if (error < options.largest_error && std::isfinite(c.value)) {
-        weak.combination = c.name;
-        result.combinations.push_back(std::move(c));
+        weak.combination = c;
+        result.combinations.push_back(c);
       }
     }
   }

@@ -1,7 +1,7 @@
 // Identifiability: what the recordings determine about the parameters jointly.
 #pragma once
 
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "fit/errors/error_options.h"
@@ -10,28 +10,28 @@
 
 namespace axisfit {
 
+/// What is determined of two parameters of which neither is: first second^exponent.
+struct Combination {
+  std::size_t first = 0, second = 0;  ///< places in the space
+  double exponent = 0.0;
+  double value = 0.0, standard_error = 0.0;
+};
+
 /// A direction in the space of the parameters along which the recordings hardly change.
 struct WeakDirection {
   double singular_value = 0.0;
   /// Change of u, of unit length, by parameter; components that are small beside
   /// the largest are omitted.
   struct Part {
-    std::size_t parameter = 0;
+    std::size_t parameter = 0;  ///< its place in the space
     double change = 0.0;
-    std::string name{};  ///< of the parameter
     /// Change of the value over a tenth of that length: in the quantity's unit or, of a
     /// logarithmic parameter, relative to the value.
     double tenth = 0.0;
     bool relative = false;
   };
-  std::vector<Part> parts;    ///< largest first
-  std::string combination{};  ///< that of two parts which is determined; empty: none
-};
-
-/// What is determined of two parameters of which neither is: a b^exponent.
-struct Combination {
-  std::string name;  ///< "k_g / M"
-  double value = 0.0, standard_error = 0.0;
+  std::vector<Part> parts;                   ///< largest first
+  std::optional<Combination> combination{};  ///< that of two parts which is determined
 };
 
 struct Identifiability {

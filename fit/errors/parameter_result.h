@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "fit/errors/error_budget.h"
@@ -11,12 +10,12 @@ namespace axisfit {
 
 /// A quantity whose value is a guess, and what becomes of an estimate when that changes.
 struct GuessInfluence {
-  std::string name;
+  ParameterId id;
   double elasticity = 0.0;  ///< d ln estimate / d ln guess
 };
 
 struct ParameterResult {
-  std::string name;
+  ParameterId id;
   double value = 0.0;
   ParameterUncertainty uncertainty;        ///< what the budget comes to, unless the model is wrong
   ErrorBudget budget{};                    ///< sampling and input noise; the rest is found by run()

@@ -16,7 +16,7 @@ std::vector<std::optional<RivalShift>> rival_errors(const Job& job,
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       const ParameterResult& p = parameters[i];
       if (!is_of_machine(job, i) || !p.uncertainty.determined ||
-          std::ranges::find(pair.own, p.name) != pair.own.end())
+          std::ranges::find(pair.own, p.id) != pair.own.end())
         continue;
       const double error =
           combined(without_rival(p.budget), p.value, job.free[i], options).standard_error;

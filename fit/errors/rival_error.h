@@ -14,7 +14,7 @@ namespace axisfit {
 struct RivalModels {
   std::string chosen, rival;              ///< the effects
   Model<double> with_chosen, with_rival;  ///< fitted
-  std::vector<std::string> own;           ///< parameters of the chosen effect
+  std::vector<ParameterId> own;           ///< parameters of the chosen effect
 };
 
 /// Of every parameter of a job's fit the furthest move that is more than its standard error with

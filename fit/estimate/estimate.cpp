@@ -146,11 +146,10 @@ FitVerdict verdict_of(const Job& job, const FitResult& result) {
       if (is_not_followed(job, result, r, m))
         return {.kind = signal_not_followed,
                 .signal = result.recordings[r].signals[m].signal,
-                .recording = job.recordings[r].name};
+                .recording = r};
   FitVerdict verdict{.kind = usable};
   for (const ParameterResult& p : result.parameters)
-    if (!p.uncertainty.determined && !p.uncertainty.at_bound)
-      verdict.undetermined.push_back(p.name);
+    if (!p.uncertainty.determined && !p.uncertainty.at_bound) verdict.undetermined.push_back(p.id);
   return verdict;
 }
 
@@ -214,7 +213,7 @@ FitResult estimate(const Job& job, const RunContext& context, std::span<const do
   const std::vector<double> values = space.values(solved.u);
   for (std::size_t i = 0; i < space.size(); ++i)
     result.parameters.push_back(
-        {space.name(i), values[i], found.parameters[i], std::move(found.budgets[i])});
+        {space[i].id(), values[i], found.parameters[i], std::move(found.budgets[i])});
   result.input_part = found.input_part;
   result.correlation = std::move(found.correlation);
   result.degrees_of_freedom = found.degrees_of_freedom;

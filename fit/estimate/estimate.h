@@ -76,9 +76,9 @@ struct FitVerdict {
   Kind kind = Kind::not_simulated;
   int iteration_limit = 0;           ///< of no_minimum
   Signal signal = Signal::velocity;  ///< of signal_not_followed: the first of them
-  std::string recording{};           ///< which has that signal
+  std::size_t recording = 0;         ///< which has that signal
   /// Of a usable fit: the parameters that are neither determined nor at a bound.
-  std::vector<std::string> undetermined{};
+  std::vector<ParameterId> undetermined{};
 
   bool operator==(const FitVerdict&) const = default;
 };

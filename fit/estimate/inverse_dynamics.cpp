@@ -307,7 +307,7 @@ void hold(Job& job, std::size_t parameter) {
 }
 
 bool is_free(const Job& job, std::string_view name) {
-  return std::ranges::count(job.free, find_quantity(name)->index, &FreeParameter::quantity) > 0;
+  return std::ranges::count(job.free, quantity_index(name), &FreeParameter::quantity) > 0;
 }
 
 /// Whether the balance of forces can tell a quantity of the job.
@@ -438,7 +438,7 @@ std::optional<InverseDynamics> inverse_dynamics(const Job& job) {
   for (std::size_t i = 0; i < space.size(); ++i) {
     if (!known.parameters[i].determined) continue;
     InverseEstimate& estimate = found.parameters.emplace_back();
-    estimate.name = space.name(i);
+    estimate.id = space[i].id();
     estimate.value = values[i];
     estimate.uncertainty = known.parameters[i];
     estimate.budget = known.budgets[i];

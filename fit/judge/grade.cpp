@@ -55,7 +55,7 @@ FitGrade worst_simulation(const Job& job, const FitResult& fit) {
                                                     fit.recordings[r].signals[m])
                                  : NAN;
       if (percent >= worst.percent) continue;
-      worst.recording = job.recordings[r].name;
+      worst.recording = r;
       worst.signal = measurement.signal;
       worst.percent = percent;
       if (!finished) return worst;
@@ -64,12 +64,12 @@ FitGrade worst_simulation(const Job& job, const FitResult& fit) {
 }
 
 /// The recording whose missing force, noise set aside, is the largest part of the drive's.
-FitGrade worst_force(const Job& job, const Diagnosis& diagnosis) {
+FitGrade worst_force(const Diagnosis& diagnosis) {
   FitGrade worst{.reason = FitGrade::Reason::force};
   for (std::size_t r = 0; r < diagnosis.forces.size(); ++r) {
     const double percent = percent_of_drive(diagnosis.forces[r]);
     if (!(percent > worst.percent)) continue;
-    worst.recording = job.recordings[r].name;
+    worst.recording = r;
     worst.percent = percent;
   }
   return worst;
@@ -96,7 +96,7 @@ FitGrade grade_of(const Job& job, const FitResult& fit, const std::optional<Diag
                                                      .recording = fit.verdict.recording,
                                                      .signal = fit.verdict.signal}
                                           : simulation_found);
-  const FitGrade force_found = diagnosis ? worst_force(job, *diagnosis) : FitGrade{};
+  const FitGrade force_found = diagnosis ? worst_force(*diagnosis) : FitGrade{};
   if (force_found.percent > kLargestForcePercent) return graded(Grade::model_wrong, force_found);
   if (!(simulation_found.percent >= kLeastPercent)) {
     const bool only_drifts = fit.observer_gain > 0.0 && diagnosis &&
@@ -111,9 +111,8 @@ FitGrade grade_of(const Job& job, const FitResult& fit, const std::optional<Diag
   if (diagnosis && !diagnosis->tests.empty()) {
     const SeriesTest& worst =
         *std::ranges::max_element(diagnosis->tests, {}, &SeriesTest::unexplained_percent);
-    const Recording& recording = job.recordings[worst.series.recording];
-    found.recording = recording.name;
-    found.signal = recording.measurements[worst.series.measurement].signal;
+    found.recording = worst.series.recording;
+    found.signal = job.recordings[found.recording].measurements[worst.series.measurement].signal;
     found.percent = worst.unexplained_percent;
   }
   return found;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "fit/judge/diagnosis.h"
 
@@ -34,7 +33,7 @@ struct FitGrade {
     none,           ///< nothing speaks against the model
   };
   Reason reason = Reason::solver;
-  std::string recording{};           ///< that is worst in this respect
+  std::size_t recording = 0;         ///< that is worst in this respect
   Signal signal = Signal::velocity;  ///< likewise; not of force
   /// Of simulation and tracking_only: 100 (1 - root mean square error of the free-running
   /// simulation / standard deviation of the signal), noise set aside in both; not a number where it

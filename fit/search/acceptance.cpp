@@ -120,10 +120,10 @@ Determination determination(const Job& job, const FitResult& result, const Candi
   const std::size_t strengths = candidate.strengths.size();
   for (std::size_t i = first; i < job.free.size(); ++i) {
     const ParameterResult& p = result.parameters[i];
-    if (p.uncertainty.at_bound && d.at_bound.empty()) d.at_bound = p.name;
+    if (p.uncertainty.at_bound && !d.at_bound) d.at_bound = p.id;
     if (i >= first + strengths && !candidate.gives_backlash && !p.uncertainty.determined &&
-        d.undetermined.empty())
-      d.undetermined = p.name;
+        !d.undetermined)
+      d.undetermined = p.id;
   }
   constexpr double kByChance = 3e-4;
   d.required = chi_square_upper_quantile(kByChance, static_cast<double>(strengths));
@@ -193,9 +193,8 @@ std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvem
   if (fails && !is_unseen) return Rejection{.test = validation, .found = gain.p_value};
   if (!replicates && !is_unseen && gain.validate_percent < kMinPercent)
     return Rejection{.test = validation_size, .found = gain.validate_percent};
-  if (!determined.at_bound.empty())
-    return Rejection{.test = bound, .parameter = determined.at_bound};
-  if (!determined.undetermined.empty())
+  if (determined.at_bound) return Rejection{.test = bound, .parameter = determined.at_bound};
+  if (determined.undetermined)
     return Rejection{.test = shape, .parameter = determined.undetermined};
   constexpr double kAlias = 1e-10;  // below is rounding
   if (determined.distinct < kAlias) return Rejection{.test = distinct};

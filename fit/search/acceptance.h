@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "fit/judge/series.h"
@@ -52,10 +51,10 @@ struct Determination {
   /// Sum of squares that would be lost with strengths of zero, in units as above: the square of
   /// value over standard error where there is one strength.
   double wald = 0.0;
-  double required = 0.0;     ///< the least that counts as determined
-  double distinct = 0.0;     ///< part of the strengths' effect that no other parameter can imitate
-  std::string at_bound;      ///< a parameter held by a bound; empty: none
-  std::string undetermined;  ///< a shape that the data leave open; empty: none
+  double required = 0.0;  ///< the least that counts as determined
+  double distinct = 0.0;  ///< part of the strengths' effect that no other parameter can imitate
+  std::optional<ParameterId> at_bound;      ///< a parameter held by a bound
+  std::optional<ParameterId> undetermined;  ///< a shape that the data leave open
 };
 
 Determination determination(const Job& job, const FitResult& result, const Candidate& candidate,
@@ -92,9 +91,9 @@ struct Rejection {
   /// validation_size, the fall of the validation error, %; of share, that beyond the noise; of
   /// strength, the standard errors from zero; of period, that which they show.
   double found = 0.0;
-  double required = 0.0;    ///< of significance: the least fall of the sum of squares
-  std::size_t tried = 0;    ///< of significance: candidates and settings among which it was chosen
-  std::string parameter{};  ///< of bound and shape
+  double required = 0.0;  ///< of significance: the least fall of the sum of squares
+  std::size_t tried = 0;  ///< of significance: candidates and settings among which it was chosen
+  std::optional<ParameterId> parameter{};  ///< of bound and shape
 
   bool operator==(const Rejection&) const = default;
 };

@@ -9,7 +9,7 @@
 namespace axisfit {
 namespace {
 
-std::size_t index_of(std::string_view quantity) { return find_quantity(quantity)->index; }
+std::size_t index_of(std::string_view quantity) { return quantity_index(quantity); }
 
 bool is_free(const Job& job, std::string_view quantity) {
   return std::ranges::find(job.free, index_of(quantity), &FreeParameter::quantity) !=

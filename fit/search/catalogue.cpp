@@ -13,7 +13,7 @@
 namespace axisfit {
 namespace {
 
-std::size_t index_of_quantity(std::string_view name) { return find_quantity(name)->index; }
+std::size_t index_of_quantity(std::string_view name) { return quantity_index(name); }
 
 /// Whether a quantity is estimated, or given to a single recording: then there is a value of it.
 bool has_value(const Job& job, std::size_t quantity) {
@@ -170,7 +170,7 @@ std::vector<Candidate> catalogue(const Job& job, SearchScales scales) {
   for (const ActsOn place : kPlacesToAct) add_effects(place, false);
   for (Candidate& c : transmission_candidates(job, scales)) list.push_back(std::move(c));
   const std::vector<double> both_signs{-2.0 * scales.interval, 2.0 * scales.interval};
-  Candidate dead_time = single("dead_time", "drive", *find_quantity("T_d"));
+  Candidate dead_time = single("dead_time", "drive", *find_quantity("T_d", kSourceVocabulary));
   dead_time.is_timing = true;
   dead_time.probes = later(scales);
   dead_time.probes.push_back(-2.0 * scales.interval);

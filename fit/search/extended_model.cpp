@@ -50,13 +50,14 @@ CandidateValues candidate_values(const Job& job, const FitResult& fit, const Can
   return own;
 }
 
-std::string shape_at_bound(const Job& job, const FitResult& fit, const Candidate& candidate) {
-  if (!candidate.shapes_are_free) return {};
+std::optional<ParameterId> shape_at_bound(const Job& job, const FitResult& fit,
+                                          const Candidate& candidate) {
+  if (!candidate.shapes_are_free) return std::nullopt;
   for (std::size_t i = 0; i < job.free.size(); ++i)
     if (std::ranges::find(candidate.shapes, job.free[i].quantity) != candidate.shapes.end() &&
         fit.parameters[i].uncertainty.at_bound)
-      return fit.parameters[i].name;
-  return {};
+      return fit.parameters[i].id;
+  return std::nullopt;
 }
 
 double bic_advantage(const ExtendedModel& a, const ExtendedModel& b) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "fit/search/acceptance.h"
@@ -44,8 +43,9 @@ struct CandidateValues {
 CandidateValues candidate_values(const Job& job, const FitResult& fit, const Candidate& candidate);
 
 /// A free shape of a candidate that a fit has driven to its bound: there the effect is a simpler
-/// one, as Dahl friction of no length is Coulomb friction. Its name; empty: none.
-std::string shape_at_bound(const Job& job, const FitResult& fit, const Candidate& candidate);
+/// one, as Dahl friction of no length is Coulomb friction.
+std::optional<ParameterId> shape_at_bound(const Job& job, const FitResult& fit,
+                                          const Candidate& candidate);
 
 /// By how much a explains all recordings better than b, parameters counted, see bic_difference().
 double bic_advantage(const ExtendedModel& a, const ExtendedModel& b);

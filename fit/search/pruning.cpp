@@ -27,8 +27,8 @@ bool is_alike_elsewhere(SearchState& state, const Candidate& candidate, const Ru
 std::optional<Candidate> drop_degenerate(SearchState& state) {
   for (std::size_t a = 0; a < state.accepted().size(); ++a) {
     const Candidate candidate = state.accepted()[a].candidate;
-    const std::string shape = shape_at_bound(state.current().job, state.current().fit, candidate);
-    if (shape.empty()) continue;
+    const auto shape = shape_at_bound(state.current().job, state.current().fit, candidate);
+    if (!shape) continue;
     const SelectionStep& reduced = state.chain.without(a);
     if (!reduced.fit.usable) continue;
     state.trials.fail(candidate, {.test = Rejection::Test::bound, .parameter = shape});

@@ -12,7 +12,7 @@ std::vector<RivalModels> rival_models(const EffectSelection& selection) {
     const auto chosen = std::ranges::find(selection.effects, pair.chosen,
                                           [](const EffectTrial& t) { return t.candidate.name; });
     if (chosen != selection.effects.end())
-      for (const ParameterResult& p : chosen->parameters) found.own.push_back(p.name);
+      for (const ParameterResult& p : chosen->parameters) found.own.push_back(p.id);
   }
   return models;
 }

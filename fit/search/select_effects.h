@@ -49,14 +49,15 @@ struct SelectionVerdict {
   std::vector<std::string> small{};
   /// A constant of the axis file that was accepted to be another: both in the quantity's unit.
   struct Correction {
-    std::string name;
+    ParameterId id;
     double declared = 0.0, value = 0.0;
     bool operator==(const Correction&) const = default;
   };
   std::vector<Correction> corrections{};
   /// Of misfit: a declared parameter that is at its bound, or else the recording of which so much
   /// of the drive force is missing.
-  std::string at_bound{}, recording{};
+  std::optional<ParameterId> at_bound{};
+  std::optional<std::size_t> recording{};
   double force_percent = 0.0;
   /// Fall of the root mean square of what was not fitted, by the effects in the model together.
   double validate_percent = 0.0;

@@ -22,16 +22,16 @@ bool is_stuck(const Job& job, const FreeParameter& free, const ParameterResult& 
 bool is_misfit(const SearchState& state, SelectionVerdict& verdict) {
   const Job& declared = state.chain.declared().job;
   const SelectionStep& last = state.current();
-  for (std::size_t i = 0; i < declared.free.size() && verdict.at_bound.empty(); ++i)
+  for (std::size_t i = 0; i < declared.free.size() && !verdict.at_bound; ++i)
     if (is_stuck(declared, last.job.free[i], last.fit.parameters[i]))
-      verdict.at_bound = last.fit.parameters[i].name;
+      verdict.at_bound = last.fit.parameters[i].id;
   for (std::size_t r = 0; r < last.job.recordings.size(); ++r) {
     const double percent = percent_of_drive(missing_force(last.job, last.fit, r));
     if (percent <= std::max(kLargestForcePercent, verdict.force_percent)) continue;
     verdict.force_percent = percent;
-    verdict.recording = last.job.recordings[r].name;
+    verdict.recording = r;
   }
-  return !verdict.at_bound.empty() || !verdict.recording.empty();
+  return verdict.at_bound || verdict.recording;
 }
 
 void enter_effects(const SearchState& state, const SelectionStep& result,
@@ -43,7 +43,8 @@ void enter_effects(const SearchState& state, const SelectionStep& result,
     if (std::ranges::find(verdict.undecided, a.candidate.name) != verdict.undecided.end()) continue;
     verdict.accepted.push_back(a.candidate.name);
     if (a.candidate.is_constant)
-      verdict.corrections.push_back({a.candidate.name, a.candidate.neutral.front(),
+      verdict.corrections.push_back({{a.candidate.strengths.front()},
+                                     a.candidate.neutral.front(),
                                      *members(model)[a.candidate.strengths.front()]});
   }
   if (!state.accepted().empty())
@@ -58,7 +59,7 @@ SelectionVerdict::Kind kind_of(const EffectSelection& selection, bool is_noise) 
   if (verdict.undecided.empty() && is_noise)
     return verdict.small.empty() ? nothing_missing : hardly_anything;
   if (selection.interrupted) return stopped;
-  if (!verdict.at_bound.empty() || !verdict.recording.empty()) return misfit;
+  if (verdict.at_bound || verdict.recording) return misfit;
   return verdict.undecided.empty() ? none_passes : undecided;
 }
 

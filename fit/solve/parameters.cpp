@@ -5,23 +5,7 @@
 
 namespace axisfit {
 
-namespace {
-
-std::vector<std::string> names_in(const Job& job) {
-  std::vector<std::string> names;
-  for (const FreeParameter& p : job.free) {
-    names.push_back(job.entry(p.quantity).name);
-    if (p.recording) names.back() += "@" + job.recordings[*p.recording].name;
-  }
-  return names;
-}
-
-}  // namespace
-
-ParameterSpace::ParameterSpace(const Job& job) : ParameterSpace(job.free, names_in(job)) {}
-
-ParameterSpace::ParameterSpace(std::span<const FreeParameter> free, std::vector<std::string> names)
-    : free_(free), names_(std::move(names)) {
+ParameterSpace::ParameterSpace(std::span<const FreeParameter> free) : free_(free) {
   for (const FreeParameter& p : free_) {
     // Any size of the parameter's order will do; a zero start takes it from the bounds.
     double magnitude = std::abs(p.initial);

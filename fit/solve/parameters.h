@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "fit/data/job.h"
@@ -15,14 +14,12 @@ namespace axisfit {
 class ParameterSpace {
  public:
   /// The parameters must outlive the space.
-  ParameterSpace(std::span<const FreeParameter> free, std::vector<std::string> names);
-  /// Of a job, which must outlive the space. Named by their quantities, with "@recording" where one
-  /// belongs to one recording only.
-  explicit ParameterSpace(const Job& job);
+  explicit ParameterSpace(std::span<const FreeParameter> free);
+  /// Of a job, which must outlive the space.
+  explicit ParameterSpace(const Job& job) : ParameterSpace(job.free) {}
 
   std::size_t size() const { return free_.size(); }
   const FreeParameter& operator[](std::size_t i) const { return free_[i]; }
-  const std::string& name(std::size_t i) const { return names_[i]; }
 
   double value(std::size_t i, double u) const;
   /// d value / d u
@@ -39,7 +36,6 @@ class ParameterSpace {
 
  private:
   std::span<const FreeParameter> free_;
-  std::vector<std::string> names_;
   std::vector<double> magnitude_;
 };
 

@@ -40,7 +40,7 @@ Section quantity_keys(Vocabulary vocabulary, std::string_view group) {
 Gearing gearing_of(const ConfigNode& parameters, Vocabulary vocabulary) {
   if (!parameters.is_map()) return Gearing::radius;
   vocabulary.gearing = Gearing::turns;
-  const QuantityEntry& in_turns = quantity_list(vocabulary)[find_quantity("r_g")->index];
+  const QuantityEntry& in_turns = quantity_list(vocabulary)[quantity_index("r_g")];
   return ConfigMap(parameters).optional(in_turns.quantity.symbol) ? Gearing::turns
                                                                   : Gearing::radius;
 }
@@ -333,7 +333,8 @@ void read_effects(const ConfigNode& node, Model<double>& model) {
     }
     effect.visit(effect, [&](const Quantity& quantity, double& value) {
       if (!is_named(vocabulary, quantity)) return;
-      used = used || is_used(*find_quantity(full_name(effect.name, quantity)), model.structure);
+      used = used || is_used(quantity_list()[quantity_index(full_name(effect.name, quantity))],
+                             model.structure);
       value = std::isnan(quantity.default_value) ? 0.0 : quantity.default_value;
       parameters.read(quantity_on(vocabulary, quantity).symbol, value);
     });
@@ -355,7 +356,7 @@ std::optional<Rig> read_axis_file(const std::string& path, Diagnostics& diagnost
 std::optional<Rig> read_axis(const ConfigNode& root, Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.count();
   Rig rig;
-  ConfigMap map(root, axis_keys());
+  ConfigMap map(root, axis_keys(kSourceVocabulary));
   map.read("joint", rig.model.structure.joint);
   map.describe(axis_keys(rig.model.structure.joint));
   map.read("name", rig.name);

@@ -12,7 +12,7 @@ namespace axisfit {
 
 /// The keys of an axis file. Among the parameters, effects and initial states are all that an axis
 /// with that joint can have; which of them one has depends on its drive and transmission.
-const Section& axis_keys(Vocabulary vocabulary = {});
+const Section& axis_keys(Vocabulary vocabulary);
 
 /// The words of axis files for what is chosen.
 const std::string& joint_name(Joint joint);

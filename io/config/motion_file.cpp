@@ -86,7 +86,7 @@ std::vector<MotionType> make_types(Vocabulary vocabulary) {
                       "column of the command; all values within the limit")}}};
 }
 
-const std::vector<MotionType>& motion_types(Vocabulary vocabulary = {}) {
+const std::vector<MotionType>& motion_types(Vocabulary vocabulary) {
   static const auto types = for_all_vocabularies(make_types);
   return types[index_of(vocabulary)];
 }
@@ -226,7 +226,7 @@ class MotionReader {
 const Section& motion_keys() {
   static const Section keys = [] {
     Choice types;
-    for (const MotionType& type : motion_types())
+    for (const MotionType& type : motion_types(kSourceVocabulary))
       types.options.push_back({type.name, type.meaning});
     return Section{
         Key::required("type", types, "type of motion; the other keys depend on it"),

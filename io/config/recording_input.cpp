@@ -48,7 +48,7 @@ class InputReader {
       recording_.command.hold = Hold::linear;
       input = read_noisy_input(*force, drive_force.unit);
       // The source turns U into the force K_f U; a force needs no gain.
-      const std::size_t gain = find_quantity("K_f")->index;
+      const std::size_t gain = quantity_index("K_f");
       if (std::ranges::any_of(recording_.overrides, [&](const auto& o) { return o.first == gain; }))
         force->error(fmt::format("a {} acts as it is: remove K_f from 'set'", drive_force.name));
       recording_.overrides.emplace_back(gain, 1.0);

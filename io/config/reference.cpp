@@ -77,7 +77,7 @@ Section of_the_signal(Section keys) {
 /// The parameters of all effects, under their full names.
 Section effect_parameters() {
   Section all;
-  for (const Key& effect : keys_below(axis_keys(), "effects")) {
+  for (const Key& effect : keys_below(axis_keys(kSourceVocabulary), "effects")) {
     for (const NamedEntry& entry : std::get<Map>(effect.form).named)
       all.push_back(
           Key::optional(effect.name + ".CHANNEL", entry.form, DefaultText{"0"}, effect.meaning));
@@ -114,7 +114,7 @@ Section on_a_revolute_joint() {
 
 /// All tables by the name that the pages call them by.
 std::map<std::string, Section> tables() {
-  const Section& axis = axis_keys();
+  const Section& axis = axis_keys(kSourceVocabulary);
   const Section& job = job_keys();
   const Section& recording =
       std::get<Map>(std::get<List>(find_key(job, "recordings").form).of[0]).keys;
@@ -143,7 +143,7 @@ std::map<std::string, Section> tables() {
       {"machine.axes.NAME", machine_axis_keys()},
       {"motion", motion_keys()}};
   for (const std::string& type : std::get<Choice>(find_key(motion_keys(), "type").form).names())
-    tables["motion." + type] = motion_keys(type);
+    tables["motion." + type] = motion_keys(type, kSourceVocabulary);
   return tables;
 }
 

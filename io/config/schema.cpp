@@ -255,7 +255,7 @@ nlohmann::ordered_json job_schema() {
 
 nlohmann::ordered_json axis_schema() {
   SchemaMaker maker;
-  Json top = maker.schema("axisfit axis file", axis_keys());
+  Json top = maker.schema("axisfit axis file", axis_keys(kSourceVocabulary));
   for (const char* part : kPartsOfStructure)
     for (const char* shared : {"properties", "additionalProperties", "required"})
       top["properties"][part].erase(shared);
@@ -307,7 +307,7 @@ nlohmann::ordered_json motion_schema() {
   Json top = maker.schema("axisfit motion file", motion_keys());
   top.erase("additionalProperties");  // they depend on the type
   for (const std::string& type : std::get<Choice>(find_key(motion_keys(), "type").form).names()) {
-    Json then = maker.map(motion_keys(type));
+    Json then = maker.map(motion_keys(type, kSourceVocabulary));
     for (const Key& key : motion_keys()) then["properties"][key.name] = true;
     top["allOf"].push_back(when({{"type", type}}, then));
   }

@@ -10,6 +10,7 @@
 
 #include "fit/data/standstill.h"
 #include "fit/judge/spectrum.h"
+#include "report/text/names.h"
 #include "report/text/words.h"
 #include "sim/sampling.h"
 
@@ -493,7 +494,8 @@ Html ReportCharts::prediction(const RecordingPrediction& prediction) {
 Html ReportCharts::profile(const Profile& profile) {
   const ParameterResult& p = run_result_.fit().parameters[profile.parameter];
   const FreeParameter& free = run_result_.job().free[profile.parameter];
-  const std::string unit(run_result_.job().entry(free.quantity).quantity.unit);
+  const std::string name = name_of(run_result_.job(), p.id),
+                    unit(quantity_of(run_result_.job(), p.id).unit);
   Values x, deviance, parabola;
   for (const ProfilePoint& point : profile.points) {
     x.push_back(point.value);
@@ -504,8 +506,8 @@ Html ReportCharts::profile(const Profile& profile) {
   }
   const auto at = columns_.add_coarse(std::move(x));
   Chart chart{.id = fmt::format("profile-{}", profile.parameter + 1),
-              .title = "Profile of " + p.name,
-              .x = {p.name, unit},
+              .title = "Profile of " + name,
+              .x = {name, unit},
               .y = {"deviance"},
               .series = {{"profile", "measured", at, columns_.add_coarse(std::move(deviance))}},
               .bands = {{0.0, profile.threshold, {}, "95 % interval"}}};

@@ -10,6 +10,7 @@
 #include "base/version.h"
 #include "report/html/assets/assets.h"
 #include "report/html/report_charts.h"
+#include "report/text/names.h"
 #include "report/text/report_text.h"
 #include "report/text/words.h"
 
@@ -238,7 +239,8 @@ class Page {
                 drawing);
   }
 
-  static Html badge(const ParameterResult& p, std::string_view unit) {
+  Html badge(const ParameterResult& p) const {
+    const std::string_view unit = quantity_of(job_, p.id).unit;
     const ParameterUncertainty& u = p.uncertainty;
     const auto kind = [&] {
       switch (u.verdict()) {
@@ -256,7 +258,7 @@ class Page {
     };
     Html all =
         html(R"(<span class="badge {}">{}</span>)", kind(), std::string(verdict_name(u.verdict())));
-    if (!p.rests_on.empty()) all += html(" <small>{}</small>", guesses_text(p.rests_on));
+    if (!p.rests_on.empty()) all += html(" <small>{}</small>", guesses_text(job_, p.rests_on));
     if (const auto& gain = p.budget.gain)
       all += html(" <small>{}</small>", gain_shift_text(*gain, unit));
     if (const auto& rival = p.budget.rival)
@@ -269,9 +271,9 @@ class Page {
     for (std::size_t i = 0; i < fit_.parameters.size(); ++i) {
       const ParameterResult& p = fit_.parameters[i];
       const ParameterUncertainty& u = p.uncertainty;
-      const Quantity& quantity = job_.entry(job_.free[i].quantity).quantity;
+      const Quantity& quantity = quantity_of(job_, p.id);
       const double error = u.determined ? u.standard_error : 0.0;
-      rows += row(html(R"(<th scope="row">{} <small>{}</small></th>)", p.name,
+      rows += row(html(R"(<th scope="row">{} <small>{}</small></th>)", name_of(job_, p.id),
                        std::string(quantity.meaning)) +
                   number_cell(u.determined || u.at_bound ? with_digits_of(p.value, error)
                                                          : fmt::format("~{:.1g}", p.value)) +
@@ -281,7 +283,7 @@ class Page {
                                                : "-") +
                   html(R"(<td class="unit">{}</td>)", std::string(quantity.unit)) +
                   number_cell(number(as_specified(run_result_, i).initial)) +
-                  cell(interval_bar(i)) + cell(badge(p, quantity.unit)));
+                  cell(interval_bar(i)) + cell(badge(p)));
     }
     Html all = table({"Parameter", "#value", "#standard error", "#95 % interval", "Unit",
                       "#initial", "Within its bounds", "Verdict"},
@@ -311,9 +313,9 @@ class Page {
     if (n < 2) return {};
     Html head = Html::raw("<td></td>"), rows;
     for (const ParameterResult& p : fit_.parameters)
-      head += html(R"(<th scope="col">{}</th>)", p.name);
+      head += html(R"(<th scope="col">{}</th>)", name_of(job_, p.id));
     for (Eigen::Index i = 0; i < n; ++i) {
-      Html cells = head_cell(fit_.parameters[static_cast<std::size_t>(i)].name);
+      Html cells = head_cell(name_of(job_, job_.free[static_cast<std::size_t>(i)]));
       for (Eigen::Index k = 0; k < n; ++k) {
         const double c = fit_.correlation(i, k);
         cells += std::isfinite(c) ? html(R"(<td style="--r:{:.3f}">{:.2f}</td>)", c, c)
@@ -347,12 +349,12 @@ class Page {
         std::ranges::max_element(diagnosis.tests, {}, &SeriesTest::reduced_chi_square);
     for (auto test = diagnosis.tests.begin(); test != diagnosis.tests.end(); ++test)
       all += html(R"(<details{}><summary>{}</summary>{}</details>)",
-                  Html::raw(test == worst ? " open" : ""), name_of(*test),
+                  Html::raw(test == worst ? " open" : ""), title_of(*test),
                   figures(charts_.views(*test)));
     return all;
   }
 
-  std::string name_of(const SeriesTest& test) const {
+  std::string title_of(const SeriesTest& test) const {
     const Recording& recording = job_.recordings[test.series.recording];
     return fmt::format(
         "{} of {} ({})",
@@ -365,7 +367,7 @@ class Page {
       std::string on;
       for (const Dependence& d : test.dependences)
         on += fmt::format("{}{} {:.2g} %", on.empty() ? "" : ", ", d.on, 100.0 * d.fraction);
-      return row(head_cell(name_of(test)) + number_cell(number(test.reduced_chi_square)) +
+      return row(head_cell(title_of(test)) + number_cell(number(test.reduced_chi_square)) +
                  number_cell(test.explained ? "noise only"
                                             : fmt::format("{:.3g} %", test.unexplained_percent)) +
                  cell(on.empty() ? "nothing" : on));
@@ -413,8 +415,7 @@ class Page {
         html(R"(<th scope="row">{} <small>{}</small></th>)", t.candidate.name,
              t.candidate.meaning) +
         number_cell(number(t.score)) +
-        cell(html(R"(<span class="badge {0}">{0}</span>)", decision)) +
-        cell(reason_text(t, job_.vocabulary())) +
+        cell(html(R"(<span class="badge {0}">{0}</span>)", decision)) + cell(reason_text(job_, t)) +
         number_cell(judged ? fmt::format("{:+.3g} %", -t.improvement.validate_percent) : "-") +
         number_cell(judged ? fmt::format("{:.1g}", t.improvement.p_value) : "-"));
   }
@@ -437,7 +438,7 @@ class Page {
     if (run_result_.first.starts.size() < 2 || minima.empty()) return all;
     std::vector<std::string> columns{"#reduced cost", "#starts"};
     for (std::size_t i = 0; i < minima.front().values.size(); ++i)
-      columns.push_back("#" + run_result_.first.parameters[i].name);
+      columns.push_back("#" + name_of(run_result_.baseline, run_result_.baseline.free[i]));
     const Html rows = each(minima, [](const Minimum& m) {
       return row(number_cell(number(m.reduced_cost)) + number_cell(fmt::format("{}", m.starts)) +
                  each(m.values, [](double v) { return number_cell(number(v)); }));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/text_table.h"
+#include "report/text/names.h"
 #include "report/text/report_text.h"
 
 namespace axisfit {
@@ -23,11 +24,11 @@ std::string span_text(double horizon) {
 }
 
 /// Values and standard errors by model, where any two of them were fitted.
-std::string parameters_table(const Comparison& comparison) {
-  std::vector<std::string> names;
+std::string parameters_table(const Job& job, const Comparison& comparison) {
+  std::vector<ParameterId> ids;
   for (const ComparedModel& model : comparison.models)
     for (const ParameterResult& p : model.parameters)
-      if (std::ranges::find(names, p.name) == names.end()) names.push_back(p.name);
+      if (std::ranges::find(ids, p.id) == ids.end()) ids.push_back(p.id);
   std::vector<std::vector<std::string>> rows{{""}};
   std::vector<Alignment> alignment{Alignment::left};
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {
@@ -35,11 +36,11 @@ std::string parameters_table(const Comparison& comparison) {
     rows.front().push_back(std::to_string(m + 1));
     alignment.push_back(Alignment::right);
   }
-  for (const std::string& name : names) {
-    rows.push_back({name});
+  for (const ParameterId& id : ids) {
+    rows.push_back({name_of(job, id)});
     for (const ComparedModel& model : comparison.models) {
       if (model.parameters.empty()) continue;
-      const auto p = std::ranges::find(model.parameters, name, &ParameterResult::name);
+      const auto p = std::ranges::find(model.parameters, id, &ParameterResult::id);
       rows.back().push_back(
           p == model.parameters.end() ? ""
           : p->uncertainty.determined
@@ -48,7 +49,7 @@ std::string parameters_table(const Comparison& comparison) {
               : fmt::format("{:.4g}", p->value));
     }
   }
-  return names.empty() ? "" : format_table(rows, alignment);
+  return ids.empty() ? "" : format_table(rows, alignment);
 }
 
 /// "declared errs 1.4 times as much (3.1 standard errors), in 20 of 24 windows"
@@ -113,7 +114,7 @@ std::string comparison_text(const RunResult& run_result) {
                       "above the lowest.",
                       turns ? "torque" : "force", turns ? "N m" : "N"),
           2) +
-      parameters_table(comparison);
+      parameters_table(run_result.job(), comparison);
   std::vector<std::string> reasons;
   for (std::size_t m = 0; m < comparison.models.size(); ++m)
     if (m != comparison.preferred && comparison.models[m].log_ratio != 0.0)

@@ -10,6 +10,7 @@
 #include "base/terminal.h"
 #include "base/text_table.h"
 #include "io/recording/csv.h"
+#include "report/text/names.h"
 #include "report/text/words.h"
 #include "sim/rig.h"
 
@@ -73,7 +74,7 @@ std::string parameters_text(const RunResult& run_result) {
   for (std::size_t i = 0; i < job.free.size(); ++i) {
     const ParameterResult& p = result.parameters[i];
     const ParameterUncertainty& u = p.uncertainty;
-    const Quantity& quantity = job.entry(job.free[i].quantity).quantity;
+    const Quantity& quantity = quantity_of(job, p.id);
     const double error = u.determined ? u.standard_error : 0.0;
     const bool undetermined = !u.determined && !u.at_bound;
     std::string other = fmt::format("{:.4g}", job.free[i].initial);
@@ -81,7 +82,7 @@ std::string parameters_text(const RunResult& run_result) {
       const auto& declared = run_result.selection->models.front().fit.parameters;
       other = i < declared.size() ? fmt::format("{:.4g}", declared[i].value) : "-";
     }
-    rows.push_back({p.name,
+    rows.push_back({name_of(job, p.id),
                     undetermined ? fmt::format("~{:.1g}", p.value) : with_digits_of(p.value, error),
                     u.determined ? fmt::format("{:.2g}", error) : "-",
                     u.has_interval() ? fmt::format("{} .. {}", with_digits_of(u.lower, error),

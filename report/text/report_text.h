@@ -71,7 +71,7 @@ std::string comparison_text(const RunResult& run_result);
 
 /// What is known of the parameters together: weak directions, and the combinations that are
 /// determined.
-std::string identifiability_text(const Identifiability& known);
+std::string identifiability_text(const Job& job, const Identifiability& known);
 
 /// Intervals by profile beside those by standard error; empty where there are no profiles.
 std::string profiles_text(const RunResult& run_result);
@@ -86,7 +86,7 @@ std::string forecast_text(const Job& job, const Forecast& forecast, bool colour 
 std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& checks);
 
 /// What looks wrong with a recording, and what to do about it: a sentence or two.
-std::string warning_text(const RecordingWarning& warning, Vocabulary vocabulary = {});
+std::string warning_text(const RecordingWarning& warning, Vocabulary vocabulary);
 
 /// The same of all that looks wrong with a recording.
 std::vector<std::string> warnings_for(const Job& job, const Recording& recording,

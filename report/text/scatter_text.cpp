@@ -6,6 +6,7 @@
 
 #include "base/text_table.h"
 #include "base/units.h"
+#include "report/text/names.h"
 #include "report/text/report_text.h"
 
 namespace axisfit {
@@ -33,10 +34,10 @@ std::string step_text(const Job& job, const FitResult& fit, const Scatter& scatt
     if (!(steps > farthest)) continue;
     farthest = steps;
     text = fmt::format("{} steps from {} ({}) to {} ({}): {:.2g} standard errors",
-                       fit.parameters[p.parameter].name, with_digits_of(before.value, error),
-                       name_of(job, scatter, g - 1),
+                       name_of(job, fit.parameters[p.parameter].id),
+                       with_digits_of(before.value, error), name_of(job, scatter, g - 1),
                        with_unit(with_digits_of(after.value, error),
-                                 job.entry(job.free[p.parameter].quantity).quantity.unit),
+                                 quantity_of(job, fit.parameters[p.parameter].id).unit),
                        name_of(job, scatter, g), steps);
   }
   return text;
@@ -54,12 +55,13 @@ std::string scatter_text(const RunResult& run_result) {
   std::vector<std::string> scattered;
   for (const ParameterScatter& p : scatter.parameters) {
     const ParameterResult& found = fit.parameters[p.parameter];
-    if (p.deviation > 0.0) scattered.push_back(found.name);
-    rows.push_back({found.name, fmt::format("{:.2g}", p.within),
+    const std::string name = name_of(job, found.id);
+    if (p.deviation > 0.0) scattered.push_back(name);
+    rows.push_back({name, fmt::format("{:.2g}", p.within),
                     p.deviation > 0.0 ? fmt::format("{:.2g}", p.deviation) : "none seen",
                     fmt::format("{:.2g} .. {:.2g}", p.lower, p.upper),
                     fmt::format("{:.2g}", found.uncertainty.standard_error),
-                    std::string(job.entry(job.free[p.parameter].quantity).quantity.unit)});
+                    std::string(quantity_of(job, found.id).unit)});
   }
   using enum Alignment;
   const std::size_t groups = scatter.fitted_groups();

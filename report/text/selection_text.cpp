@@ -6,6 +6,7 @@
 #include "base/terminal.h"
 #include "base/text_table.h"
 #include "base/units.h"
+#include "report/text/names.h"
 #include "report/text/report_text.h"
 #include "report/text/words.h"
 
@@ -13,16 +14,14 @@ namespace axisfit {
 namespace {
 
 /// "F_c = 24.95 +- 0.12 N"; of a curve the range of its coefficients.
-std::string estimates_text(const std::vector<ParameterResult>& parameters, bool is_curve,
-                           Vocabulary vocabulary) {
-  const auto quantity_of = [&](const ParameterResult& p) -> const Quantity& {
-    return find_quantity(p.name, vocabulary)->quantity;
-  };
+std::string estimates_text(const Job& job, const std::vector<ParameterResult>& parameters,
+                           bool is_curve) {
   if (parameters.empty()) return "";
   if (is_curve) {
     const auto [low, high] = std::ranges::minmax(parameters, {}, &ParameterResult::value);
-    return fmt::format("{} coefficients from {:.3g} to {}", parameters.size(), low.value,
-                       with_unit(fmt::format("{:.3g}", high.value), quantity_of(high).unit));
+    return fmt::format(
+        "{} coefficients from {:.3g} to {}", parameters.size(), low.value,
+        with_unit(fmt::format("{:.3g}", high.value), quantity_of(job, high.id).unit));
   }
   std::vector<std::string> parts;
   for (const ParameterResult& p : parameters) {
@@ -31,8 +30,8 @@ std::string estimates_text(const std::vector<ParameterResult>& parameters, bool 
         u.determined ? fmt::format("{} +- {:.2g}", with_digits_of(p.value, u.standard_error),
                                    u.standard_error)
                      : fmt::format("{:.3g}", p.value);
-    parts.push_back(
-        fmt::format("{} = {}", quantity_of(p).symbol, with_unit(number, quantity_of(p).unit)));
+    const Quantity& quantity = quantity_of(job, p.id);
+    parts.push_back(fmt::format("{} = {}", quantity.symbol, with_unit(number, quantity.unit)));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -44,27 +43,27 @@ Tone tone_of(Decision decision) {
 }
 
 /// What other recordings say of an accepted effect.
-std::string elsewhere_text(const EffectTrial& t, Vocabulary vocabulary) {
+std::string elsewhere_text(const Job& job, const EffectTrial& t) {
   if (!t.replication || t.candidate.is_curve) return "";
   const Replication& found = *t.replication;
   return fmt::format("; the recordings to validate, fitted by themselves, {}: {}",
                      found.is_alike  ? "tell alike"
                      : found.is_near ? "agree, but do not prove it"
                                      : "tell otherwise",
-                     estimates_text(t.replication->parameters, false, vocabulary));
+                     estimates_text(job, t.replication->parameters, false));
 }
 
 std::string effects_text(const EffectSelection& selection, bool colour) {
   if (selection.effects.empty()) return "";
-  const Vocabulary vocabulary = selection.result.job.vocabulary();
+  const Job& job = selection.result.job;
   std::vector<std::vector<std::string>> rows;
   for (const Decision decision : {Decision::accepted, Decision::undecided, Decision::rejected})
     for (const EffectTrial& t : selection.effects) {
       if (t.decision != decision) continue;
-      const std::string estimate = estimates_text(t.parameters, t.candidate.is_curve, vocabulary);
+      const std::string estimate = estimates_text(job, t.parameters, t.candidate.is_curve);
       rows.push_back({toned(decision_name(decision), tone_of(decision), colour), t.candidate.name,
-                      estimate + (estimate.empty() ? "" : ": ") + reason_text(t, vocabulary) +
-                          elsewhere_text(t, vocabulary)});
+                      estimate + (estimate.empty() ? "" : ": ") + reason_text(job, t) +
+                          elsewhere_text(job, t)});
     }
   return "Effects tried\n" +
          format_table(rows, {Alignment::left, Alignment::left, Alignment::wrapped}) + "\n";

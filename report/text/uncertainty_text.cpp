@@ -7,6 +7,7 @@
 #include "base/terminal.h"
 #include "base/text_table.h"
 #include "base/units.h"
+#include "report/text/names.h"
 #include "report/text/report_text.h"
 #include "report/text/words.h"
 
@@ -14,7 +15,7 @@ namespace axisfit {
 namespace {
 
 std::string_view unit_of(const Job& job, std::size_t parameter) {
-  return job.entry(job.free[parameter].quantity).quantity.unit;
+  return quantity_of(job, job.free[parameter].id()).unit;
 }
 
 /// "12.3 .. 14.2", or what stands for an interval that there is not.
@@ -25,15 +26,15 @@ std::string interval_text(const ParameterUncertainty& u) {
 }
 
 /// Estimates that hang together: neither is known without the other.
-std::string correlation_text(const FitResult& result) {
+std::string correlation_text(const Job& job, const FitResult& result) {
   constexpr std::size_t kNamed = 3;
   const std::vector<StrongCorrelation> pairs = strong_correlations(result.correlation);
   if (pairs.empty()) return "";
   const std::size_t named = std::min(kNamed, pairs.size());
   std::vector<std::string> names;
   for (std::size_t i = 0; i < named; ++i)
-    names.push_back(fmt::format("{} and {} ({:.3g})", result.parameters[pairs[i].first].name,
-                                result.parameters[pairs[i].second].name, pairs[i].value));
+    names.push_back(fmt::format("{} and {} ({:.3g})", name_of(job, job.free[pairs[i].first]),
+                                name_of(job, job.free[pairs[i].second]), pairs[i].value));
   const std::string more =
       pairs.size() > named ? fmt::format(", and {} more pairs", pairs.size() - named) : "";
   return paragraph(fmt::format("Strongly correlated: {}{}.", fmt::join(names, ", "), more), 2);
@@ -45,14 +46,15 @@ std::string remarks_text(const Job& job, const FitResult& result) {
   std::string text;
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     const ParameterResult& p = result.parameters[i];
+    const std::string name = name_of(job, p.id);
     if (!p.rests_on.empty())
-      text += paragraph(fmt::format("{}: {}.", p.name, guesses_text(p.rests_on)), 2);
+      text += paragraph(fmt::format("{}: {}.", name, guesses_text(job, p.rests_on)), 2);
     if (p.budget.gain)
       text += paragraph(
-          fmt::format("{}: {}.", p.name, gain_shift_text(*p.budget.gain, unit_of(job, i))), 2);
+          fmt::format("{}: {}.", name, gain_shift_text(*p.budget.gain, unit_of(job, i))), 2);
     if (p.budget.rival)
       text += paragraph(
-          fmt::format("{}: {}.", p.name, rival_shift_text(*p.budget.rival, unit_of(job, i))), 2);
+          fmt::format("{}: {}.", name, rival_shift_text(*p.budget.rival, unit_of(job, i))), 2);
   }
   if (const std::string better = better_gain_text(result); !better.empty())
     text += paragraph(better + ".", 2);
@@ -65,10 +67,9 @@ std::string remarks_text(const Job& job, const FitResult& result) {
 
 std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty>& known,
                           bool colour) {
-  const ParameterSpace space(job);
   std::vector<std::vector<std::string>> rows;
-  for (std::size_t i = 0; i < space.size(); ++i) {
-    std::string description(job.entry(space[i].quantity).quantity.meaning);
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    std::string description(quantity_of(job, job.free[i].id()).meaning);
     if (const ParameterVerdict verdict = known[i].verdict();
         verdict != ParameterVerdict::determined)
       description += ": " + toned(verdict_name(verdict),
@@ -77,7 +78,7 @@ std::string meanings_text(const Job& job, const std::vector<ParameterUncertainty
                                       ? Tone::bad
                                       : Tone::caution,
                                   colour);
-    rows.push_back({space.name(i), description});
+    rows.push_back({name_of(job, job.free[i]), description});
   }
   return format_table(rows, {Alignment::left, Alignment::wrapped});
 }
@@ -96,8 +97,8 @@ std::string uncertainty_text(const Job& job, const FitResult& result) {
     noise += fmt::format(", and {}, which makes up to {:.2g} % of their squares",
                          input_noise_text(job), 100.0 * result.input_part);
   return paragraph("Standard errors and intervals assume " + noise + ".", 2) +
-         remarks_text(job, result) + correlation_text(result) +
-         identifiability_text(result.identifiability);
+         remarks_text(job, result) + correlation_text(job, result) +
+         identifiability_text(job, result.identifiability);
 }
 
 std::string second_opinion_text(const RunResult& run_result) {
@@ -117,8 +118,8 @@ std::string second_opinion_text(const RunResult& run_result) {
   std::vector<std::string> values;
   if (!run_result.grade.is_usable())
     for (const InverseEstimate& e : estimate.parameters)
-      values.push_back(
-          fmt::format("{} = {}", e.name, number(e, unit_of(run_result.job(), e.parameter))));
+      values.push_back(fmt::format("{} = {}", name_of(run_result.job(), e.id),
+                                   number(e, unit_of(run_result.job(), e.parameter))));
   if (!values.empty())
     text += paragraph(
         fmt::format("Inverse dynamics, without a simulation: {}. Of the {} {:.2g} % remain "
@@ -131,7 +132,8 @@ std::string second_opinion_text(const RunResult& run_result) {
   for (const std::size_t i : contradictions) {
     const InverseEstimate& e = estimate.parameters[i];
     const std::string_view unit = unit_of(run_result.job(), e.parameter);
-    differ.push_back(fmt::format("{} = {} (fit: {})", e.name, number(e, unit),
+    differ.push_back(fmt::format("{} = {} (fit: {})", name_of(run_result.job(), e.id),
+                                 number(e, unit),
                                  number(run_result.fit().parameters[e.parameter], unit)));
   }
   return text + paragraph(fmt::format("Second opinion: inverse dynamics, without a simulation, "
@@ -141,11 +143,11 @@ std::string second_opinion_text(const RunResult& run_result) {
                           2);
 }
 
-std::string identifiability_text(const Identifiability& known) {
+std::string identifiability_text(const Job& job, const Identifiability& known) {
   std::string text;
-  for (const WeakDirection& weak : known.weak) text += paragraph(weak_direction_text(weak), 2);
+  for (const WeakDirection& weak : known.weak) text += paragraph(weak_direction_text(job, weak), 2);
   for (const Combination& c : known.combinations)
-    text += paragraph(fmt::format("{} = {} +- {:.2g}", c.name,
+    text += paragraph(fmt::format("{} = {} +- {:.2g}", name_of(job, c),
                                   with_digits_of(c.value, c.standard_error), c.standard_error),
                       2);
   return text;
@@ -159,19 +161,20 @@ std::string profiles_text(const RunResult& run_result) {
   std::string better;
   for (const Profile& profile : run_result.profiles) {
     const ParameterResult& p = fit.parameters[profile.parameter];
+    const std::string name = name_of(run_result.job(), p.id);
     const ParameterUncertainty& u = p.uncertainty;
     const double digits = u.determined ? u.standard_error : 0.0;
     const auto end = [&](const ProfileEnd& e) {
       return e.open ? std::string("open") : with_digits_of(e.value, digits);
     };
-    rows.push_back({p.name, with_digits_of(p.value, digits),
+    rows.push_back({name, with_digits_of(p.value, digits),
                     end(profile.lower) + " .. " + end(profile.upper), interval_text(u),
                     std::string(unit_of(run_result.job(), profile.parameter))});
     if (profile.better)
       better +=
           paragraph(fmt::format("The profile of {} found a better fit, with reduced chi-square "
                                 "{:.4g}: the result is not the best minimum. Try --starts 20.",
-                                p.name, profile.better->reduced_cost),
+                                name, profile.better->reduced_cost),
                     2);
   }
   return "95 % intervals\n" +
@@ -196,7 +199,7 @@ std::string suggestion_text(const RunResult& run_result) {
   if (!run_result.grade.is_usable())
     return paragraph(none + "the simulation does not show what the machine would do.");
   if (const auto held = held_by_bound(run_result.job(), run_result.fit()))
-    return paragraph(none + run_result.fit().parameters[*held].name +
+    return paragraph(none + name_of(run_result.job(), run_result.job().free[*held]) +
                      " is at its bound, and with a value beyond it the machine could leave its "
                      "limits. Widen the bound, or look for what the model lacks.");
   if (!run_result.suggestion)
@@ -207,7 +210,7 @@ std::string suggestion_text(const RunResult& run_result) {
                      "bounds, or record a small motion of your own choice first.");
   const Suggestion& s = *run_result.suggestion;
   const FitResult& fit = run_result.fit();
-  const std::string& name = fit.parameters[s.parameter].name;
+  const std::string name = name_of(run_result.job(), run_result.job().free[s.parameter]);
   std::string text = fmt::format(
       "Record {}, for {:.3g} s: it does most for {}, the least determined parameter. Of {} motions "
       "tried, {} stay within {:.4g} .. {:.4g} {}, {:.3g} {} and {}.",
@@ -235,7 +238,8 @@ std::string suggestion_text(const RunResult& run_result) {
   text = "Next experiment\n" + paragraph(text, 2);
   std::vector<std::vector<std::string>> rows{{"", "95 % interval now", "predicted", "unit"}};
   for (std::size_t i = 0; i < fit.parameters.size(); ++i)
-    rows.push_back({fit.parameters[i].name, interval_text(fit.parameters[i].uncertainty),
+    rows.push_back({name_of(run_result.job(), fit.parameters[i].id),
+                    interval_text(fit.parameters[i].uncertainty),
                     interval_text(s.predicted.parameters[i]),
                     std::string(unit_of(run_result.job(), i))});
   return text +
@@ -248,9 +252,9 @@ std::string forecast_text(const Job& job, const Forecast& forecast, bool colour)
         "Identifiability could not be checked: with the initial values the simulation does not "
         "finish.");
   std::vector<std::vector<std::string>> rows{{"", "expected std. error", "best seen in"}};
-  const ParameterSpace space(job);
   std::string needs;
-  for (std::size_t i = 0; i < space.size(); ++i) {
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    const std::string name = name_of(job, job.free[i]);
     const ParameterUncertainty& u = forecast.uncertainty.parameters[i];
     const std::string_view unit = unit_of(job, i);
     Eigen::Index best = 0;
@@ -258,8 +262,7 @@ std::string forecast_text(const Job& job, const Forecast& forecast, bool colour)
     const SeriesRows& series = forecast.series[static_cast<std::size_t>(best)];
     const Recording& recording = job.recordings[series.recording];
     rows.push_back(
-        {space.name(i),
-         u.determined ? with_unit(fmt::format("{:.2g}", u.standard_error), unit) : "-",
+        {name, u.determined ? with_unit(fmt::format("{:.2g}", u.standard_error), unit) : "-",
          most > 0.0
              ? fmt::format(
                    "{} of {}",
@@ -267,13 +270,13 @@ std::string forecast_text(const Job& job, const Forecast& forecast, bool colour)
                    recording.name)
              : "no signal"});
     const std::string_view need =
-        excitation_needed(quantity_list()[space[i].quantity], job.vocabulary());
+        excitation_needed(quantity_list()[job.free[i].quantity], job.vocabulary());
     if ((!u.determined || u.weak) && !u.at_bound && !need.empty())
-      needs += paragraph(fmt::format("{} needs {}.", space.name(i), need), 2);
+      needs += paragraph(fmt::format("{} needs {}.", name, need), 2);
   }
   return "What these recordings determine, if the initial values are about right\n" +
          format_table(rows, {Alignment::left, Alignment::right, Alignment::wrapped}) +
-         identifiability_text(forecast.identifiability) + needs + "\n" +
+         identifiability_text(job, forecast.identifiability) + needs + "\n" +
          meanings_text(job, forecast.uncertainty.parameters, colour);
 }
 

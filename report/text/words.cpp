@@ -11,11 +11,12 @@
 #include "base/text_table.h"
 #include "base/units.h"
 #include "fit/estimate/kalman_gain.h"
+#include "report/text/names.h"
 
 namespace axisfit {
 namespace {
 
-std::string rejection_text(const Rejection& rejection) {
+std::string rejection_text(const Job& job, const Rejection& rejection) {
   using enum Rejection::Test;
   switch (rejection.test) {
     case fit:
@@ -35,9 +36,9 @@ std::string rejection_text(const Rejection& rejection) {
     case validation_size:
       return fmt::format("hardly lowers the validation error, by {:.2g} %", rejection.found);
     case bound:
-      return rejection.parameter + " is at its bound";
+      return name_of(job, rejection.parameter.value()) + " is at its bound";
     case shape:
-      return "the recordings do not determine " + rejection.parameter;
+      return "the recordings do not determine " + name_of(job, rejection.parameter.value());
     case distinct:
       return "it cannot be distinguished from a change of the other parameters";
     case strength:
@@ -133,15 +134,13 @@ std::string grade_heading(const FitGrade& grade, bool colour) {
 }
 
 /// What was wrong with the model as declared, whole sentences.
-std::string lacked_text(const SelectionVerdict& verdict) {
-  std::vector<std::string> effects;
-  for (const std::string& name : verdict.accepted)
-    if (std::ranges::find(verdict.corrections, name, &SelectionVerdict::Correction::name) ==
-        verdict.corrections.end())
-      effects.push_back(name);
+std::string lacked_text(const Job& job, const SelectionVerdict& verdict) {
+  std::vector<std::string> effects = verdict.accepted;
   std::string text;
-  for (const auto& [name, declared, value] : verdict.corrections) {
-    const std::string_view unit = find_quantity(name)->quantity.unit;
+  for (const auto& [id, declared, value] : verdict.corrections) {
+    const std::string name = name_of(job, id);
+    std::erase(effects, name);
+    const std::string_view unit = quantity_of(job, id).unit;
     text += fmt::format("{} is {}, not the {} of the axis file. ", name,
                         with_unit(fmt::format("{:.4g}", value), unit),
                         with_unit(fmt::format("{:.4g}", declared), unit));
@@ -205,11 +204,12 @@ const char* grade_name(Grade grade) {
   return "";
 }
 
-std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour,
-                       Vocabulary vocabulary) {
+std::string grade_text(const Job& job, const FitGrade& grade, const FitResult& fit, bool colour) {
+  const Vocabulary vocabulary = job.vocabulary();
   const std::string heading = grade_heading(grade, colour);
+  const auto recording = [&] { return job.recordings[grade.recording].name; };
   const auto signal = [&] {
-    return fmt::format("the {} of {}", info(grade.signal, vocabulary).name, grade.recording);
+    return fmt::format("the {} of {}", info(grade.signal, vocabulary).name, recording());
   };
   using enum FitGrade::Reason;
   switch (grade.reason) {
@@ -232,14 +232,14 @@ std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour,
           "--starts 20.",
           heading,
           std::isnan(grade.percent)
-              ? "the free-running simulation of " + grade.recording + " does not finish"
+              ? "the free-running simulation of " + recording() + " does not finish"
               : fmt::format("the free-running simulation {}",
                             followed_text(grade.percent, signal())));
     case force:
       return fmt::format(
           "{}: the {} that the model lacks in {} is {:.3g} % of the drive's. Check the units and "
           "signs of the columns and what the axis file declares.",
-          heading, words_on(vocabulary, "force"), grade.recording, grade.percent);
+          heading, words_on(vocabulary, "force"), recording(), grade.percent);
     case tracking_only:
       return fmt::format(
           "{} while it tracks recordings: the free-running simulation {}. The parameters describe "
@@ -252,9 +252,10 @@ std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour,
   std::string text = fmt::format(
       "{}: reduced chi-square {:.4g} on the fitted data{}", heading, fit.reduced_chi_square,
       grade.reason == none ? ", and no signal shows more than its noise." : ".");
-  if (!fit.verdict.undetermined.empty())
-    text += fmt::format(" These recordings do not determine {}.",
-                        fmt::join(fit.verdict.undetermined, ", "));
+  std::vector<std::string> undetermined;
+  for (const ParameterId& id : fit.verdict.undetermined) undetermined.push_back(name_of(job, id));
+  if (!undetermined.empty())
+    text += fmt::format(" These recordings do not determine {}.", fmt::join(undetermined, ", "));
   return text;
 }
 
@@ -270,6 +271,7 @@ std::string closed_form_text(const ClosedForm& closed_form) {
 std::string verdict_text(const EffectSelection& selection) {
   using enum SelectionVerdict::Kind;
   const SelectionVerdict& verdict = selection.verdict;
+  const Job& job = selection.result.job;
   std::string text;
   switch (verdict.kind) {
     case no_usable_fit:
@@ -286,7 +288,7 @@ std::string verdict_text(const EffectSelection& selection) {
           fmt::join(verdict.small, ", "), verdict.small.size() > 1 ? "are" : "is");
     case effects_accepted:
     case undecided:
-      text = lacked_text(verdict);
+      text = lacked_text(job, verdict);
       if (const auto equals = undecided_list(selection); !equals.empty())
         text += fmt::format("Undecided: {}; these recordings do not tell which. ",
                             fmt::join(equals, ", "));
@@ -300,16 +302,16 @@ std::string verdict_text(const EffectSelection& selection) {
           text += fmt::format(" These recordings do not tell {} from {}.", pair.chosen, pair.rival);
       break;
     case misfit:
-      return verdict.at_bound.empty()
+      return verdict.at_bound
                  ? fmt::format(
-                       "The declared model does not fit: of {}, {:.3g} % of the {} is missing. "
-                       "Nothing can be said about effects yet.",
-                       verdict.recording, verdict.force_percent,
-                       words_on(selection.result.job.vocabulary(), "drive force"))
-                 : fmt::format(
                        "The declared model does not fit: {} is at its bound. Nothing can be said "
                        "about effects yet.",
-                       verdict.at_bound);
+                       name_of(job, *verdict.at_bound))
+                 : fmt::format(
+                       "The declared model does not fit: of {}, {:.3g} % of the {} is missing. "
+                       "Nothing can be said about effects yet.",
+                       job.recordings[verdict.recording.value()].name, verdict.force_percent,
+                       words_on(job.vocabulary(), "drive force"));
   }
   return text;
 }
@@ -335,21 +337,20 @@ std::string judges_text(const RunResult& run_result) {
 
 std::string overall_verdict(const RunResult& run_result, bool colour) {
   const FitGrade& grade = run_result.grade;
-  const Vocabulary vocabulary = run_result.job().vocabulary();
-  if (!run_result.selection) return grade_text(grade, run_result.fit(), colour, vocabulary);
+  const std::string of_grade = grade_text(run_result.job(), grade, run_result.fit(), colour);
+  if (!run_result.selection) return of_grade;
   // Both judge the same model by the same residual.
   const bool by_residual =
       grade.reason == FitGrade::Reason::residual || grade.reason == FitGrade::Reason::none;
-  return (by_residual ? grade_heading(grade, colour) + "."
-                      : grade_text(grade, run_result.fit(), colour, vocabulary)) +
-         " " + verdict_text(*run_result.selection) +
+  return (by_residual ? grade_heading(grade, colour) + "." : of_grade) + " " +
+         verdict_text(*run_result.selection) +
          (run_result.roles_exchanged ? " Found with the roles of the recordings exchanged." : "");
 }
 
-std::string reason_text(const EffectTrial& trial, Vocabulary vocabulary) {
+std::string reason_text(const Job& job, const EffectTrial& trial) {
   switch (trial.reason) {
     case Reason::failed_test:
-      return rejection_text(trial.rejection.value()) + advice_text(trial, vocabulary);
+      return rejection_text(job, trial.rejection.value()) + advice_text(trial, job.vocabulary());
     case Reason::explains_best:
       return fmt::format(
           "explains the residual best: {:.3g} % lower validation error ({:.3g} standard deviations "
@@ -376,16 +377,19 @@ std::string reason_text(const EffectTrial& trial, Vocabulary vocabulary) {
   return "";
 }
 
-std::string weak_direction_text(const WeakDirection& weak) {
+std::string weak_direction_text(const Job& job, const WeakDirection& weak) {
   const std::vector<WeakDirection::Part>& parts = weak.parts;
-  if (parts.size() == 1) return parts[0].name + " hardly affects these recordings.";
-  if (!weak.combination.empty())
-    return fmt::format("{} and {} are determined only as {}.", parts[0].name, parts[1].name,
-                       weak.combination);
+  const auto name = [&](const WeakDirection::Part& p) {
+    return name_of(job, job.free[p.parameter]);
+  };
+  if (parts.size() == 1) return name(parts[0]) + " hardly affects these recordings.";
+  if (weak.combination)
+    return fmt::format("{} and {} are determined only as {}.", name(parts[0]), name(parts[1]),
+                       name_of(job, *weak.combination));
   std::vector<std::string> changes;
   for (const WeakDirection::Part& p : parts)
-    changes.push_back(p.relative ? fmt::format("{} by {:+.2g} %", p.name, 100.0 * p.tenth)
-                                 : fmt::format("{} by {:+.2g}", p.name, p.tenth));
+    changes.push_back(p.relative ? fmt::format("{} by {:+.2g} %", name(p), 100.0 * p.tenth)
+                                 : fmt::format("{} by {:+.2g}", name(p), p.tenth));
   return fmt::format("These can change jointly with hardly any effect: {}.",
                      fmt::join(changes, ", "));
 }
@@ -435,10 +439,11 @@ std::string quiet_gain_text(const Job& job, const FitResult& fit) {
       input_noise_text(job), *fit.quiet_gain);
 }
 
-std::string guesses_text(const std::vector<GuessInfluence>& guesses) {
+std::string guesses_text(const Job& job, const std::vector<GuessInfluence>& guesses) {
   constexpr double kWhole = 0.005;  // of an elasticity of one
   std::vector<std::string> whole, part;
-  for (const auto& [name, elasticity] : guesses) {
+  for (const auto& [id, elasticity] : guesses) {
+    const std::string name = name_of(job, id);
     if (std::abs(elasticity - 1.0) < kWhole)
       whole.push_back("as a ratio to " + name);
     else if (std::abs(elasticity + 1.0) < kWhole)
@@ -471,7 +476,7 @@ std::string discrimination_text(const Discrimination& discrimination, Vocabulary
 }
 
 bool drives_by_force(const Recording& recording, const Model<double>& model) {
-  static const std::size_t kGain = find_quantity("K_f")->index;
+  static const std::size_t kGain = quantity_index("K_f");
   return capabilities(model.structure).is_force_driven &&
          std::ranges::any_of(recording.overrides, [](const auto& o) { return o.first == kGain; });
 }

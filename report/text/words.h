@@ -1,5 +1,6 @@
 // The words for what a run finds: its data and judgements (fit/) as names and sentences.
-// With `colour`, verdicts are green, yellow or red, for a terminal. The joint is that of the axis.
+// With `colour`, verdicts are green, yellow or red, for a terminal. The job is the one whose fit is
+// told of.
 #pragma once
 
 #include <string>
@@ -13,8 +14,8 @@ namespace axisfit {
 const char* grade_name(Grade grade);
 
 /// How far a fit can be relied on, and why, one sentence or a few.
-std::string grade_text(const FitGrade& grade, const FitResult& fit, bool colour = false,
-                       Vocabulary vocabulary = {});
+std::string grade_text(const Job& job, const FitGrade& grade, const FitResult& fit,
+                       bool colour = false);
 
 /// What a search for effects comes to, a sentence or a few.
 std::string verdict_text(const EffectSelection& selection);
@@ -25,19 +26,19 @@ std::string judges_text(const RunResult& run_result);
 std::string overall_verdict(const RunResult& run_result, bool colour = false);
 
 /// What the decision on an effect rests on; no sentence, to follow its estimate.
-std::string reason_text(const EffectTrial& trial, Vocabulary vocabulary = {});
+std::string reason_text(const Job& job, const EffectTrial& trial);
 
 /// What the recordings leave open in that direction, one sentence.
-std::string weak_direction_text(const WeakDirection& weak);
+std::string weak_direction_text(const Job& job, const WeakDirection& weak);
 
 /// A command with the unit of the drive: "2 A", "40 %".
 std::string command_text(double value, Vocabulary vocabulary);
 
 /// "a step of 10 V"
-std::string motion_text(const Motion& motion, Vocabulary vocabulary = {});
+std::string motion_text(const Motion& motion, Vocabulary vocabulary);
 
 /// "known only as a ratio to K_f, which is a guess"
-std::string guesses_text(const std::vector<GuessInfluence>& guesses);
+std::string guesses_text(const Job& job, const std::vector<GuessInfluence>& guesses);
 
 /// How a fit simulates that `tracks`, as a result has it, or does not: "tracking simulation",
 /// "simulation in windows of 2 s" or "free-running simulation".
@@ -55,7 +56,7 @@ std::string quiet_gain_text(const Job& job, const FitResult& fit);
 /// "(8.10 +- 0.20) N exp(-|v| / 0.02 m/s)".
 std::string closed_form_text(const ClosedForm& closed_form);
 /// In which motion and signal two undecided effects differ, one sentence.
-std::string discrimination_text(const Discrimination& discrimination, Vocabulary vocabulary = {});
+std::string discrimination_text(const Discrimination& discrimination, Vocabulary vocabulary);
 
 /// Whether the input of a recording is a force, and no command.
 bool drives_by_force(const Recording& recording, const Model<double>& model);

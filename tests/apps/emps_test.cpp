@@ -8,6 +8,7 @@
 
 #include "fit/estimate/estimate.h"
 #include "io/config/job_file.h"
+#include "report/text/names.h"
 
 namespace axisfit {
 namespace {
@@ -38,8 +39,9 @@ TEST(EmpsTest, FitAgreesWithThePublishedEstimates) {
 
   std::map<std::string, double> value;
   for (const ParameterResult& p : result.parameters) {
-    value[p.name] = p.value;
-    EXPECT_TRUE(p.uncertainty.determined) << p.name;
+    const std::string name = name_of(file.job, p.id);
+    value[name] = p.value;
+    EXPECT_TRUE(p.uncertainty.determined) << name;
   }
   ASSERT_EQ(value.size(), 4u);
   EXPECT_NEAR(value.at("M"), 95.1089, 0.005 * 95.1089);

@@ -9,6 +9,7 @@
 
 #include "fit/run.h"
 #include "io/config/job_file.h"
+#include "report/text/names.h"
 
 namespace axisfit {
 namespace {
@@ -28,9 +29,10 @@ void expect_truth(const RunResult& run_result, const Truth& truth) {
   EXPECT_TRUE(run_result.diagnosis->explained);
   ASSERT_EQ(fit.parameters.size(), truth.size());
   for (const ParameterResult& p : fit.parameters) {
-    ASSERT_TRUE(truth.contains(p.name)) << p.name;
-    EXPECT_TRUE(p.uncertainty.determined) << p.name;
-    EXPECT_NEAR(p.value, truth.at(p.name), 3.0 * p.uncertainty.standard_error) << p.name;
+    const std::string name = name_of(run_result.job(), p.id);
+    ASSERT_TRUE(truth.contains(name)) << name;
+    EXPECT_TRUE(p.uncertainty.determined) << name;
+    EXPECT_NEAR(p.value, truth.at(name), 3.0 * p.uncertainty.standard_error) << name;
   }
 }
 
@@ -84,7 +86,8 @@ TEST(ExamplesTest, ARecordedTemperatureIsNamed) {
   EXPECT_EQ(result.selection->models.size(), 2u);
   EXPECT_TRUE(result.diagnosis->explained);
   std::map<std::string, double> found;
-  for (const ParameterResult& p : result.fit().parameters) found[p.name] = p.value;
+  for (const ParameterResult& p : result.fit().parameters)
+    found[name_of(result.job(), p.id)] = p.value;
   ASSERT_TRUE(found.contains("channel_friction.temperature"));
   // The law is an exponential, and there is a little drag besides: its tangent, within model error.
   EXPECT_NEAR(found["channel_friction.temperature"], -0.0793, 0.003);

@@ -12,6 +12,7 @@
 #include "fit/solve/solve.h"
 #include "sim/rig.h"
 #include "tests/base/noise.h"
+#include "tests/fit/parameter_ids.h"
 #include "tests/sim/axes.h"
 
 namespace axisfit {
@@ -114,7 +115,7 @@ inline Job two_recordings(const Model<double>& truth, const Model<double>& decla
   job.recordings[1].role = Role::validate;
   Model<double> values = declared;
   for (const char* name : free)
-    job.free.push_back(free_parameter(name, *members(values)[find_quantity(name)->index]));
+    job.free.push_back(free_parameter(name, *members(values)[quantity_index(name)]));
   return job;
 }
 
@@ -126,7 +127,7 @@ inline FitResult result_at_start(const Job& job) {
   std::vector<double> values;
   for (std::size_t i = 0; i < job.free.size(); ++i) {
     values.push_back(job.free[i].initial);
-    result.parameters.push_back({space.name(i), job.free[i].initial, {}});
+    result.parameters.push_back({job.free[i].id(), job.free[i].initial, {}});
   }
   const Eigen::VectorXd u = space.internal(values);
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {

@@ -12,16 +12,16 @@ namespace {
 TEST(Run, TellsOfEveryModelWhatRestsOnGuesses) {
   Model<double> truth = slide();
   truth.structure.effects.set(*effect_named("coulomb_friction"));
-  *members(truth)[find_quantity("coulomb_friction.F_c")->index] = 5.0;
+  *members(truth)[quantity_index("coulomb_friction.F_c")] = 5.0;
   Job job = two_recordings(truth, slide(), {"M", "B_a"});
-  job.guessed = {find_quantity("K_f")->index};
+  job.guessed = {quantity_index("K_f")};
   const RunResult result = run(job, {.select_effects = true});
   ASSERT_TRUE(result.selection);
   ASSERT_EQ(result.selection->models.size(), 2u);
   const auto expect_known = [](const FitResult& fit) {
     for (const ParameterResult& p : fit.parameters) {
-      ASSERT_EQ(p.rests_on.size(), 1u) << p.name;
-      EXPECT_EQ(p.rests_on[0].name, "K_f");
+      ASSERT_EQ(p.rests_on.size(), 1u) << name_of(p.id);
+      EXPECT_EQ(p.rests_on[0].id, id_of("K_f"));
       EXPECT_NEAR(p.rests_on[0].elasticity, 1.0, 1e-6);
     }
   };
@@ -34,8 +34,8 @@ TEST(Run, GivesTheEffectsOfTheModelTheirLastEstimates) {
   Model<double> truth = slide();
   truth.structure.effects.set(*effect_named("coulomb_friction"));
   truth.structure.effects.set(*effect_named("stroke_spring"));
-  *members(truth)[find_quantity("coulomb_friction.F_c")->index] = 5.0;
-  *members(truth)[find_quantity("stroke_spring.k_s")->index] = 30.0;
+  *members(truth)[quantity_index("coulomb_friction.F_c")] = 5.0;
+  *members(truth)[quantity_index("stroke_spring.k_s")] = 30.0;
   const RunResult result =
       run(two_recordings(truth, slide(), {"M", "B_a"}), {.select_effects = true});
   ASSERT_TRUE(result.selection);
@@ -45,12 +45,26 @@ TEST(Run, GivesTheEffectsOfTheModelTheirLastEstimates) {
     if (!trial.in_model) continue;
     for (const ParameterResult& own : trial.parameters) {
       const auto& last = result.fit().parameters;
-      const auto found = std::ranges::find(last, own.name, &ParameterResult::name);
-      ASSERT_NE(found, last.end()) << own.name;
-      EXPECT_EQ(own.value, found->value) << own.name;
-      EXPECT_EQ(own.uncertainty.standard_error, found->uncertainty.standard_error) << own.name;
+      const auto found = std::ranges::find(last, own.id, &ParameterResult::id);
+      ASSERT_NE(found, last.end()) << name_of(own.id);
+      EXPECT_EQ(own.value, found->value) << name_of(own.id);
+      EXPECT_EQ(own.uncertainty.standard_error, found->uncertainty.standard_error)
+          << name_of(own.id);
     }
   }
+}
+
+TEST(Run, ProfilesWhatIsFree) {
+  const Job job = two_recordings(slide(), slide(), {"M", "B_a"});
+  EXPECT_THROW(run(job, {.profiles = {id_of("F_s")}}), std::invalid_argument);
+  const auto profiled = [&](const RunOptions& options) {
+    std::vector<std::size_t> places;
+    for (const Profile& p : run(job, options).profiles) places.push_back(p.parameter);
+    return places;
+  };
+  EXPECT_EQ(profiled({.profiles = {id_of("B_a")}}), (std::vector<std::size_t>{1}));
+  EXPECT_EQ(profiled({.profiles = {id_of("B_a")}, .profile_all = true}),
+            (std::vector<std::size_t>{1, 0}));
 }
 
 TEST(Run, TellsNothingOfTheParametersOfAWrongModel) {
@@ -58,7 +72,7 @@ TEST(Run, TellsNothingOfTheParametersOfAWrongModel) {
   HiddenEffect spring = hidden_effect_named("stroke_spring");
   spring.strengths[0].second = 1000.0;
   Job job = two_recordings(spring.truth(), slide(), {"M", "B_a"});
-  job.guessed = {find_quantity("K_f")->index};
+  job.guessed = {quantity_index("K_f")};
   const RunResult result = run(job);
   ASSERT_EQ(result.grade.grade, Grade::model_wrong);
   for (const ParameterResult& p : result.first.parameters) EXPECT_TRUE(p.rests_on.empty());
@@ -69,7 +83,7 @@ TEST(Run, TellsNothingOfTheParametersOfAWrongModel) {
 Job with_a_short_recording_to_fit() {
   Model<double> declared = slide();
   const auto put = [](Model<double>& model, const char* name, double value) {
-    const QuantityEntry& entry = *find_quantity(name);
+    const QuantityEntry& entry = quantity_list()[quantity_index(name)];
     model.structure.effects.set(*effect_named(entry.group));
     *members(model)[entry.index] = value;
   };

@@ -134,7 +134,7 @@ TEST_F(InitJobTest, TheUsersGainIsAllThatABentScrewNeeds) {
   std::string axis = folder_.read("axis.yaml");
   const std::string guessed = "K_f: 1 N/A";
   ASSERT_NE(axis.find(guessed), std::string::npos) << axis;
-  EXPECT_EQ(read().job.guessed, std::vector{find_quantity("K_f")->index});
+  EXPECT_EQ(read().job.guessed, std::vector{quantity_index("K_f")});
   axis.replace(axis.find(guessed), guessed.size(), "K_f: 113.0973 N/A");
   axis.erase(axis.find("guessed: [K_f]"), axis.find("parameters:") - axis.find("guessed: [K_f]"));
   folder_.write("axis.yaml", axis);
@@ -328,8 +328,7 @@ TEST_F(InitJobTest, AServoWithAPendulumIsReadFromItsFileAlone) {
   EXPECT_EQ(start.structure.joint, Joint::revolute);
   // m l^2 of the pendulum and the published armature; its weight at its lever.
   EXPECT_NEAR(start.axis.M, 0.0049 + 0.0018142, 0.0007);
-  EXPECT_NEAR(*members(start)[find_quantity("pendulum_gravity.G_s")->index], 0.49 * 9.81 * 0.1,
-              0.05);
+  EXPECT_NEAR(*members(start)[quantity_index("pendulum_gravity.G_s")], 0.49 * 9.81 * 0.1, 0.05);
 }
 
 }  // namespace

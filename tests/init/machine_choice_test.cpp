@@ -80,9 +80,9 @@ TEST_F(MachineChoiceTest, AGapIsSeen) {
   EXPECT_LT(3.0 * *choice.tried.front().error, tried(choice, "mass").error.value_or(1e9));
   // The example's values are said to be guesses.
   const JobFile file = read_job_file(folder_.path("job.yaml"));
-  EXPECT_EQ(std::ranges::count(file.job.guessed, find_quantity("K_f")->index), 1);
-  EXPECT_EQ(std::ranges::count(file.job.guessed, find_quantity("J_m")->index), 1);
-  EXPECT_EQ(std::ranges::count(file.job.guessed, find_quantity("M")->index), 0);
+  EXPECT_EQ(std::ranges::count(file.job.guessed, quantity_index("K_f")), 1);
+  EXPECT_EQ(std::ranges::count(file.job.guessed, quantity_index("J_m")), 1);
+  EXPECT_EQ(std::ranges::count(file.job.guessed, quantity_index("M")), 0);
 }
 
 // All that tells it is that the position follows a goal.
@@ -109,7 +109,7 @@ TEST_F(MachineChoiceTest, AServoIsSeenWithoutUnits) {
   // Its gain and the weight of its load are those of an example.
   const std::vector<std::size_t> guessed = read_job_file(folder_.path("job.yaml")).job.guessed;
   for (const char* name : {"controller.gain", "pendulum_gravity.G_s"})
-    EXPECT_EQ(std::ranges::count(guessed, find_quantity(name)->index), 1) << name;
+    EXPECT_EQ(std::ranges::count(guessed, quantity_index(name)), 1) << name;
 }
 
 TEST_F(MachineChoiceTest, ColumnsSayWhatIsTried) {

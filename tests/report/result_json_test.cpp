@@ -104,7 +104,8 @@ TEST(ResultTest, JsonSaysWhatTheFitFound) {
   const Json& json = fit.json;
   EXPECT_EQ(json.at("status"), "converged");
   EXPECT_EQ(json.at("usable"), true);
-  EXPECT_EQ(json.at("verdict"), grade_text(fit.run_result.grade, fit.run_result.first));
+  EXPECT_EQ(json.at("verdict"),
+            grade_text(fit.run_result.job(), fit.run_result.grade, fit.run_result.first));
   EXPECT_EQ(json.at("axis"), "x axis of the Automatix AID 600");
   EXPECT_EQ(json.at("axisfit"), version());
   EXPECT_EQ(json.at("seed"), 5);
@@ -238,8 +239,8 @@ TEST(ResultTest, ARecordingThatCannotBeSimulatedHasNoErrors) {
   const std::string text = report_text(run_result);
   EXPECT_NE(text.find(" - "), std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
-  EXPECT_TRUE(text.ends_with(
-      std::string("\n").append(paragraph(grade_text(run_result.grade, run_result.first)))));
+  EXPECT_TRUE(text.ends_with(std::string("\n").append(
+      paragraph(grade_text(run_result.job(), run_result.grade, run_result.first)))));
 }
 
 TEST(ResultTest, AnExplainedResidualIsSaidToBe) {
@@ -395,8 +396,11 @@ TEST(ResultTest, ASecondOpinionIsToldWhereItContradicts) {
 TEST(ResultTest, WhatRestsOnAGuessIsSaid) {
   Found found(rubbing_job());
   EXPECT_FALSE(found.json.at("parameters")[0].contains("rests_on"));
-  found.run_result.first.parameters[0].rests_on = {{"K_f", 1.0}, {"F_s", -0.25}};
-  found.run_result.first.parameters[1].rests_on = {{"K_f", -1.0}, {"F_s", 0.3}, {"T_s", -0.4}};
+  found.run_result.first.parameters[0].rests_on = {{{quantity_index("K_f")}, 1.0},
+                                                   {{quantity_index("F_s")}, -0.25}};
+  found.run_result.first.parameters[1].rests_on = {{{quantity_index("K_f")}, -1.0},
+                                                   {{quantity_index("F_s")}, 0.3},
+                                                   {{quantity_index("T_d")}, -0.4}};
   EXPECT_EQ(result_json(found.run_result).at("parameters")[0].at("rests_on"),
             Json::parse(R"([{"name": "K_f", "elasticity": 1.0},
                             {"name": "F_s", "elasticity": -0.25}])"));
@@ -406,7 +410,7 @@ TEST(ResultTest, WhatRestsOnAGuessIsSaid) {
               "M: known only as a ratio to K_f, which is a guess; rests on a guess: 1 % more of "
               "F_s "
               "makes -0.25 % here. B_a: known only as a product with K_f, which is a guess; rests "
-              "on guesses: 1 % more of F_s makes +0.3 % here, of T_s -0.4 %."),
+              "on guesses: 1 % more of F_s makes +0.3 % here, of T_d -0.4 %."),
       std::string::npos);
   EXPECT_NE(report_page(found.run_result, {})
                 .find("</span> <small>known only as a ratio to K_f, which is a guess; rests on a "
@@ -584,7 +588,7 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
   ASSERT_TRUE(again.has_value());
   Model<double> model = again->model;
   EXPECT_EQ(model.structure.effects, fitted.model.structure.effects);
-  EXPECT_EQ(*members(model)[find_quantity("coulomb_friction.F_c")->index],
+  EXPECT_EQ(*members(model)[quantity_index("coulomb_friction.F_c")],
             json.at("parameters")[2].at("value").get<double>());
 }
 

@@ -12,6 +12,7 @@
 #include "io/config/next_job.h"
 #include "report/html/report_page.h"
 #include "report/result_json.h"
+#include "report/text/names.h"
 #include "report/text/report_text.h"
 #include "tests/apps/files.h"
 #include "tests/apps/fit_job.h"
@@ -88,7 +89,9 @@ TEST_F(RevoluteAxis, IsFittedAndToldInItsOwnWords) {
   ASSERT_TRUE(found.selection);
   EXPECT_EQ(found.selection->verdict.accepted, std::vector<std::string>{"coulomb_friction"});
   const auto expect_near = [&](const std::string& name, double truth) {
-    const auto at = std::ranges::find(found.fit().parameters, name, &ParameterResult::name);
+    const auto at = std::ranges::find(found.fit().parameters, name, [&](const ParameterResult& p) {
+      return name_of(found.job(), p.id);
+    });
     ASSERT_NE(at, found.fit().parameters.end()) << name;
     EXPECT_NEAR(at->value, truth, 4.0 * at->uncertainty.standard_error) << name;
     EXPECT_LT(at->uncertainty.standard_error, 0.05 * truth) << name;

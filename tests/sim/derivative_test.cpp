@@ -76,7 +76,7 @@ TEST(Derivatives, AreWrongWithoutThoseOfTheEvents) {
   const Experiment experiment = up_and_back();
   std::vector<QuantityEntry> entries;
   for (const char* name : {"V_L", "B_a", "b_g", "k_g", "T_p"})
-    entries.push_back(*find_quantity(name));
+    entries.push_back(quantity_list()[quantity_index(name)]);
   const IntegratorOptions without{.event_derivatives = false};
   double largest[2] = {0.0, 0.0};
   compare(experiment, entries,

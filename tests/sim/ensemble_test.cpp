@@ -20,15 +20,13 @@ double deviation(const std::vector<double>& values, double about) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-std::size_t place_of(const char* name) { return find_quantity(name)->index; }
-
 TEST(Ensemble, DrawsParametersWithTheirErrorsAndCorrelation) {
   Model<double> model = paper_axis();
   model.axis.M = 20.0;
   model.axis.B_a = 50.0;
   AxisUncertainty uncertainty;
-  uncertainty.quantities = {{place_of("M"), true, 0.03, 0.0, 1.0},
-                            {place_of("B_a"), false, 2.0, 0.0, 1.0}};
+  uncertainty.quantities = {{quantity_index("M"), true, 0.03, 0.0, 1.0},
+                            {quantity_index("B_a"), false, 2.0, 0.0, 1.0}};
   uncertainty.correlation = {1.0, -0.8, -0.8, 1.0};
   const AxisEnsemble ensemble(uncertainty, model.structure, 7);
   std::vector<double> masses, frictions;
@@ -53,7 +51,7 @@ TEST(Ensemble, ScatterOfFewRecordingsHasHeavyTails) {
   model.axis.B_a = 1000.0;
   for (const auto& [freedom, quantile] : {std::pair{2.0, 4.303}, {9.0, 2.262}}) {
     AxisUncertainty uncertainty;
-    uncertainty.quantities = {{place_of("B_a"), false, 0.0, 1.0, freedom}};
+    uncertainty.quantities = {{quantity_index("B_a"), false, 0.0, 1.0, freedom}};
     uncertainty.correlation = {1.0};
     const AxisEnsemble ensemble(uncertainty, model.structure, 3);
     int beyond = 0;
@@ -69,7 +67,7 @@ TEST(Ensemble, StaysWithinTheRangeOfAQuantity) {
   Model<double> model = paper_axis();
   model.axis.B_a = 1.0;
   AxisUncertainty uncertainty;
-  uncertainty.quantities = {{place_of("B_a"), false, 5.0, 0.0, 1.0}};
+  uncertainty.quantities = {{quantity_index("B_a"), false, 5.0, 0.0, 1.0}};
   uncertainty.correlation = {1.0};
   const AxisEnsemble ensemble(uncertainty, model.structure, 1);
   for (std::size_t k = 0; k < 50; ++k) EXPECT_GE(ensemble.axis(model, k).axis.B_a, 0.0);
@@ -100,7 +98,7 @@ TEST(Ensemble, TheMissingForceIsItsProcess) {
   ASSERT_NE(drawn.structure.channels, nullptr);
   EXPECT_EQ(drawn.structure.channels->size(), 1u);
   Model<double> copy = drawn;
-  EXPECT_EQ(*members(copy)[place_of("channel_force.k_1")], 1.0);
+  EXPECT_EQ(*members(copy)[quantity_index("channel_force.k_1")], 1.0);
 }
 
 TEST(Ensemble, NeedsAChannelForTheMissingForce) {

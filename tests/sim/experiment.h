@@ -65,7 +65,7 @@ inline std::vector<QuantityEntry> quantities_in_play(const Model<double>& model)
   for (const QuantityEntry& entry : quantity_list()) {
     if (!is_used(entry, model.structure)) continue;
     if (model.axis.F_s == 0.0 && (entry.name == "F_s" || entry.name == "w")) continue;
-    if (const auto signal = signal_by_name(entry.group)) {
+    if (const auto signal = signal_by_name(entry.group, kSourceVocabulary)) {
       if (std::ranges::find(kRecorded, *signal) == kRecorded.end()) continue;
       if (entry.quantity.symbol == "lag" || entry.quantity.symbol == "delay" ||
           entry.quantity.symbol == "drift")
@@ -147,7 +147,7 @@ inline Difference difference(const Experiment& experiment, std::size_t quantity,
 inline double natural_size(const QuantityEntry& entry, double value) {
   if (entry.group == "initial") {
     constexpr std::array<double, kPaperStates> kSizes{0.1, 0.1, 1e-3, 0.01, 100.0, 1e4, 1.0};
-    return kSizes[entry.index - find_quantity("initial.y0")->index];
+    return kSizes[entry.index - quantity_index("initial.y0")];
   }
   if (entry.name == "T_d") return 0.01;
   // Of filters within a period.

@@ -165,7 +165,7 @@ Experiment late_axis() {
 
 std::vector<QuantityEntry> entries(std::initializer_list<const char*> names) {
   std::vector<QuantityEntry> found;
-  for (const char* name : names) found.push_back(*find_quantity(name));
+  for (const char* name : names) found.push_back(quantity_list()[quantity_index(name)]);
   return found;
 }
 

@@ -23,7 +23,7 @@ TEST(RevoluteJoint, HasItsOwnWordsAndUnits) {
 
 TEST(RevoluteJoint, NamesQuantitiesByTheirKind) {
   const auto called = [](const char* name) -> const QuantityEntry& {
-    return quantity_list(Joint::revolute)[find_quantity(name)->index];
+    return quantity_list(Joint::revolute)[quantity_index(name)];
   };
   EXPECT_EQ(called("M").name, "J");
   EXPECT_EQ(called("M").quantity.unit, "kg m^2");

@@ -79,7 +79,7 @@ TEST(ExchangedRoles, NeedParametersOfAllRecordings) {
   job = two_roles();
   job.recordings[1].overrides = {{job.free[0].quantity, 12.0}};
   EXPECT_FALSE(with_exchanged_roles(job)) << "its mass is given";
-  job.recordings[1].overrides = {{find_quantity("B_a")->index, 12.0}};
+  job.recordings[1].overrides = {{quantity_index("B_a"), 12.0}};
   EXPECT_TRUE(with_exchanged_roles(job));
 }
 

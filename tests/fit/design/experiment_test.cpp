@@ -32,7 +32,8 @@ TEST(Forecast, KnowsWhatIsNotSeenAndWhatThatNeeds) {
   EXPECT_TRUE(expected.uncertainty.parameters[1].determined);
   EXPECT_EQ(expected.identifiability.without_influence, std::vector<std::size_t>{0});
   EXPECT_TRUE(expected.sensitivity.row(0).isZero());
-  EXPECT_NE(excitation_needed(*find_quantity("V_L"), Joint::prismatic).find("larger step"),
+  EXPECT_NE(excitation_needed(quantity_list()[quantity_index("V_L")], Joint::prismatic)
+                .find("larger step"),
             std::string_view::npos);
 }
 

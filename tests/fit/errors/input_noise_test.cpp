@@ -83,9 +83,10 @@ TEST_F(InputNoiseTest, IsInTheStandardErrors) {
       const FitResult fit = estimate(job(sigma, seed));
       for (const ParameterResult& p : fit.parameters) {
         ASSERT_TRUE(p.uncertainty.determined);
-        const double truth = p.name == "M" ? 20.0 : 30.0;
-        squares[p.name] += std::pow((p.value - truth) / p.uncertainty.standard_error, 2) / kFits;
-        held[p.name] += p.uncertainty.lower <= truth && truth <= p.uncertainty.upper;
+        const std::string& name = name_of(p.id);
+        const double truth = name == "M" ? 20.0 : 30.0;
+        squares[name] += std::pow((p.value - truth) / p.uncertainty.standard_error, 2) / kFits;
+        held[name] += p.uncertainty.lower <= truth && truth <= p.uncertainty.upper;
       }
     }
     for (const auto& [name, square] : squares) {

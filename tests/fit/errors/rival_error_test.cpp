@@ -8,7 +8,7 @@ namespace axisfit {
 namespace {
 
 ParameterResult estimate_of(const char* name, double value, double error) {
-  ParameterResult p{name, value, {}};
+  ParameterResult p{id_of(name), value, {}};
   p.budget.sampling.standard_error = error;
   p.uncertainty.determined = true;
   return p;
@@ -36,8 +36,11 @@ class RivalErrorsTest : public ::testing::Test {
     };
     for (const auto& [rival, friction] :
          {std::pair("velocity.gain", 10.5), std::pair("position.gain", 9.6)})
-      rivals_.push_back(
-          {"added_mass", rival, with(10.1, 5.0, 1.0), with(friction, 5.2, 0.0), {"added_mass.dM"}});
+      rivals_.push_back({"added_mass",
+                         rival,
+                         with(10.1, 5.0, 1.0),
+                         with(friction, 5.2, 0.0),
+                         {id_of("added_mass.dM")}});
   }
 
   std::vector<std::optional<RivalShift>> found() const {

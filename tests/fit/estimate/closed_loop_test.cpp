@@ -1,6 +1,7 @@
 // Fits to recordings that have only the reference and the encoder of a servo drive.
 #include <gtest/gtest.h>
 
+#include "tests/fit/parameter_ids.h"
 #include "tests/fit/servo.h"
 
 namespace axisfit {
@@ -12,7 +13,8 @@ TEST(ClosedLoop, GivesTheMassFromReferenceAndEncoderWhereTheGainsAreKnown) {
   ASSERT_TRUE(fit.usable) << fit.message;
   const double truth[]{servo.mass, servo.viscous, servo.coulomb};
   for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_NEAR(fit.parameters[i].value, truth[i], 0.01 * truth[i]) << fit.parameters[i].name;
+    EXPECT_NEAR(fit.parameters[i].value, truth[i], 0.01 * truth[i])
+        << name_of(fit.parameters[i].id);
 }
 
 // The force of an ampere and all that it moves grow together; a gain of the controller that is free

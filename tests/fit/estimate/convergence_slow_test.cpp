@@ -6,6 +6,7 @@
 
 #include "fit/estimate/estimate.h"
 #include "io/config/job_file.h"
+#include "tests/fit/parameter_ids.h"
 
 namespace axisfit {
 namespace {
@@ -31,7 +32,7 @@ TEST(Convergence, PaperJobFromStartsWithinAFactorOfFive) {
     for (std::size_t i = 0; i < truth.size(); ++i)
       EXPECT_LT(std::abs(result.parameters[i].value - truth[i]),
                 4.0 * result.parameters[i].uncertainty.standard_error)
-          << result.parameters[i].name;
+          << name_of(result.parameters[i].id);
   }
   EXPECT_GE(reached, 38);
 }

@@ -124,8 +124,8 @@ TEST(Estimate, SharesParametersAndKeepsOthersPerRecording) {
   job.free[2].recording = 1;
   const FitResult result = estimate(job);
   ASSERT_TRUE(result.usable) << result.message;
-  EXPECT_EQ(result.parameters[1].name, "M@step");
-  EXPECT_EQ(result.parameters[2].name, "M@loaded");
+  EXPECT_EQ(result.parameters[1].id, (ParameterId{quantity_index("M"), 0}));
+  EXPECT_EQ(result.parameters[2].id, (ParameterId{quantity_index("M"), 1}));
   EXPECT_NEAR(result.parameters[1].value, 146.0,
               4.0 * result.parameters[1].uncertainty.standard_error);
   EXPECT_NEAR(result.parameters[2].value, 161.0,
@@ -149,7 +149,7 @@ TEST(Estimate, JudgesValidationRecordingsThatItDidNotFit) {
 
 TEST(Estimate, RefusesAModelThatCannotBeSimulated) {
   Job job = example_job();
-  job.recordings[0].overrides.emplace_back(find_quantity("J_m")->index, std::nan(""));
+  job.recordings[0].overrides.emplace_back(quantity_index("J_m"), std::nan(""));
   const FitResult result = estimate(job);
   EXPECT_FALSE(result.usable);
   EXPECT_EQ(result.status, Status::failed);

@@ -10,8 +10,6 @@
 namespace axisfit {
 namespace {
 
-std::size_t quantity(const char* name) { return find_quantity(name)->index; }
-
 /// A slide with Coulomb friction and an offset, as somebody declares it who is off by `factor`.
 struct Slide {
   explicit Slide(double factor = 1.0) {
@@ -22,11 +20,11 @@ struct Slide {
     set(truth, "constant_force.F_0", -7.0);
     declared = truth;
     for (const char* name : {"M", "B_a", "coulomb_friction.F_c"})
-      *members(declared)[quantity(name)] *= factor;
+      *members(declared)[quantity_index(name)] *= factor;
     set(declared, "constant_force.F_0", 0.0);
   }
   static void set(Model<double>& model, const char* name, double value) {
-    *members(model)[quantity(name)] = value;
+    *members(model)[quantity_index(name)] = value;
   }
   double true_value(std::size_t of) { return *members(truth)[of]; }
   Job job(std::uint64_t seed, const std::vector<Signal>& signals = {Signal::velocity}) const {
@@ -52,11 +50,10 @@ TEST(InverseDynamics, EstimatesWithinItsErrors) {
     EXPECT_LT(found->residual, 0.1 * found->drive_rms);
     ASSERT_EQ(found->parameters.size(), 4u);
     for (const InverseEstimate& e : found->parameters) {
-      const double z =
-          (e.value - slide.true_value(quantity(e.name.c_str()))) / e.uncertainty.standard_error;
-      EXPECT_LT(std::abs(e.value - slide.true_value(quantity(e.name.c_str()))),
-                0.1 * std::abs(slide.true_value(quantity(e.name.c_str()))))
-          << e.name;
+      const double z = (e.value - slide.true_value(e.id.quantity)) / e.uncertainty.standard_error;
+      EXPECT_LT(std::abs(e.value - slide.true_value(e.id.quantity)),
+                0.1 * std::abs(slide.true_value(e.id.quantity)))
+          << name_of(e.id);
       squares += z * z;
       ++count;
       outside += std::abs(z) > 4.0;
@@ -76,7 +73,7 @@ TEST(InverseDynamics, DoesNotDependOnTheStart) {
     for (std::size_t i = 0; i < near->parameters.size(); ++i)
       EXPECT_NEAR(far->parameters[i].value, near->parameters[i].value,
                   0.01 * near->parameters[i].uncertainty.standard_error)
-          << near->parameters[i].name;
+          << name_of(near->parameters[i].id);
   }
 }
 
@@ -88,7 +85,7 @@ TEST(InverseDynamics, TakesTheRecordedCurrentOfAnElectricDrive) {
   ASSERT_TRUE(found);
   // The balance of forces tells nothing of the preamplifier.
   ASSERT_EQ(found->parameters.size(), 2u);
-  EXPECT_EQ(found->parameters[0].name, "M");
+  EXPECT_EQ(found->parameters[0].id, id_of("M"));
   EXPECT_NEAR(found->parameters[0].value, motor_axis().axis.M, 0.03 * motor_axis().axis.M);
   for (Recording& r : job.recordings) r.measurements.pop_back();
   EXPECT_FALSE(inverse_dynamics(job));
@@ -100,7 +97,7 @@ TEST(InverseDynamics, KeepsTheGainOfTheDriveWhereTheMassIsFree) {
   const auto found = inverse_dynamics(job);
   ASSERT_TRUE(found);
   ASSERT_EQ(found->parameters.size(), 4u);
-  EXPECT_EQ(found->parameters[0].name, "M");
+  EXPECT_EQ(found->parameters[0].id, id_of("M"));
   EXPECT_EQ(found->parameters[0].parameter, 1u);
   // Free, both would shrink until one is at its bound: that balances best.
   EXPECT_NEAR(found->parameters[0].value, slide().axis.M, 0.1 * slide().axis.M);

@@ -43,7 +43,7 @@ TEST(Profile, OfALinearModelAgreesWithItsStandardErrors) {
   const FitResult fit = estimate(job);
   ASSERT_TRUE(fit.usable) << fit.message;
   for (const Profile& profile : all_profiles(job, fit)) {
-    SCOPED_TRACE(fit.parameters[profile.parameter].name);
+    SCOPED_TRACE(name_of(fit.parameters[profile.parameter].id));
     const ParameterResult& p = fit.parameters[profile.parameter];
     const ParameterUncertainty& u = p.uncertainty;
     EXPECT_FALSE(profile.lower.open);

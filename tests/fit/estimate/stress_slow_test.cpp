@@ -5,6 +5,7 @@
 
 #include "fit/estimate/estimate.h"
 #include "io/config/job_file.h"
+#include "tests/fit/parameter_ids.h"
 #include "tests/sim/stress.h"
 
 namespace axisfit {
@@ -41,7 +42,8 @@ TEST(StressSlowTest, AFitFromAnywhereEndsWithAVerdict) {
     EXPECT_EQ(fit.usable, fit.verdict.kind == FitVerdict::Kind::usable);
     if (!fit.usable) continue;
     EXPECT_TRUE(std::isfinite(fit.reduced_chi_square));
-    for (const ParameterResult& p : fit.parameters) EXPECT_TRUE(std::isfinite(p.value)) << p.name;
+    for (const ParameterResult& p : fit.parameters)
+      EXPECT_TRUE(std::isfinite(p.value)) << name_of(p.id);
   }
 }
 

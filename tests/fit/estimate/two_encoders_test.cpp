@@ -9,6 +9,7 @@
 
 #include "base/random.h"
 #include "fit/estimate/estimate.h"
+#include "tests/fit/parameter_ids.h"
 #include "tests/sim/axes.h"
 
 namespace axisfit {
@@ -88,7 +89,8 @@ TEST(TwoEncoders, TellGapStiffnessAndBothMasses) {
   const double values[]{truth.mass, truth.motor,     truth.viscous, truth.coulomb,
                         truth.gap,  truth.stiffness, truth.damping};
   for (std::size_t i = 0; i < job.free.size(); ++i)
-    EXPECT_NEAR(fit.parameters[i].value, values[i], 0.03 * values[i]) << fit.parameters[i].name;
+    EXPECT_NEAR(fit.parameters[i].value, values[i], 0.03 * values[i])
+        << name_of(fit.parameters[i].id);
   EXPECT_NEAR(fit.parameters[4].value, truth.gap, 0.01 * truth.gap);
 }
 

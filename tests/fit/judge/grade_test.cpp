@@ -36,7 +36,7 @@ class GradeTest : public ::testing::Test {
     }
     job_.recordings[1].role = Role::validate;
     fit_.verdict.kind = FitVerdict::Kind::usable;
-    fit_.parameters = {{"M", 10.0, {.determined = true, .standard_error = 0.1}}};
+    fit_.parameters = {{job_.free[0].id(), 10.0, {.determined = true, .standard_error = 0.1}}};
     diagnosis_.explained = true;
   }
   void set_error(std::size_t recording, double rmse) {
@@ -76,7 +76,7 @@ TEST_F(GradeTest, AResidualBeyondTheNoiseIsUsable) {
   const FitGrade found = grade();
   EXPECT_EQ(found.grade, Grade::usable);
   EXPECT_EQ(found.reason, Reason::residual);
-  EXPECT_EQ(found.recording, "move");
+  EXPECT_EQ(found.recording, 1u);
   EXPECT_EQ(found.percent, 80.0);
 }
 
@@ -84,7 +84,7 @@ TEST_F(GradeTest, AValidationThatIsNotFollowedMakesTheModelWrong) {
   set_error(1, 0.6);
   EXPECT_EQ(grade().grade, Grade::model_wrong);
   EXPECT_EQ(grade().reason, Reason::simulation);
-  EXPECT_EQ(grade().recording, "move");
+  EXPECT_EQ(grade().recording, 1u);
   EXPECT_NEAR(grade().percent, 40.0, 0.1);
   set_error(1, 12.2);  // 610 % of the range
   EXPECT_LT(grade().percent, 0.0);
@@ -108,7 +108,7 @@ TEST_F(GradeTest, AMissingForceOfHalfTheDrivesMakesTheModelWrong) {
   diagnosis_.forces[1].rms = 6.0;
   EXPECT_EQ(grade().grade, Grade::model_wrong);
   EXPECT_EQ(grade().reason, Reason::force);
-  EXPECT_EQ(grade().recording, "move");
+  EXPECT_EQ(grade().recording, 1u);
   EXPECT_NEAR(grade().percent, 60.0, 0.1);
   diagnosis_.forces[1].noise = 4.0;  // most of it
   EXPECT_EQ(grade().grade, Grade::explained);
@@ -119,7 +119,7 @@ TEST_F(GradeTest, AFitThatTracksToTheEndMayDrift) {
   fit_.observer_gain = 40.0;
   EXPECT_EQ(grade().grade, Grade::usable);
   EXPECT_EQ(grade().reason, Reason::tracking_only);
-  EXPECT_EQ(grade().recording, "levels");
+  EXPECT_EQ(grade().recording, 0u);
   diagnosis_.forces[0].rms = 2.0;  // but not for want of a force
   EXPECT_EQ(grade().grade, Grade::model_wrong);
 }
@@ -138,9 +138,9 @@ TEST_F(GradeTest, WhatDeterminesNothingSaysSo) {
 }
 
 TEST_F(GradeTest, AConstantThatDoesAsWellMakesTheModelWrong) {
-  fit_.verdict = {.kind = FitVerdict::Kind::signal_not_followed, .recording = "levels"};
+  fit_.verdict = {.kind = FitVerdict::Kind::signal_not_followed, .recording = 1};
   EXPECT_EQ(grade().grade, Grade::model_wrong);
-  EXPECT_EQ(grade().recording, "levels");
+  EXPECT_EQ(grade().recording, 1u);
 }
 
 }  // namespace

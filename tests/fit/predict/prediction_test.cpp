@@ -26,7 +26,7 @@ TEST(Prediction, UncertaintyIsThatOfTheTableAndItsScatter) {
   ASSERT_GT(scatter.deviation, 0.0);
   const ParameterResult& damping = result.fit().parameters[1];
   const UncertainQuantity& q = known.quantities[1];
-  EXPECT_EQ(q.quantity, find_quantity("B_a")->index);
+  EXPECT_EQ(q.quantity, quantity_index("B_a"));
   EXPECT_TRUE(q.logarithmic);
   EXPECT_NEAR(q.error, scatter.within / damping.value, 1e-12);
   EXPECT_NEAR(std::hypot(q.error, q.scatter),

@@ -45,9 +45,9 @@ std::vector<ResidualSeries> pair(std::vector<double> fitted, std::vector<double>
 Candidate candidate(std::size_t strengths = 1, std::size_t shapes = 0) {
   Candidate c;
   c.name = "effect";
-  c.strengths.assign(strengths, find_quantity("coulomb_friction.F_c")->index);
+  c.strengths.assign(strengths, quantity_index("coulomb_friction.F_c"));
   c.neutral.assign(strengths, 0.0);
-  c.shapes.assign(shapes, find_quantity("stribeck_friction.v_st")->index);
+  c.shapes.assign(shapes, quantity_index("stribeck_friction.v_st"));
   return c;
 }
 
@@ -393,11 +393,11 @@ TEST(RefusalTest, OfWhatIsNotDetermined) {
   d.distinct = 1e-12;
   EXPECT_EQ(rejection(d), Rejection{.test = distinct});
   d = determined();
-  d.at_bound = "F_c";
-  EXPECT_EQ(rejection(d), (Rejection{.test = bound, .parameter = "F_c"}));
+  d.at_bound = id_of("coulomb_friction.F_c");
+  EXPECT_EQ(rejection(d), (Rejection{.test = bound, .parameter = d.at_bound}));
   d = determined();
-  d.undetermined = "v_st";
-  EXPECT_EQ(rejection(d), (Rejection{.test = shape, .parameter = "v_st"}));
+  d.undetermined = id_of("stribeck_friction.v_st");
+  EXPECT_EQ(rejection(d), (Rejection{.test = shape, .parameter = d.undetermined}));
 }
 
 TEST(RefusalTest, OfWhatCannotBeSimulated) {
@@ -412,7 +412,7 @@ class DeterminationTest : public testing::Test {
     add_effect<CoulombFriction>(truth).F_c = friction;
     job_ = two_recordings(truth, slide(), free);
     candidate_.name = "coulomb_friction";
-    candidate_.strengths = {find_quantity("coulomb_friction.F_c")->index};
+    candidate_.strengths = {quantity_index("coulomb_friction.F_c")};
     candidate_.neutral = {0.0};
     std::vector<double> values;
     for (const FreeParameter& p : job_.free) values.push_back(p.initial);
@@ -441,8 +441,8 @@ TEST_F(DeterminationTest, IsTheSquareOfValueOverStandardError) {
   EXPECT_NEAR(d.required, 3.62 * 3.62, 1.0);  // three in ten thousand, either side
   EXPECT_GT(d.distinct, 0.01);
   EXPECT_LE(d.distinct, 1.0);
-  EXPECT_EQ(d.at_bound, "");
-  EXPECT_EQ(d.undetermined, "");
+  EXPECT_FALSE(d.at_bound);
+  EXPECT_FALSE(d.undetermined);
 }
 
 TEST_F(DeterminationTest, CorrelatedResidualsCountLess) {
@@ -461,13 +461,13 @@ TEST_F(DeterminationTest, CorrelatedResidualsCountLess) {
 TEST_F(DeterminationTest, OfAWeakEffectIsBelowWhatIsRequired) {
   fit(0.01, {"M", "B_a"});
   const Determination d = determination_now();
-  EXPECT_TRUE(d.wald < d.required || !d.at_bound.empty()) << d.wald;
+  EXPECT_TRUE(d.wald < d.required || d.at_bound) << d.wald;
 }
 
 TEST_F(DeterminationTest, SaysThatAStrengthIsAtItsBound) {
   fit(0.0, {"M", "B_a"});
   result_.parameters.back().uncertainty.at_bound = true;
-  EXPECT_EQ(determination_now().at_bound, "coulomb_friction.F_c");
+  EXPECT_EQ(determination_now().at_bound, id_of("coulomb_friction.F_c"));
 }
 
 // A constant force and an offset of the command are the same for a drive that is a force.
@@ -475,7 +475,7 @@ TEST_F(DeterminationTest, SeesThatAnotherParameterDoesTheSame) {
   Model<double> truth = slide();
   add_effect<CommandOffset>(truth).U_0 = 0.2;
   Job job = two_recordings(truth, truth, {"B_a", "command_offset.U_0"});
-  candidate_.strengths = {find_quantity("constant_force.F_0")->index};
+  candidate_.strengths = {quantity_index("constant_force.F_0")};
   candidate_.neutral = {0.0};
   const std::vector<double> values{30.0, 0.1}, strengths{4.0};
   job_ = with_candidate(job, candidate_, values, strengths, {});
@@ -487,7 +487,7 @@ TEST_F(DeterminationTest, SeesThatAnotherParameterDoesTheSame) {
 TEST_F(DeterminationTest, CountsAGainFromOne) {
   Model<double> truth = slide();
   Job job = two_recordings(truth, truth, {"B_a"});
-  candidate_.strengths = {find_quantity("velocity.gain")->index};
+  candidate_.strengths = {quantity_index("velocity.gain")};
   candidate_.neutral = {1.0};
   const std::vector<double> values{30.0};
   const auto wald = [&](double gain) {

@@ -48,7 +48,7 @@ const Candidate* find(const std::vector<Candidate>& list, std::string_view name)
 bool offers(const std::vector<Candidate>& list, const char* quantity) {
   return std::ranges::any_of(list, [&](const Candidate& c) {
     return !c.is_constant &&
-           std::ranges::find(c.strengths, find_quantity(quantity)->index) != c.strengths.end();
+           std::ranges::find(c.strengths, quantity_index(quantity)) != c.strengths.end();
   });
 }
 
@@ -213,7 +213,7 @@ TEST(Catalogue, OffersNothingThatIsFreeInOneRecording) {
 
 TEST(Catalogue, OffersNothingThatARecordingHasAValueOf) {
   Job job = job_with({Signal::velocity});
-  job.recordings[0].overrides.emplace_back(find_quantity("velocity.bias")->index, 0.1);
+  job.recordings[0].overrides.emplace_back(quantity_index("velocity.bias"), 0.1);
   EXPECT_FALSE(offers(catalogue(job, scales()), "velocity.bias"));
 }
 
@@ -256,9 +256,8 @@ void expect_exponent(double neutral, const Effect<double>& effect, double declar
   const std::string name = std::string(Effect<double>::name) + ".n";
   const auto exponent_in = [&] {
     const auto list = catalogue(job, scales());
-    const auto found = std::ranges::find_if(list, [&](const Candidate& c) {
-      return c.strengths == std::vector{find_quantity(name)->index};
-    });
+    const auto found = std::ranges::find_if(
+        list, [&](const Candidate& c) { return c.strengths == std::vector{quantity_index(name)}; });
     return found == list.end() ? std::optional<Candidate>() : *found;
   };
   EXPECT_FALSE(exponent_in());
@@ -450,7 +449,7 @@ TEST_F(WithCandidate, BringsInNothingElseOfItsEffect) {
   const Candidate& c = *find(candidates_, "directional_friction");
   const std::vector<double> values{200.0, 2.7}, strengths{1.0};
   Job job = with_candidate(job_, c, values, strengths, {});
-  EXPECT_EQ(*members(job.model)[find_quantity("directional_friction.dF_c")->index], 0.0);
+  EXPECT_EQ(*members(job.model)[quantity_index("directional_friction.dF_c")], 0.0);
 }
 
 // But the values of an effect that is there already stay.
@@ -458,12 +457,12 @@ TEST_F(WithCandidate, KeepsTheOtherPartsOfAnEffect) {
   add_effect<PositionFriction>(job_.model).G_c = 7.0;
   const auto list = catalogue(job_, scales());
   const auto viscous = std::ranges::find_if(list, [](const Candidate& c) {
-    return c.strengths == std::vector{find_quantity("position_friction.G_b")->index};
+    return c.strengths == std::vector{quantity_index("position_friction.G_b")};
   });
   ASSERT_NE(viscous, list.end());
   const std::vector<double> values{200.0, 2.7}, strengths{1.0};
   Job job = with_candidate(job_, *viscous, values, strengths, {});
-  EXPECT_EQ(*members(job.model)[find_quantity("position_friction.G_c")->index], 7.0);
+  EXPECT_EQ(*members(job.model)[quantity_index("position_friction.G_c")], 7.0);
 }
 
 TEST_F(WithCandidate, KeepsWithinTheBounds) {

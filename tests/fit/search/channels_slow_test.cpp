@@ -164,7 +164,7 @@ Job job_of(const Machine& machine, std::size_t axis, std::uint64_t seed) {
     job.recordings.push_back(std::move(r));
   }
   for (const char* name : {"M", "B_a", "coulomb_friction.F_c", "constant_force.F_0"}) {
-    const QuantityEntry& entry = *find_quantity(name);
+    const QuantityEntry& entry = quantity_list()[quantity_index(name)];
     job.free.push_back(free_parameter(entry, *members(job.model)[entry.index]));
   }
   return job;
@@ -175,7 +175,9 @@ using Names = std::set<std::string>;
 /// The value of a parameter of the final model, and its standard error.
 const ParameterResult& parameter(const EffectSelection& selection, const std::string& name) {
   const auto& list = selection.result.fit.parameters;
-  const auto found = std::ranges::find(list, name, &ParameterResult::name);
+  const auto found = std::ranges::find(list, name, [&](const ParameterResult& p) {
+    return selection.result.job.entry(p.id.quantity).name;
+  });
   if (found == list.end()) throw std::runtime_error("no parameter " + name);
   return *found;
 }

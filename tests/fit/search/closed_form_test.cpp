@@ -24,7 +24,7 @@ class FoundCurve {
     Model<double> model = found.job.model;
     const auto member = members(model);
     const std::string group(CurveType::name);
-    *member[find_quantity(group + ".to")->index] = 1.0;
+    *member[quantity_index(group + ".to")] = 1.0;
     CurveType one{};
     one.to = 1.0;
     constexpr int kPoints = 300;
@@ -47,16 +47,15 @@ class FoundCurve {
       const std::string name = group + "." + std::string(CurveType::kNames[k]);
       found.job.free.push_back(free_parameter(name, 0.0));
       ParameterResult p;
-      p.name = name;
+      p.id = id_of(name);
       p.value = c[static_cast<Eigen::Index>(k) - 1] + error * normal(random);
       p.uncertainty.determined = true;
       p.uncertainty.standard_error = error;
       found.fit.parameters.push_back(p);
-      found.curve.strengths.push_back(find_quantity(name)->index);
+      found.curve.strengths.push_back(quantity_index(name));
     }
     found.curve.name = group;
-    found.curve.shapes = {find_quantity(group + ".from")->index,
-                          find_quantity(group + ".to")->index};
+    found.curve.shapes = {quantity_index(group + ".from"), quantity_index(group + ".to")};
     const auto n = static_cast<Eigen::Index>(found.job.free.size());
     found.fit.correlation = Eigen::MatrixXd::Identity(n, n);
     found.fit.degrees_of_freedom = 2000.0;

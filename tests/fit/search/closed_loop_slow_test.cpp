@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "fit/run.h"
+#include "tests/fit/parameter_ids.h"
 #include "tests/fit/servo.h"
 
 namespace axisfit {
@@ -17,10 +18,10 @@ TEST(ClosedLoop, NamesAFrictionThatIsMissing) {
   ASSERT_EQ(result.selection->models.size(), 2u);
   EXPECT_TRUE(result.job().model.structure.effects[*effect_named("coulomb_friction")]);
   for (const ParameterResult& p : result.fit().parameters) {
-    if (p.name == "M") {
+    if (p.id == id_of("M")) {
       EXPECT_NEAR(p.value, 23.0, 0.23);
     }
-    if (p.name == "coulomb_friction.F_c") {
+    if (p.id == id_of("coulomb_friction.F_c")) {
       EXPECT_NEAR(p.value, 18.0, 0.18);
     }
   }

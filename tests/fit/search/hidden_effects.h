@@ -32,15 +32,16 @@ struct HiddenEffect {
   void put_into(Model<double>& model) const {
     for (const auto& list : {strengths, shapes}) {
       for (const auto& [quantity, value] : list) {
-        if (const auto effect = effect_named(find_quantity(quantity)->group))
+        if (const auto effect = quantity_list()[quantity_index(quantity)].effect)
           model.structure.effects.set(*effect);
-        *members(model)[find_quantity(quantity)->index] = value;
+        *members(model)[quantity_index(quantity)] = value;
       }
     }
   }
   Job job() const { return two_recordings(truth(), declared(), free); }
   double neutral(std::size_t strength) const {
-    const double default_value = find_quantity(strengths[strength].first)->quantity.default_value;
+    const double default_value =
+        quantity_list()[quantity_index(strengths[strength].first)].quantity.default_value;
     return std::isnan(default_value) ? 0.0 : default_value;
   }
   /// Letters and underscores only.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/model.h"
+#include "tests/fit/parameter_ids.h"
 
 namespace axisfit {
 namespace {
@@ -16,7 +17,7 @@ FitResult fit_of(const std::vector<Estimate>& estimates) {
   FitResult fit;
   for (const auto& [name, value, error] : estimates) {
     ParameterResult p;
-    p.name = name;
+    p.id = id_of(name);
     p.value = value;
     p.uncertainty.standard_error = error;
     fit.parameters.push_back(std::move(p));
@@ -33,8 +34,8 @@ Job job_with(const std::vector<Estimate>& estimates) {
 Candidate candidate(std::vector<std::string_view> strengths,
                     std::vector<std::string_view> shapes = {}) {
   Candidate c;
-  for (const auto name : strengths) c.strengths.push_back(find_quantity(name)->index);
-  for (const auto name : shapes) c.shapes.push_back(find_quantity(name)->index);
+  for (const auto name : strengths) c.strengths.push_back(quantity_index(name));
+  for (const auto name : shapes) c.shapes.push_back(quantity_index(name));
   c.neutral.assign(strengths.size(), 0.0);
   return c;
 }

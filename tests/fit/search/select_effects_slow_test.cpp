@@ -108,7 +108,7 @@ TEST(SelectEffects, FindsTheBacklashOfThePaper) {
   EXPECT_TRUE(selection.explained);
   for (const char* name : {"H", "k_g", "b_g", "V_L", "B_a"}) {
     Model<double> truth = paper_axis();
-    expect_found(selection, name, *members(truth)[find_quantity(name)->index]);
+    expect_found(selection, name, *members(truth)[quantity_index(name)]);
   }
 }
 

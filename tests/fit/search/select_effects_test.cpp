@@ -35,7 +35,7 @@ TEST_P(OneUndeclaredEffect, IsAcceptedAlone) {
     for (const auto& [name, value] : list) expect_found(selection, name, value);
   Model<double> declared = secret.declared();
   for (const char* name : secret.free)
-    expect_found(selection, name, *members(declared)[find_quantity(name)->index]);
+    expect_found(selection, name, *members(declared)[quantity_index(name)]);
 }
 
 INSTANTIATE_TEST_SUITE_P(EverySlot, OneUndeclaredEffect, testing::ValuesIn(hidden_effects(false)),
@@ -76,12 +76,12 @@ TEST_P(SelectEffectsTwin, IsLeftUndecided) {
   for (std::size_t i = 0; i < shifts.size(); ++i)
     for (const char* name : secret.free) {
       const ParameterResult& p = last.fit.parameters[i];
-      if (p.name != name) continue;
+      if (p.id != id_of(name)) continue;
       ErrorBudget budget = p.budget;
       budget.rival = shifts[i];
       const ParameterUncertainty known = combined(budget, p.value, last.job.free[i]);
-      EXPECT_LT(known.lower, *members(declared)[find_quantity(name)->index]) << name;
-      EXPECT_GT(known.upper, *members(declared)[find_quantity(name)->index]) << name;
+      EXPECT_LT(known.lower, *members(declared)[quantity_index(name)]) << name;
+      EXPECT_GT(known.upper, *members(declared)[quantity_index(name)]) << name;
     }
 }
 
@@ -224,7 +224,7 @@ TEST(SelectEffects, SaysNothingOfEffectsWhileADeclaredParameterIsAtItsBound) {
   const EffectSelection selection = close(job);
   EXPECT_FALSE(selection.explained);
   EXPECT_EQ(selection.verdict.kind, SelectionVerdict::Kind::misfit);
-  EXPECT_EQ(selection.verdict.at_bound, "M");
+  EXPECT_EQ(selection.verdict.at_bound, id_of("M"));
   EXPECT_EQ(accepted(selection), Names{});
   EXPECT_EQ(selection.models.size(), 1u);
   EXPECT_FALSE(selection.effects.empty());

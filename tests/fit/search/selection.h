@@ -54,7 +54,7 @@ inline EffectSelection close(const Job& job) {
 /// Expects a parameter of the result within three standard errors of the truth, and these small.
 inline void expect_found(const EffectSelection& selection, const std::string& name, double truth) {
   const auto& list = selection.result.fit.parameters;
-  const auto found = std::ranges::find(list, name, &ParameterResult::name);
+  const auto found = std::ranges::find(list, id_of(name), &ParameterResult::id);
   ASSERT_NE(found, list.end()) << name;
   const double error = found->uncertainty.standard_error;
   std::cout << "  " << name << " = " << found->value << " +- " << error << "\n";

@@ -54,7 +54,7 @@ ParameterSpace two_parameters() {
   p.lower = -10.0;
   p.upper = 10.0;
   static const std::vector<FreeParameter> list{p, p};
-  return ParameterSpace(list, {"a", "b"});
+  return ParameterSpace(list);
 }
 
 Costs costs_of(std::vector<Asked>& asked) {
@@ -105,7 +105,7 @@ TEST(LeastSquares, APriorIsAMeasurementOfTheValue) {
   p.upper = 10.0;
   p.prior = Prior{0.5, 0.02};
   const std::vector<FreeParameter> list{p};
-  const ParameterSpace space(list, {"a"});
+  const ParameterSpace space(list);
   const Eigen::VectorXd start = Eigen::VectorXd::Constant(1, std::log(0.6));
   const Linearization away = linearize(space, {}, start);
   EXPECT_NEAR(away.residuals[0], 5.0, 1e-12);

@@ -81,7 +81,7 @@ TEST(RecordingCost, JacobianIsThatOfDifferencesForAnyNumberOfParameters) {
   job.free.clear();
   const std::vector<double*> member = members(job.model);
   for (const char* name : names) {
-    const double value = *member[find_quantity(name)->index];
+    const double value = *member[quantity_index(name)];
     FreeParameter p = free_parameter(name, value == 0.0 ? 0.01 : value);
     if (value == 0.0) {
       p.initial = 0.0;
@@ -143,7 +143,7 @@ TEST(RecordingCost, JacobianIsThatOfDifferencesThroughAFilter) {
         error += std::pow(e.jacobian[i * space.size() + k] - difference, 2);
         size += std::pow(difference, 2);
       }
-      EXPECT_LT(std::sqrt(error), 1e-4 * std::sqrt(size)) << space.name(k);
+      EXPECT_LT(std::sqrt(error), 1e-4 * std::sqrt(size)) << name_of(space[k].id());
     }
   }
 }

@@ -87,7 +87,7 @@ class AxisFileTest : public ::testing::Test {
 
 double value_of(const Rig& rig, const char* name) {
   Model<double> model = rig.model;
-  return *members(model)[find_quantity(name)->index];
+  return *members(model)[quantity_index(name)];
 }
 
 /// Same value of everything that the structure uses, bit for bit.
@@ -294,8 +294,8 @@ TEST_F(AxisFileTest, QuantitiesOfAnEffectMayHaveAStandardValue) {
 TEST_F(AxisFileTest, GuessesSurviveWriting) {
   const Rig rig = read(std::string(kMass) + "guessed: [K_f, coulomb_friction.F_c]\n" +
                        "effects: {coulomb_friction: {F_c: 2 N}}\n");
-  EXPECT_EQ(rig.guessed, (std::vector<std::size_t>{find_quantity("K_f")->index,
-                                                   find_quantity("coulomb_friction.F_c")->index}));
+  EXPECT_EQ(rig.guessed, (std::vector<std::size_t>{quantity_index("K_f"),
+                                                   quantity_index("coulomb_friction.F_c")}));
   EXPECT_EQ(read(format_axis_file(rig, "")).guessed, rig.guessed);
 }
 
@@ -303,8 +303,8 @@ TEST_F(AxisFileTest, UncertaintySurvivesWriting) {
   Rig rig = read(kMass);
   EXPECT_FALSE(rig.uncertainty);
   AxisUncertainty& known = rig.uncertainty.emplace();
-  known.quantities = {{find_quantity("M")->index, true, 0.00125, 0.0625, 3.5},
-                      {find_quantity("B_a")->index, false, 2.5, 0.0, 1.0}};
+  known.quantities = {{quantity_index("M"), true, 0.00125, 0.0625, 3.5},
+                      {quantity_index("B_a"), false, 2.5, 0.0, 1.0}};
   known.correlation = {1.0, -0.75, -0.75, 1.0};
   known.missing_force = MissingForceProcess{0.0125, 1.5, 0.5, {0.75, -0.125}};
   const AxisUncertainty found = read(format_axis_file(rig, "")).uncertainty.value();

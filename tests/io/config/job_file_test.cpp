@@ -139,8 +139,6 @@ class JobFileTest : public ::testing::Test {
   TempFolder folder_;
 };
 
-std::size_t index(const char* name) { return find_quantity(name)->index; }
-
 using Overrides = std::vector<std::pair<std::size_t, double>>;
 
 TEST_F(JobFileTest, ReadsTheShippedPaperJob) {
@@ -188,7 +186,7 @@ TEST_F(JobFileTest, ReadsTheShippedPaperJob) {
   ASSERT_EQ(job.free.size(), free.size());
   for (std::size_t i = 0; i < free.size(); ++i) {
     const FreeParameter& p = job.free[i];
-    EXPECT_EQ(p.quantity, index(free[i].first));
+    EXPECT_EQ(p.quantity, quantity_index(free[i].first));
     EXPECT_DOUBLE_EQ(p.initial, free[i].second);
     EXPECT_DOUBLE_EQ(p.lower, free[i].second / 100.0);
     EXPECT_DOUBLE_EQ(p.upper, free[i].second * 100.0);
@@ -377,7 +375,7 @@ TEST_F(JobFileTest, ADriveForceReplacesTheCommandOfAForceSource) {
   const Recording& recording = file.job.recordings.front();
   EXPECT_EQ(recording.command.values.size(), kRows);
   EXPECT_DOUBLE_EQ(recording.command.values.front(), 7000.0);
-  EXPECT_EQ(recording.overrides, (Overrides{{index("K_f"), 1.0}}));
+  EXPECT_EQ(recording.overrides, (Overrides{{quantity_index("K_f"), 1.0}}));
   EXPECT_EQ(recording.measurements.size(), 1u);
 
   EXPECT_EQ(errors_with("      command: {column: u, unit: V}\n",
@@ -477,7 +475,7 @@ TEST_F(JobFileTest, InitialStateFromData) {
   EXPECT_EQ(a.initial_state, InitialState::data);
   EXPECT_EQ(a.initial_samples, 6u);
   ASSERT_EQ(a.overrides.size(), 1u);
-  EXPECT_EQ(a.overrides[0].first, index("initial.y1"));
+  EXPECT_EQ(a.overrides[0].first, quantity_index("initial.y1"));
   EXPECT_NEAR(a.overrides[0].second, 2.0, 1e-9);
 
   const std::string position = replaced(velocity, "velocity: {column: v, unit: m/s, sigma: 1 mm/s}",
@@ -485,15 +483,15 @@ TEST_F(JobFileTest, InitialStateFromData) {
   const JobFile from_position = read(position);
   const Recording& b = from_position.job.recordings.front();
   ASSERT_EQ(b.overrides.size(), 2u);
-  EXPECT_EQ(b.overrides[0].first, index("initial.y0"));
+  EXPECT_EQ(b.overrides[0].first, quantity_index("initial.y0"));
   EXPECT_NEAR(b.overrides[0].second, 0.5, 1e-9);
-  EXPECT_EQ(b.overrides[1].first, index("initial.y1"));
+  EXPECT_EQ(b.overrides[1].first, quantity_index("initial.y1"));
   EXPECT_NEAR(b.overrides[1].second, 2.0, 1e-9);
 
   // What is set by hand stays.
   const JobFile set = read(replaced(velocity, "initial_state: data",
                                     "initial_state: data\n    set: {initial.y1: 3 m/s}"));
-  EXPECT_EQ(set.job.recordings.front().overrides, (Overrides{{index("initial.y1"), 3.0}}));
+  EXPECT_EQ(set.job.recordings.front().overrides, (Overrides{{quantity_index("initial.y1"), 3.0}}));
 
   EXPECT_EQ(errors(replaced(velocity, "velocity: {column: v, unit: m/s, sigma: 1 mm/s}",
                             "acceleration: {column: x, unit: m/s^2, sigma: 1 m/s^2}")),
@@ -571,7 +569,7 @@ TEST_F(JobFileTest, AccelerationAtRestIsLeftOutUnlessKept) {
 TEST_F(JobFileTest, OverridesHoldForTheirRecording) {
   const JobFile file = read(with_lines("    set: {B_a: 1 kN s/m, velocity.bias: 3 mm/s}\n"));
   EXPECT_EQ(file.job.recordings.front().overrides,
-            (Overrides{{index("B_a"), 1000.0}, {index("velocity.bias"), 0.003}}));
+            (Overrides{{quantity_index("B_a"), 1000.0}, {quantity_index("velocity.bias"), 0.003}}));
   EXPECT_EQ(file.job.model.axis.B_a, 8.0);
   EXPECT_EQ(errors(with_lines("    set: {B_q: 1 kN s/m, K_m: 3 N m/A, F_s: -1 N}\n")),
             "job.yaml:4:11: unknown quantity 'B_q'; did you mean 'B_a'?\njob.yaml:4:26: K_m is not "

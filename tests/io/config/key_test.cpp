@@ -206,7 +206,7 @@ TEST_F(KeyAgreement, AxisFile) {
 
 TEST_F(KeyAgreement, JobFile) {
   const Reader read = [](const std::string& path) { read_job_file(path); };
-  Json axis = example(axis_keys());
+  Json axis = example(axis_keys(kSourceVocabulary));
   axis["parameters"].erase("K_f");
   axis.erase("guessed");  // names quantities
   axis.erase("uncertainty");
@@ -249,7 +249,7 @@ TEST_F(KeyAgreement, MotionFile) {
   for (const std::string& type : std::get<Choice>(find_key(motion_keys(), "type").form).names()) {
     SCOPED_TRACE(type);
     Section keys = motion_keys();
-    for (const Key& key : motion_keys(type)) keys.push_back(key);
+    for (const Key& key : motion_keys(type, kSourceVocabulary)) keys.push_back(key);
     Json file = example(keys);
     file["type"] = type;
     expect_agreement(file, keys, read);

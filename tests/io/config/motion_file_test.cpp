@@ -155,18 +155,20 @@ TEST_F(MotionFileTest, WritesWhatReadsBackTheSame) {
       SineMotion{0.3, 2.0, 2.0, 0.1}, SineMotion{-5.0, 0.5, 60.0, 0.0},
       PrbsMotion{4.0, 0.01, 0.5, 7},  MoveMotion{-0.9, 0.8, 1.0 / 3.0}};
   for (const Motion& motion : motions) {
-    const std::string text = format_motion_file({motion, 2.5}, "made by hand\nfor a test");
+    const std::string text =
+        format_motion_file({motion, 2.5}, "made by hand\nfor a test", kSourceVocabulary);
     SCOPED_TRACE(text);
     EXPECT_TRUE(text.starts_with("# made by hand\n# for a test\ntype: "));
     const MotionFile file = read(text);
     EXPECT_EQ(file.duration, 2.5);
     EXPECT_EQ(file.motion.index(), motion.index());
-    EXPECT_EQ(format_motion_file(file, "made by hand\nfor a test"), text);
+    EXPECT_EQ(format_motion_file(file, "made by hand\nfor a test", kSourceVocabulary), text);
     const Schedule a = schedule_of(motion, 2.5, 5e-3), b = schedule_of(file.motion, 2.5, 5e-3);
     EXPECT_EQ(a.times, b.times);
     EXPECT_EQ(a.values, b.values);
   }
-  EXPECT_THROW(format_motion_file({RecordedMotion{}, 1.0}, ""), std::logic_error);
+  EXPECT_THROW(format_motion_file({RecordedMotion{}, 1.0}, "", kSourceVocabulary),
+               std::logic_error);
 }
 
 TEST_F(MotionFileTest, AMoveNeedsACommandThatActsWithinAFewPeriods) {

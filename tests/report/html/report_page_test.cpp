@@ -71,7 +71,7 @@ TEST(ReportPage, ShowsNoMotorWhereTheAxisHasNone) {
 }
 
 TEST(ReportPage, DrawsProfilesWhereTheyWereComputed) {
-  const std::string page = page_of(fit_job(), {.profiles = {"B_a"}});
+  const std::string page = page_of(fit_job(), {.profiles = {{quantity_index("B_a")}}});
   EXPECT_NE(page.find("id=\"profile-1\""), std::string::npos);
   EXPECT_EQ(page.find("id=\"profile-2\""), std::string::npos);
 }

@@ -1,8 +1,11 @@
 #include "report/text/words.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 namespace axisfit {
 namespace {
@@ -10,48 +13,50 @@ namespace {
 TEST(WordsTest, OfTheGradeOfAFit) {
   using enum FitVerdict::Kind;
   using Reason = FitGrade::Reason;
+  Job job;
+  for (const char* name : {"levels", "step"}) job.recordings.emplace_back().name = name;
   FitResult fit;
-  EXPECT_EQ(grade_text({}, fit),
+  EXPECT_EQ(grade_text(job, {}, fit),
             "Not converged: the simulation does not finish at the initial values. Check them and "
             "the axis file for impossible values.");
   fit.verdict = {.kind = no_minimum, .iteration_limit = 50};
-  EXPECT_EQ(grade_text({}, fit),
+  EXPECT_EQ(grade_text(job, {}, fit),
             "Not converged: no minimum was found within 50 iterations. Try --starts 20, or free "
             "fewer parameters.");
   fit.verdict = {.kind = usable};
-  EXPECT_EQ(grade_text({Grade::nothing_determined, Reason::parameters}, fit),
+  EXPECT_EQ(grade_text(job, {Grade::nothing_determined, Reason::parameters}, fit),
             "Nothing determined: these recordings determine none of the free parameters. Record a "
             "motion that shows them, or free fewer.");
-  const FitGrade badly{Grade::model_wrong, Reason::simulation, "step", Signal::acceleration, 23.4};
-  EXPECT_EQ(grade_text(badly, fit),
+  const FitGrade badly{Grade::model_wrong, Reason::simulation, 1, Signal::acceleration, 23.4};
+  EXPECT_EQ(grade_text(job, badly, fit),
             "Model wrong: the free-running simulation follows the acceleration of step to only 23 "
             "%. Check the units and signs of the columns, and try other initial values or --starts "
             "20.");
   FitGrade worse = badly;
   worse.percent = -5.0;
-  EXPECT_NE(grade_text(worse, fit).find("step no better than a constant. Check"),
+  EXPECT_NE(grade_text(job, worse, fit).find("step no better than a constant. Check"),
             std::string::npos);
   worse.percent = NAN;
-  EXPECT_NE(grade_text(worse, fit).find("simulation of step does not finish. Check"),
+  EXPECT_NE(grade_text(job, worse, fit).find("simulation of step does not finish. Check"),
             std::string::npos);
   EXPECT_EQ(
-      grade_text({Grade::model_wrong, Reason::force, "step", Signal::velocity, 181.2}, fit),
+      grade_text(job, {Grade::model_wrong, Reason::force, 1, Signal::velocity, 181.2}, fit),
       "Model wrong: the force that the model lacks in step is 181 % of the drive's. Check the "
       "units and signs of the columns and what the axis file declares.");
   FitGrade drifts = badly;
   drifts.grade = Grade::usable;
   drifts.reason = Reason::tracking_only;
-  EXPECT_EQ(grade_text(drifts, fit),
+  EXPECT_EQ(grade_text(job, drifts, fit),
             "Usable while it tracks recordings: the free-running simulation follows the "
             "acceleration of step to only 23 %. The parameters describe the forces; do not "
             "simulate with them for long.");
   fit.reduced_chi_square = 1.00251;
-  EXPECT_EQ(grade_text({Grade::usable, Reason::residual, "step"}, fit),
+  EXPECT_EQ(grade_text(job, {Grade::usable, Reason::residual, 1}, fit),
             "Usable: reduced chi-square 1.003 on the fitted data.");
-  fit.verdict.undetermined = {"V_L", "k_g"};
-  EXPECT_EQ(grade_text({Grade::explained, Reason::none}, fit),
+  fit.verdict.undetermined = {{quantity_index("V_L")}, {quantity_index("k_g"), 1}};
+  EXPECT_EQ(grade_text(job, {Grade::explained, Reason::none}, fit),
             "Explained: reduced chi-square 1.003 on the fitted data, and no signal shows more than "
-            "its noise. These recordings do not determine V_L, k_g.");
+            "its noise. These recordings do not determine V_L, k_g@step.");
 }
 
 TEST(WordsTest, OfWhatASearchComesTo) {
@@ -68,11 +73,14 @@ TEST(WordsTest, OfWhatASearchComesTo) {
   selection.verdict.kind = none_passes;
   EXPECT_EQ(verdict_text(selection),
             "Something is missing, but no effect passes the tests: see the reasons.");
-  selection.verdict = {.kind = misfit, .at_bound = "M", .force_percent = 0.0};
+  selection.verdict = {
+      .kind = misfit, .at_bound = ParameterId{quantity_index("M")}, .force_percent = 0.0};
   EXPECT_EQ(verdict_text(selection),
             "The declared model does not fit: M is at its bound. Nothing can be said about effects "
             "yet.");
-  selection.verdict = {.kind = misfit, .recording = "train", .force_percent = 91.23};
+  selection.result.job.recordings.resize(2);
+  selection.result.job.recordings[1].name = "train";
+  selection.verdict = {.kind = misfit, .recording = 1, .force_percent = 91.23};
   EXPECT_EQ(verdict_text(selection),
             "The declared model does not fit: of train, 91.2 % of the drive force is missing. "
             "Nothing can be said about effects yet.");
@@ -100,7 +108,7 @@ TEST(WordsTest, OfWhatASearchComesTo) {
   selection.rivals.clear();
   selection.verdict = {.kind = effects_accepted,
                        .accepted = {"T_z", "spring"},
-                       .corrections = {{"T_z", 7.05e-3, 7.9989e-3}},
+                       .corrections = {{{quantity_index("T_z")}, 7.05e-3, 7.9989e-3}},
                        .validate_percent = 71.4};
   EXPECT_EQ(verdict_text(selection),
             "T_z is 0.007999 s, not the 0.00705 s of the axis file. The model lacked spring. With "
@@ -134,6 +142,37 @@ TEST(WordsTest, OfWhatASearchComesTo) {
             "which. With spring, the validation error falls by 50 %, but not down to the noise.");
 }
 
+/// An axis on which a constant has another name or unit than in the sources.
+struct OtherName {
+  const char* quantity;  ///< as the sources call it
+  Structure structure;
+  const char *name, *unit;
+};
+
+TEST(WordsTest, OfAConstantAreThoseOfTheAxis) {
+  for (const OtherName& other :
+       {OtherName{
+            "coulomb_friction.F_c", {.joint = Joint::revolute}, "coulomb_friction.T_c", "N m"},
+        OtherName{"K_f", {.drive = Drive::motor_current}, "K_f", "N/A"},
+        OtherName{"r_g", {.gearing = Gearing::turns}, "lead", "m"},
+        OtherName{"channel_force.k_2",
+                  {.channels = kept({{"pressure", "bar"}, {"temperature", "K"}})},
+                  "channel_force.temperature",
+                  "N/K"}}) {
+    EffectSelection selection;
+    selection.result.job.model.structure = other.structure;
+    selection.verdict = {.kind = SelectionVerdict::Kind::effects_accepted,
+                         .accepted = {other.name, "spring"},
+                         .corrections = {{{quantity_index(other.quantity)}, 0.5, 0.75}},
+                         .validate_percent = 50.0};
+    EXPECT_EQ(verdict_text(selection),
+              fmt::format("{0} is 0.75 {1}, not the 0.5 {1} of the axis file. The model lacked "
+                          "spring. With them, the validation error falls by 50 %, but not down to "
+                          "the noise.",
+                          other.name, other.unit));
+  }
+}
+
 TEST(WordsTest, OfARunNameTheFitOnce) {
   RunResult run_result;
   run_result.first.usable = true;
@@ -150,10 +189,11 @@ TEST(WordsTest, OfARunNameTheFitOnce) {
 
 TEST(WordsTest, OfTheDecisionOnAnEffect) {
   using enum Rejection::Test;
+  const ParameterId shape_id{quantity_index("stribeck_friction.v_st")};
   EffectTrial trial;
   const auto rejected = [&](const Rejection& rejection) {
     trial.rejection = rejection;
-    return reason_text(trial);
+    return reason_text(Job(), trial);
   };
   EXPECT_EQ(rejected({.test = fit}), "there is no usable fit with it");
   EXPECT_EQ(rejected({.test = simulation}),
@@ -165,8 +205,10 @@ TEST(WordsTest, OfTheDecisionOnAnEffect) {
             "does not lower the validation error (p = 0.062)");
   EXPECT_EQ(rejected({.test = validation_size, .found = 0.3}),
             "hardly lowers the validation error, by 0.3 %");
-  EXPECT_EQ(rejected({.test = bound, .parameter = "F_c"}), "F_c is at its bound");
-  EXPECT_EQ(rejected({.test = shape, .parameter = "v_st"}), "the recordings do not determine v_st");
+  EXPECT_EQ(rejected({.test = bound, .parameter = shape_id}),
+            "stribeck_friction.v_st is at its bound");
+  EXPECT_EQ(rejected({.test = shape, .parameter = shape_id}),
+            "the recordings do not determine stribeck_friction.v_st");
   EXPECT_EQ(rejected({.test = distinct}),
             "it cannot be distinguished from a change of the other parameters");
   EXPECT_EQ(rejected({.test = strength, .found = 3.0}),
@@ -183,7 +225,7 @@ TEST(WordsTest, OfTheDecisionOnAnEffect) {
   trial.improvement.z = 7.5;
   const auto decided = [&](Reason reason) {
     trial.reason = reason;
-    return reason_text(trial);
+    return reason_text(Job(), trial);
   };
   EXPECT_EQ(decided(Reason::explains_best),
             "explains the residual best: 12.3 % lower validation error (7.5 standard deviations "
@@ -195,60 +237,71 @@ TEST(WordsTest, OfTheDecisionOnAnEffect) {
 }
 
 TEST(WordsTest, OfAWeakDirection) {
+  Job job;
+  job.free = {free_parameter("initial.y0", 0.0), free_parameter("M", 20.0),
+              free_parameter("k_g", 4e6)};
   WeakDirection weak;
-  weak.parts = {{.name = "k_g"}};
-  EXPECT_EQ(weak_direction_text(weak), "k_g hardly affects these recordings.");
-  weak.parts = {{.name = "k_g", .tenth = 0.0733, .relative = true}, {.name = "y0", .tenth = -0.02}};
-  EXPECT_EQ(weak_direction_text(weak),
-            "These can change jointly with hardly any effect: k_g by +7.3 %, y0 by -0.02.");
-  weak.combination = "k_g / M";
-  weak.parts[1].name = "M";
-  EXPECT_EQ(weak_direction_text(weak), "k_g and M are determined only as k_g / M.");
+  weak.parts = {{.parameter = 2}};
+  EXPECT_EQ(weak_direction_text(job, weak), "k_g hardly affects these recordings.");
+  weak.parts = {{.parameter = 2, .tenth = 0.0733, .relative = true},
+                {.parameter = 0, .tenth = -0.02}};
+  EXPECT_EQ(weak_direction_text(job, weak),
+            "These can change jointly with hardly any effect: k_g by +7.3 %, initial.y0 by -0.02.");
+  weak.parts[1].parameter = 1;
+  for (const auto& [exponent, combination] :
+       {std::pair{-1.02, "k_g / M"}, {0.97, "k_g M"}, {0.5, "k_g M^0.5"}}) {
+    weak.combination = Combination{2, 1, exponent};
+    EXPECT_EQ(weak_direction_text(job, weak),
+              std::string("k_g and M are determined only as ") + combination + ".");
+  }
 }
 
 TEST(WordsTest, OfMotions) {
-  EXPECT_EQ(motion_text(StepMotion{-10.0, 0.0}), "a step of -10 V");
+  EXPECT_EQ(motion_text(StepMotion{-10.0, 0.0}, kSourceVocabulary), "a step of -10 V");
   for (const double u : {2.0, -2.0}) {
     const std::string volts = u > 0.0 ? "2 V" : "-2 V";
-    EXPECT_EQ(motion_text(LevelsMotion{{u, -u, 0.5 * u, -0.5 * u, 0.2 * u, -0.2 * u, 0.0}, 0.625}),
+    EXPECT_EQ(motion_text(LevelsMotion{{u, -u, 0.5 * u, -0.5 * u, 0.2 * u, -0.2 * u, 0.0}, 0.625},
+                          kSourceVocabulary),
               "levels of " + volts +
                   ", -1, 0.5, -0.5, 0.2 and -0.2 times that, then zero, each held for 0.625 s");
-    EXPECT_EQ(motion_text(LevelsMotion{{u, 0.0, -u, 0.0}, 2.5}),
+    EXPECT_EQ(motion_text(LevelsMotion{{u, 0.0, -u, 0.0}, 2.5}, kSourceVocabulary),
               "levels of " + volts + ", zero, the opposite and zero, each held for 2.5 s");
   }
-  EXPECT_EQ(motion_text(SineMotion{5.0, 0.5, 0.5}), "a sine of 5 V and 0.5 Hz");
-  EXPECT_EQ(motion_text(SineMotion{5.0, 0.5, 60.0}), "a chirp of 5 V from 0.5 to 60 Hz");
-  EXPECT_EQ(motion_text(PrbsMotion{-5.0, 0.025, 0.0, 1}),
+  EXPECT_EQ(motion_text(SineMotion{5.0, 0.5, 0.5}, kSourceVocabulary), "a sine of 5 V and 0.5 Hz");
+  EXPECT_EQ(motion_text(SineMotion{5.0, 0.5, 60.0}, kSourceVocabulary),
+            "a chirp of 5 V from 0.5 to 60 Hz");
+  EXPECT_EQ(motion_text(PrbsMotion{-5.0, 0.025, 0.0, 1}, kSourceVocabulary),
             "a pseudo-random binary sequence of +-5 V with a bit period of 0.025 s");
-  EXPECT_EQ(motion_text(MoveMotion{0.45, 0.18, 0.72}),
+  EXPECT_EQ(motion_text(MoveMotion{0.45, 0.18, 0.72}, kSourceVocabulary),
             "a move of 0.45 m at 0.18 m/s and 0.72 m/s^2");
 }
 
 TEST(WordsTest, OfWhatDiscriminates) {
   Discrimination d{.chosen = "spring", .rival = "position.gain"};
-  EXPECT_EQ(discrimination_text(d),
+  EXPECT_EQ(discrimination_text(d, kSourceVocabulary),
             "spring and position.gain explain these recordings equally well; no motion tried "
             "discriminates between them.");
   d.signal = Signal::position;
   d.size = 4.04;
   d.recording = "levels";
-  EXPECT_EQ(discrimination_text(d),
+  EXPECT_EQ(discrimination_text(d, kSourceVocabulary),
             "spring and position.gain explain these recordings equally well; they differ most in "
             "the position during the motion of levels: by 4 times its noise.");
   d.experiment = Experiment{StepMotion{10.0, 0.0}, 2.0};
-  EXPECT_EQ(discrimination_text(d),
+  EXPECT_EQ(discrimination_text(d, kSourceVocabulary),
             "spring and position.gain explain these recordings equally well; they differ most in "
             "the position during a step of 10 V: by 4 times its noise.");
 }
 
 TEST(WordsTest, InColourAreTheSameWords) {
+  const Job job;
   FitResult fit;
   EXPECT_TRUE(
-      grade_text({}, fit, true).starts_with("\033[31mNot converged\033[0m: the simulation"));
+      grade_text(job, {}, fit, true).starts_with("\033[31mNot converged\033[0m: the simulation"));
   fit.reduced_chi_square = 1.0;
-  EXPECT_EQ(grade_text({Grade::usable, FitGrade::Reason::residual}, fit, true),
+  EXPECT_EQ(grade_text(job, {Grade::usable, FitGrade::Reason::residual}, fit, true),
             "\033[33mUsable\033[0m: reduced chi-square 1 on the fitted data.");
-  EXPECT_TRUE(grade_text({Grade::explained, FitGrade::Reason::none}, fit, true)
+  EXPECT_TRUE(grade_text(job, {Grade::explained, FitGrade::Reason::none}, fit, true)
                   .starts_with("\033[32mExplained\033[0m: "));
 }
 

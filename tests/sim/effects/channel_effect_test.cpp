@@ -133,7 +133,9 @@ TEST(Channels, GiveQuantitiesTheirNamesAndUnits) {
 TEST(Channels, AreInTheModelByTheirNumber) {
   Structure structure;
   structure.effects.set();
-  const auto is_there = [&](const char* name) { return is_used(*find_quantity(name), structure); };
+  const auto is_there = [&](const char* name) {
+    return is_used(quantity_list()[quantity_index(name)], structure);
+  };
   EXPECT_FALSE(is_there("channel_force.k_1"));
   structure.channels = kept({{"oil", "degC", 20.0}});
   EXPECT_TRUE(is_there("channel_force.k_1"));
