@@ -208,7 +208,7 @@ struct Case {
   }
 };
 
-struct Outcome {
+struct CaseOutcome {
   double reached = 0.0;
   double last = 0.0;  ///< reduced chi-square of the result, all recordings
   std::set<std::string> accepted, undecided;
@@ -254,7 +254,7 @@ double refitted_chi_square(const Job& job) {
   return standstill.squaredNorm() / static_cast<double>(standstill.size());
 }
 
-Outcome run(const Case& one, const Rig& paper, std::uint64_t seed) {
+CaseOutcome run(const Case& one, const Rig& paper, std::uint64_t seed) {
   const std::uint64_t number = one.number();
   Draw draw(seed, number);
   Rig rig = paper;
@@ -270,7 +270,7 @@ Outcome run(const Case& one, const Rig& paper, std::uint64_t seed) {
   const Model<double> declared = rig.model;
   std::vector<Secret> secrets;
 
-  Outcome outcome;
+  CaseOutcome outcome;
   const auto job_with = [&](const std::vector<double>& with) {
     Rig secretly = rig;
     for (std::size_t i = 0; i < with.size(); ++i) put(secrets[i], with[i], secretly.model);
@@ -327,14 +327,14 @@ Outcome run(const Case& one, const Rig& paper, std::uint64_t seed) {
   }
   outcome.reached = fit.reduced_chi_square;
   const EffectSelection selection = select_effects(job, fit);
-  for (const EffectTrial& trial : selection.effects) {
-    const Candidate& c = trial.candidate;
+  for (const Outcome& trial : selection.effects) {
+    const Hypothesis& c = trial.hypothesis;
     const bool is_more_of_it = !c.extends.empty() && c.name.starts_with(c.extends + ".");
-    if (trial.decision == Decision::accepted)
+    if (trial.decision() == Decision::accepted)
       outcome.accepted.insert(is_more_of_it ? c.extends : c.name);
-    if (trial.decision == Decision::undecided) outcome.undecided.insert(trial.candidate.name);
+    if (trial.decision() == Decision::undecided) outcome.undecided.insert(trial.hypothesis.name);
     outcome.story += fmt::format("    round {} {}: {} (score {:.4g}, {:.3g} %)\n", trial.round,
-                                 trial.candidate.name, reason_text(selection.result.job, trial),
+                                 trial.hypothesis.name, reason_text(selection.result.job, trial),
                                  trial.score, trial.improvement.validate_percent);
   }
   outcome.explained = selection.explained;
@@ -382,7 +382,7 @@ int main(int argc, char** argv) {
     cases.push_back({"pair", {a, b}, 3.0, i});
   }
 
-  std::vector<Outcome> outcomes(cases.size());
+  std::vector<CaseOutcome> outcomes(cases.size());
   std::mutex mutex;
   const ThreadPool pool(threads);
   parallel_for(cases.size(), [&](std::size_t i) {
@@ -404,7 +404,7 @@ int main(int argc, char** argv) {
   std::map<std::pair<std::string, double>, Count> table;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     Count& count = table[{cases[i].kind, cases[i].target}];
-    const Outcome& o = outcomes[i];
+    const CaseOutcome& o = outcomes[i];
     const std::set<std::string> truth(cases[i].in.begin(), cases[i].in.end());
     ++count.cases;
     // An effect outside the catalogue is rightly drawn as a curve, over whatever variable.

@@ -16,6 +16,7 @@
 #include "bench/simulated.h"
 #include "fit/estimate/estimate.h"
 #include "io/config/axis_file.h"
+#include "report/text/names.h"
 #include "sim/effects/effects.h"
 
 namespace {
@@ -130,7 +131,7 @@ int main(int argc, char** argv) {
       }
       const double share = usable > 0 ? 100.0 * inside / usable : 0.0;
       fmt::print("| {} | {} | {} | {:.1f} % | {:.2f} |\n", name(scenario),
-                 ParameterSpace(job).name(p), usable, share, std::sqrt(square / with_error));
+                 name_of(job, job.free[p]), usable, share, std::sqrt(square / with_error));
       // Two standard deviations of a share of 95 % that are due to the number of fits; at 400 all
       // but nothing of the aim is given away.
       const double chance = std::max(0.0, 200.0 * std::sqrt(0.95 * 0.05 / recordings) - 2.2);

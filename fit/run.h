@@ -1,4 +1,4 @@
-// What a run of fit-params finds: the fit, what it leaves unexplained, and the models that were
+// The result of a run of fit-params: the fit, what it leaves unexplained, and the models that were
 // tried to explain that. Text and JSON are made from it.
 #pragma once
 
@@ -16,37 +16,16 @@
 #include "fit/estimate/profile.h"
 #include "fit/judge/diagnosis.h"
 #include "fit/judge/grade.h"
+#include "fit/judge/model_score.h"
 #include "fit/judge/second_opinion.h"
 #include "fit/predict/comparison.h"
 #include "fit/predict/prediction.h"
+#include "fit/search/scored.h"
 #include "fit/search/select_effects.h"
 
 namespace axisfit {
 
-struct SignalErrors {
-  double rmse = 0.0;           ///< in the signal's unit
-  double nrmse_percent = 0.0;  ///< of the measured range
-  double reduced_chi_square = 0.0;
-};
-
-/// The errors of one signal of one recording over the samples that were fitted, or over those that
-/// were not.
-struct SignalScore : SeriesKey {
-  std::optional<SignalErrors> free_running;  ///< none where that did not finish
-  std::optional<SignalErrors> tracking;  ///< with an observer, where the fit kept one to its end
-
-  const std::optional<SignalErrors>& as_fitted() const {
-    return tracking ? tracking : free_running;
-  }
-};
-
-/// How well a model does.
-struct ModelScore {
-  std::vector<SignalScore> signals;  ///< without those that are only compared
-  std::vector<MissingForce> forces;  ///< of every recording
-};
-
-/// An error of a signal that is allowed, of those with such a unit.
+/// An allowed error of the signals that have this unit.
 struct Tolerance {
   double value = 0.0;
   std::string unit;
@@ -68,7 +47,7 @@ struct RunOptions {
   bool predict = false;                     ///< the recordings to validate, with bands
   std::optional<MotionToPredict> motion{};  ///< with `predict`: that as well
   std::vector<Tolerance> tolerances{};      ///< for which the bands are judged
-  bool compare = false;                     ///< the models of the loop, and others
+  bool compare = false;                     ///< the models of the search, and others
   std::vector<OtherModel> others{};         ///< of the same machine, to be compared
 };
 
@@ -81,36 +60,37 @@ struct RunResult {
   std::vector<RecordingCheck> checks;                    ///< of each recording
   /// None unless it was asked for and the first fit is usable.
   std::optional<EffectSelection> selection;
-  /// The loop found something only with the roles of the recordings exchanged: with them
-  /// `baseline`, `first` and all that follows are.
+  /// The search found something only with the roles of the recordings exchanged; they are exchanged
+  /// in `baseline`, `first` and all that follows.
   bool roles_exchanged = false;
-  std::vector<ModelScore> scores;                ///< of the loop's models
-  std::optional<Diagnosis> diagnosis;            ///< of the final model; none unless that is usable
-  FitGrade grade;                                ///< of the final model
-  std::optional<SecondOpinion> second_opinion;   ///< of the final model, where there can be one
-  std::optional<Scatter> scatter;                ///< of the final model, in its errors
-  std::optional<AxisUncertainty> uncertainty;    ///< of the final model, where that is usable
+  std::vector<ModelScore> scores;               ///< of the search's models
+  std::optional<Diagnosis> diagnosis;           ///< of the final model; none unless that is usable
+  std::vector<Scored> suspects;                 ///< of a fit without a search that is not explained
+  FitGrade grade;                               ///< of the final model
+  std::optional<SecondOpinion> second_opinion;  ///< of the final model, where there can be one
+  std::optional<Scatter> scatter;               ///< of the final model, in its errors
+  std::optional<AxisUncertainty> uncertainty;   ///< of the final model, where that is usable
   std::vector<RecordingPrediction> predictions;  ///< by the final model, where asked for
   std::optional<MotionPrediction> motion;        ///< by the final model, where asked for
   std::string no_prediction;                     ///< why there can be none
   std::optional<Comparison> comparison;          ///< of models, where it was asked for and can be
   std::vector<Profile> profiles;                 ///< of the final model, those asked for
-  std::vector<Discrimination> discriminations;   ///< of the loop's undecided effects, pair by pair
+  std::vector<Discrimination> discriminations;   ///< of the search's substitutions, one by one
   std::optional<Suggestion> suggestion;          ///< of the next experiment, where it was asked for
   bool interrupted = false;                      ///< not all that was asked for was finished
   std::optional<double> time_limit{};            ///< s, if a time limit was what interrupted it
   double wall_time = 0.0;                        ///< s
 
-  /// The final model's: the result of the loop, or else the declared one.
+  /// Job and fit of the final model: the result of the search, or else the baseline.
   const Job& job() const { return selection ? selection->result.job : baseline; }
   const FitResult& fit() const { return selection ? selection->result.fit : first; }
 };
 
-/// Whether the noise of any measurement of a job comes from there.
+/// Whether the noise of any measurement of a job comes from this source.
 bool has_noise_from(const Job& job, NoiseSource source);
 
-/// The experiment to make next, where it was asked for and there is one: that which tells undecided
-/// effects apart, or else that which determines the parameters.
+/// The experiment to make next, where it was asked for and there is one: the one that discriminates
+/// undecided effects, or else the one that determines the parameters.
 const Experiment* next_experiment(const RunResult& result);
 
 /// Fits the job, analyses its residual and does what the options ask for: all that fit-params does
@@ -120,16 +100,8 @@ const Experiment* next_experiment(const RunResult& result);
 /// finished.
 RunResult run(Job job, const RunOptions& options = {}, const RunContext& context = {});
 
-/// Samples of a signal that do not count, since the arm rests (fit/data/standstill.h).
-struct ExcludedSamples {
-  std::size_t samples = 0;
-  double mean = 0.0;             ///< of what was measured there
-  bool is_within_noise = false;  ///< whether that mean is no further from zero than noise would be
-};
-std::optional<ExcludedSamples> excluded_samples(const Measurement& measurement);
-
-/// A free parameter of the final model with the user's initial value, which the loop does not keep;
-/// of an added effect, with the one it was started from.
+/// A free parameter of the final model with the user's initial value, which the search does not
+/// keep; of an added effect, with the one it was started from.
 const FreeParameter& as_specified(const RunResult& result, std::size_t parameter);
 
 }  // namespace axisfit

@@ -22,9 +22,9 @@ double error_within(const RunResult& run, std::size_t parameter) {
 }
 
 /// "periodic_force, period 0.036 m": a name with its shape, which tells one from another.
-std::string effect_text(const Job& job, const EffectTrial& trial) {
-  std::string text(words_on(job.vocabulary(), trial.candidate.name));
-  for (const ParameterResult& p : trial.parameters)
+std::string effect_text(const Job& job, const Outcome& outcome) {
+  std::string text(words_on(job.vocabulary(), outcome.hypothesis.name));
+  for (const ParameterResult& p : outcome.parameters)
     if (const Quantity& quantity = quantity_of(job, p.id); quantity.shape)
       text += fmt::format(", {} {:.3g} {}", quantity.symbol, p.value, quantity.unit);
   return text;
@@ -83,9 +83,9 @@ void add_search(NightResult& night, const RunResult& run) {
   night.status = grade_name(run.grade.grade);
   night.seconds += run.wall_time;
   if (!run.selection) return;
-  for (const EffectTrial& trial : run.selection->effects)
-    if (trial.decision == Decision::accepted)
-      night.effects.push_back(effect_text(run.job(), trial));
+  for (const Outcome& outcome : run.selection->effects)
+    if (outcome.decision() == Decision::accepted)
+      night.effects.push_back(effect_text(run.job(), outcome));
 }
 
 Json to_json(const NightResult& n) {

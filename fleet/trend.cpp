@@ -100,15 +100,15 @@ struct Trend::Filter {
   /// first there is no prediction.
   double add(std::size_t night) {
     const double error = trend_->errors_[night], y = trend_->y_[night];
-    if (!begun) {
-      begun = night;
+    if (!started) {
+      started = night;
       for (std::size_t g = 0; g < states.size(); ++g) {
         states[g].mean[0] = y;
         states[g].covariance(0, 0) = error * error + std::pow(scatter_grid()[g], 2);
       }
       return 0.0;
     }
-    const VectorXd h = row(night, trend_->nights_[*begun].channels);
+    const VectorXd h = row(night, trend_->nights_[*started].channels);
     const double all = log_sum(weights);
     double below = 0.0;
     for (std::size_t g = 0; g < states.size(); ++g) {
@@ -151,8 +151,8 @@ struct Trend::Filter {
   };
   const Trend* trend_;
   std::vector<State> states;
-  std::vector<double> weights;       // logarithms
-  std::optional<std::size_t> begun;  // the first night
+  std::vector<double> weights;         // logarithms
+  std::optional<std::size_t> started;  // the first night
 };
 
 Trend::Trend(std::vector<TrendNight> nights) : nights_(std::move(nights)) {

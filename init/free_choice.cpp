@@ -159,7 +159,7 @@ void try_timing(JobDraft& draft) {
   };
   swap_holds();
   FitResult swapped = fitted();
-  if (swapped.status == Status::converged &&
+  if (swapped.verdict.has_minimum() &&
       kLeastFall * swapped.reduced_chi_square < without.reduced_chi_square)
     without = std::move(swapped);
   else
@@ -167,8 +167,7 @@ void try_timing(JobDraft& draft) {
   add_delay(draft);
   const FitResult with = fitted();
   const double delay = with.parameters.back().value;
-  if (with.status == Status::converged &&
-      std::abs(delay) > kLeastSamples * sampling(times).interval &&
+  if (with.verdict.has_minimum() && std::abs(delay) > kLeastSamples * sampling(times).interval &&
       kLeastFall * with.reduced_chi_square < without.reduced_chi_square) {
     draft.guesses.push_back(
         fmt::format("T_d is free: the motion {} what drives it by {:.2g} ms, with which the "

@@ -20,7 +20,7 @@ bool has_changing_input(const RecordingGuess& recording, const InputColumn& inpu
 bool is_of_velocity_loop(const RecordingGuess& recording);
 
 /// Two files of which one has what drives the axis, and the other how it moved, are one
-/// recording. Their clocks need not have begun together: the force goes best with the
+/// recording. Their clocks need not have started together: the force goes best with the
 /// acceleration where they agree.
 void join_files(JobDraft& draft);
 

@@ -18,7 +18,7 @@ constexpr const char* kMass = "mass";
 
 /// The error of the last recording if that validates, or else of all.
 std::optional<double> error_of(const Job& job, const FitResult& fit) {
-  if (fit.status != Status::converged) return std::nullopt;
+  if (!fit.verdict.has_minimum()) return std::nullopt;
   const bool validates = job.recordings.size() > 1;
   double sum = 0.0, samples = 0.0;
   for (const ResidualSeries& series : residual_series(job, fit)) {

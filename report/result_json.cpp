@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/version.h"
+#include "fit/data/standstill.h"
 #include "io/config/axis_file.h"
 #include "report/text/names.h"
 #include "report/text/report_text.h"
@@ -18,16 +19,10 @@ using Json = nlohmann::ordered_json;
 // Of the documents: grows when a key changes its meaning or goes, not when one is added.
 constexpr int kSchemaVersion = 1;
 
-const char* text(Status status) {
-  switch (status) {
-    case Status::converged:
-      return "converged";
-    case Status::not_converged:
-      return "not_converged";
-    case Status::failed:
-      return "failed";
-  }
-  return "";
+/// The solver's outcome.
+const char* status_name(const FitVerdict& verdict) {
+  if (verdict.has_minimum()) return "converged";
+  return verdict.kind == FitVerdict::Kind::no_minimum ? "not_converged" : "failed";
 }
 
 const char* text(InverseStart start) {
@@ -377,16 +372,17 @@ Json quantities_json(const Job& job, const std::vector<std::size_t>& quantities,
   return array;
 }
 
-Json suspected_effect_json(const Job& job, const SuspectedEffect& s) {
-  return {{"name", s.candidate.name},
-          {"acts_on", s.candidate.acts_on},
-          {"meaning", s.candidate.meaning},
+Json suspect_json(const Job& job, const Scored& s) {
+  return {{"name", s.hypothesis->name},
+          {"acts_on", s.hypothesis->acts_on},
+          {"meaning", s.hypothesis->meaning},
           {"fraction", s.fraction},
-          {"strengths", quantities_json(job, s.candidate.strengths, s.strengths)},
-          {"shapes", quantities_json(job, s.candidate.shapes, s.shapes)}};
+          {"strengths", quantities_json(job, s.hypothesis->strengths, s.own.strengths)},
+          {"shapes", quantities_json(job, s.hypothesis->shapes, s.own.shapes)}};
 }
 
-Json residual_json(const Job& job, const Diagnosis& diagnosis) {
+Json residual_json(const Job& job, const Diagnosis& diagnosis,
+                   const std::vector<Scored>& suspects) {
   Json forces = Json::array();
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     Json force{{"recording", job.recordings[r].name}};
@@ -394,12 +390,11 @@ Json residual_json(const Job& job, const Diagnosis& diagnosis) {
     if (!found.is_null()) force.update(found);
     if (!found.is_null()) forces.push_back(std::move(force));
   }
-  return {{"explained", diagnosis.explained},
-          {"tests", list(diagnosis.tests, [&](const SeriesTest& t) { return test_json(job, t); })},
-          {"suspected_effects",
-           list(diagnosis.suspected_effects,
-                [&](const SuspectedEffect& s) { return suspected_effect_json(job, s); })},
-          {"missing_force", std::move(forces)}};
+  return {
+      {"explained", diagnosis.explained},
+      {"tests", list(diagnosis.tests, [&](const SeriesTest& t) { return test_json(job, t); })},
+      {"suspected_effects", list(suspects, [&](const Scored& s) { return suspect_json(job, s); })},
+      {"missing_force", std::move(forces)}};
 }
 
 Json closed_form_term_json(const ClosedForm::Term& term) {
@@ -409,13 +404,13 @@ Json closed_form_term_json(const ClosedForm::Term& term) {
           {"form", term.form}};
 }
 
-Json effect_json(const Job& job, const EffectTrial& t) {
+Json effect_json(const Job& job, const Outcome& t) {
   const bool judged = t.improvement.comparable;
-  Json json{{"name", t.candidate.name},
-            {"acts_on", t.candidate.acts_on},
-            {"meaning", t.candidate.meaning},
-            {"decision", decision_name(t.decision)},
-            {"accepted", t.decision == Decision::accepted},
+  Json json{{"name", t.hypothesis.name},
+            {"acts_on", t.hypothesis.acts_on},
+            {"meaning", t.hypothesis.meaning},
+            {"decision", decision_name(t.decision())},
+            {"accepted", t.decision() == Decision::accepted},
             {"in_model", t.in_model},
             {"reason", reason_text(job, t)},
             {"round", t.round},
@@ -454,7 +449,7 @@ Json score_json(const Job& job, const SignalScore& score) {
   return json;
 }
 
-Json model_json(const SelectionStep& model, const ModelScore& score) {
+Json model_json(const FittedModel& model, const ModelScore& score) {
   Json recordings = Json::array();
   for (std::size_t r = 0; r < model.job.recordings.size(); ++r) {
     const Recording& recording = model.job.recordings[r];
@@ -480,10 +475,10 @@ Json selection_json(const RunResult& run_result) {
   for (std::size_t i = 0; i < selection.models.size(); ++i)
     models.push_back(model_json(selection.models[i], scores[i]));
   const Job& job = run_result.job();
-  Json json{{"effects",
-             list(selection.effects, [&](const EffectTrial& t) { return effect_json(job, t); })},
-            {"before", models.front()},
-            {"after", models.back()}};
+  Json json{
+      {"effects", list(selection.effects, [&](const Outcome& t) { return effect_json(job, t); })},
+      {"before", models.front()},
+      {"after", models.back()}};
   models.erase(0);
   json["models"] = std::move(models);
   json["selection"] = {{"verdict", verdict_text(selection)},
@@ -562,7 +557,7 @@ Json result_json(const RunResult& run_result) {
     parameters.push_back(parameter_json(job, fit.parameters[i], as_specified(run_result, i)));
   Json json{{"schema_version", kSchemaVersion},
             {"axisfit", version()},
-            {"status", text(fit.status)},
+            {"status", status_name(fit.verdict)},
             {"usable", run_result.grade.is_usable()},
             {"grade", grade_name(run_result.grade.grade)},
             {"interrupted", run_result.interrupted},
@@ -574,8 +569,9 @@ Json result_json(const RunResult& run_result) {
             {"recordings", std::move(recordings)},
             {"parameters", std::move(parameters)},
             {"reduced_chi_square", finite(fit.reduced_chi_square)},
-            {"residual",
-             run_result.diagnosis ? residual_json(job, *run_result.diagnosis) : Json(nullptr)}};
+            {"residual", run_result.diagnosis
+                             ? residual_json(job, *run_result.diagnosis, run_result.suspects)
+                             : Json(nullptr)}};
   json.update(identifiability_json(job, fit.correlation, fit.identifiability));
   json["assumptions"] = assumptions_json(fit);
   if (run_result.second_opinion)

@@ -183,7 +183,7 @@ Quantity on_joint(Vocabulary vocabulary, const Quantity& quantity) {
   if (quantity.symbol == "r_g" && vocabulary.gearing == Gearing::turns) {
     called.lower = 1e-5;
     called.symbol = "lead";
-    called.meaning = "way per revolution of the motor";
+    called.meaning = "travel per revolution of the motor";
     if (vocabulary.joint == Joint::prismatic) return called;
     called.symbol = "gear_ratio";
     called.unit = "1";

@@ -33,18 +33,19 @@ Observer observer_for(const Recording& recording, double gain);
 /// Whether an observer can track any recording to be fitted.
 bool can_track(const Job& job);
 
-/// That which the job gives, or else as high as the sampling allows: 1 per sample interval for a
-/// recorded velocity and 0.3 for position alone, of the recording to be fitted where that is
+/// The gain that the job gives, or else the highest that the sampling allows: 1 per sample interval
+/// for a recorded velocity and 0.3 for position alone, of the recording to be fitted where that is
 /// lowest. Infinite where nothing can be tracked.
 double highest_gain(const Job& job);
 
-/// At which the fit ends: zero unless it tracks to the end.
+/// The gain at which the fit ends: zero unless it tracks to the end.
 double final_gain(const Job& job);
 
-/// Whether the job leaves it to the search at which gains it scores.
+/// Whether the job lets the search choose the gains at which it scores.
 bool has_choice_of_gains(const Job& job);
 
-/// At which a job's residual is scored in any case, the highest first: without a choice one alone.
+/// The gains at which a job's residual is always scored, the highest first; only one where there is
+/// no choice.
 std::vector<double> score_gains(const Job& job);
 
 }  // namespace axisfit

@@ -25,7 +25,7 @@ bool estimates_initial_state(const Job& job, std::size_t recording) {
   });
 }
 
-/// What the samples around one say of its state.
+/// The state at a sample, from the samples around it.
 WindowStart start_at(const Recording& recording, std::size_t sample) {
   WindowStart start{.sample = sample};
   const std::size_t first = sample - std::min(sample, kAround);
@@ -113,13 +113,13 @@ bool WindowStates::improve(const Eigen::VectorXd& residuals, const Columns& deri
     gradient[k] += d * residuals[row];
     cost[k] += residuals[row] * residuals[row];
   }
-  const bool begun = passes_++ > 0;
-  if (!begun) derivatives_ = derivatives;
+  const bool started = passes_++ > 0;
+  if (!started) derivatives_ = derivatives;
   std::vector<bool> is_better(windows_.size());
   double all = 0.0, promised = 0.0;
   for (std::size_t k = 0; k < windows_.size(); ++k) {
     Window& window = windows_[k];
-    const Vector2d tried = begun ? Vector2d(window.best + window.step) : window.best;
+    const Vector2d tried = started ? Vector2d(window.best + window.step) : window.best;
     const Vector2d away = tried - window.nominal;
     const double here = cost[k] + away.dot(window.weight.cwiseProduct(away));
     is_better[k] = here < window.cost;

@@ -22,7 +22,7 @@
 
 namespace axisfit {
 
-/// Where a window begins, and with what state of the arm; none: that in which it arrives.
+/// Where a window begins, and with which state of the arm; none: the state in which it arrives.
 struct WindowStart {
   std::size_t sample = 0;
   std::optional<double> position{}, velocity{};               ///< m, m/s
@@ -33,10 +33,10 @@ struct WindowStart {
 /// (s), and of ten samples at least.
 std::vector<std::size_t> first_samples(const Recording& recording, double length);
 
-/// The windows of a recording by the job's criterion, and for their states what the samples around
-/// say: nothing of what was not recorded. None where the simulation runs
-/// through: by another criterion, under a controller (whose loop forgets by itself), and where
-/// neither position nor velocity was recorded.
+/// The windows of a recording by the job's criterion, with states from the samples around each
+/// start, unset where not recorded. None where the simulation runs through: by another criterion,
+/// under a controller (whose loop forgets by itself), and where neither position nor velocity was
+/// recorded.
 std::vector<WindowStart> window_starts(const Job& job, std::size_t recording);
 
 /// How many states of windows a fit of the job estimates besides its parameters.
@@ -57,17 +57,17 @@ class WindowRestarts {
     if (next_ == starts_.size() || recorder_.instant_of(starts_[next_].sample) != instant) return;
     const WindowStart& start = starts_[next_++];
     if (!start.position && !start.velocity) return;
-    const T position = begun(start.position, axis.state()[0], 0);
-    axis.move_arm(position, begun(start.velocity, axis.state()[1], 1));
+    const T position = started(start.position, axis.state()[0], 0);
+    axis.move_arm(position, started(start.velocity, axis.state()[1], 1));
   }
 
  private:
-  T begun(const std::optional<double>& value, const T& arrived, int part) const {
+  T started(const std::optional<double>& value, const T& arrived, int part) const {
     if (!value) return arrived;
-    T begun(*value);
+    T started(*value);
     if constexpr (!std::is_same_v<T, double>)
-      if (seeded_) begun.v[part] = 1.0;
-    return begun;
+      if (seeded_) started.v[part] = 1.0;
+    return started;
   }
 
   std::span<const WindowStart> starts_;
@@ -88,11 +88,11 @@ class WindowStates {
   const std::vector<WindowStart>& starts() const { return starts_; }
 
   /// Goes on with residuals and their derivatives at starts(): to better states, or, where a
-  /// window's last step made it worse, back by half of it. False: nothing is left to be gained, and
-  /// starts() are those that are best.
+  /// window's last step made it worse, back by half of it. False: nothing more can be gained, and
+  /// starts() are the best states.
   bool improve(const Eigen::VectorXd& residuals, const Columns& derivatives);
 
-  /// Takes out of columns, one row per residual, what the states can make of them.
+  /// Takes out of columns, one row per residual, the part that changes of the states can make.
   void eliminate_from(
       Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> columns)
       const;

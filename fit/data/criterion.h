@@ -1,9 +1,9 @@
 // What a fit minimises: the squared residuals of a simulation, over one of three horizons. The
 // horizon is how far ahead the simulation predicts before the recording corrects it.
 //
-// A model that lacks nothing has the same parameters whatever the horizon. One that lacks something
-// has other parameters with each, for what it lacks adds up over the horizon, and the estimates
-// make up for it.
+// A complete model has the same parameters with every horizon. An incomplete one has different
+// parameters with each: what it lacks adds up over the horizon, and the estimates compensate for
+// it.
 //
 // - FreeRun asks for the whole motion from the command alone. It assumes that nothing is missing
 //   that adds up, and that the inputs are exact: then only noise of the readings is left, and no
@@ -11,10 +11,10 @@
 // - Windows ask for the motion over `length` from any state on. An error of the model adds up
 //   within a window alone. Take them where something slow is missing, such as a force that wanders;
 //   each window costs two fitted states.
-// - Tracking asks for the force from sample to sample, within 1 / gain (a prediction-error fit).
-//   What came before is forgotten, and so is noise of the inputs. It assumes that what is tracked
-//   is neither late nor noisier than the gain can bear. Take it where the input is noisy, or where
-//   much is missing.
+// - Tracking asks for the force from sample to sample, within 1 / gain (a prediction-error fit). It
+//   forgets what came before, noise of the inputs included. It assumes that the tracked signal is
+//   not late, and not too noisy for the gain. Take it where the input is noisy, or where much is
+//   missing.
 //
 // Literature: L. Ljung, System Identification, 2nd ed., Prentice Hall 1999, chapters 7 and 8.
 #pragma once
@@ -53,7 +53,7 @@ inline double window_length(const Criterion& criterion) {
   return windows != nullptr ? windows->length : 0.0;
 }
 
-/// As Tracking has it; zero where nothing tracks.
+/// Tracking::gain; zero where nothing tracks.
 inline double given_gain(const Criterion& criterion) {
   const auto* tracking = std::get_if<Tracking>(&criterion);
   return tracking != nullptr ? tracking->gain : 0.0;

@@ -1,5 +1,4 @@
-// What a recorder does to a signal before it writes it: it filters the samples, and it repeats
-// them.
+// Filtering and repetition of samples by a recorder, before it writes them.
 //
 // A fit does the same to the simulated samples (residual.cpp), so that measured and simulated ones
 // are compared after the same filter. It is linear: applied to dual numbers it filters the
@@ -33,7 +32,7 @@ struct Filter {
 
 inline constexpr int kHighestFilterOrder = 4;
 
-/// Means over samples i - back to i + ahead; at the ends of those that there are.
+/// Means over samples i - back to i + ahead; at the ends, over those that exist.
 template <class T>
 std::vector<T> moving_average(const std::vector<T>& values, std::size_t back, std::size_t ahead) {
   std::vector<T> means;
@@ -77,8 +76,8 @@ void butterworth_pass(std::vector<T>& values, int order, double cutoff) {
   }
 }
 
-/// The values after the filter: as many, at the same instants. Those closer to the ends than
-/// reach_of() say as much about how the filter begins and ends as about the signal.
+/// The filtered values, as many and at the same instants. Those closer to an end than reach_of()
+/// depend on how the filter begins and ends, too.
 template <class T>
 std::vector<T> filtered(const Filter& filter, std::vector<T> values) {
   if (filter.kind == Filter::Kind::moving_average) {
@@ -98,14 +97,14 @@ std::vector<T> filtered(const Filter& filter, std::vector<T> values) {
 /// at 0.8 times the cutoff of each run. `interval` in s.
 std::vector<double> low_pass(std::vector<double> values, double interval, double cutoff);
 
-/// What the filter makes of a one among zeros: an odd number of values, the middle one at the time
+/// Response of the filter to a one among zeros: an odd number of values, the middle one at the time
 /// of the one.
 std::vector<double> impulse_response(const Filter& filter);
 
-/// By how many samples the filter delays a slow signal.
+/// Delay of a slow signal by the filter, in samples.
 double delay_of(const Filter& filter);
 
-/// The values so many samples earlier, linear between samples; the last goes on for ever.
+/// Shifts values earlier by so many samples, linear between samples; the last value continues.
 std::vector<double> advanced(const std::vector<double>& values, double samples);
 
 /// How many samples before the present one still move the filtered value by a thousandth of
@@ -124,8 +123,8 @@ double autocorrelation_time(const Filter& filter);
 /// differ from the one before, and those `hold` samples after the last new one.
 std::vector<bool> fresh_samples(std::span<const double> values, std::size_t hold);
 
-/// The values, with a smooth curve (cubic, by central differences) between those that are there in
-/// place of those that are not; at the ends constant. `times` increase, in any unit.
+/// Replaces the values that are not `there` by a smooth curve (cubic, by central differences)
+/// between those that are, constant at the ends. `times` increase, in any unit.
 std::vector<double> between(std::span<const double> times, std::vector<double> values,
                             const std::vector<bool>& there);
 

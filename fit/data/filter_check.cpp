@@ -64,8 +64,8 @@ struct TwoOctaves {
     const double middle = quantile(quiet_lows, 0.5);
     low = middle / (kMedian * std::sqrt(kGain));
     // White noise has -0.86, noise that falls by 12 dB per octave -0.8; a smooth motion nearly 1.
-    // Of normal values the tail is 2.9, of a tone 1.4; of a gear that rings now and then it is
-    // long.
+    // The tail is 2.9 for normal values, 1.4 for a tone, and long for a gear that rings now and
+    // then.
     const double tail = quantile(quiet_lows, 0.95) / middle;
     alternates = correlation < -0.5 && tail > 2.2;
     is_noise = alternates && tail < 4.0;

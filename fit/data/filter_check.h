@@ -19,11 +19,11 @@ struct SuspectedFilter {
 };
 
 /// The filter that the noise of evenly sampled values shows, if any. White noise is as strong in
-/// the highest octave of the spectrum as in those below, and that of rounding is, too. What the
-/// axis does at such frequencies passes or is a tone, and smooth motion is stronger by far in every
-/// lower octave: neither looks like noise that is lacking in the highest octave all the time. At
-/// least 500 values are needed. A command of stairs, every few samples another value, has such a
-/// spectrum and causes it.
+/// the highest octave of the spectrum as in those below, and that of rounding is, too. Motion of
+/// the axis at such frequencies is short or a tone, and smooth motion is much stronger in every
+/// lower octave: neither looks like noise that is missing from the highest octave throughout. At
+/// least 500 values are needed. A staircase command, with a new value every few samples, has such a
+/// spectrum, and so has the motion that it causes.
 std::optional<SuspectedFilter> suspected_filter(std::span<const double> values);
 
 }  // namespace axisfit

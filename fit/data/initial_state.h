@@ -14,21 +14,21 @@ struct LocalCourse {
   double value_error = 0.0, slope_error = 0.0;
 };
 
-/// Of a cubic through `count` samples from `first` on, as far as there are any. What it leaves of
-/// them, or the stated noise where that is more, makes the errors. Of fewer than four: the sample
-/// itself.
+/// The course at `sample` of a cubic through `count` samples from `first` on, or as many as there
+/// are. Its errors follow from the residuals, or from the stated noise where that is larger. With
+/// fewer than four samples it is the sample itself.
 LocalCourse local_course(const std::vector<double>& times, const std::vector<double>& values,
                          std::size_t first, std::size_t count, std::size_t sample,
                          double noise = 0.0);
 
-/// Arm position and velocity at the first sample, from the recording's first `initial_samples`: the
-/// velocity is a recorded one's mean path, else the slope of the position, by cubic least squares.
-/// Adds them to the recording's overrides as initial.y0 and initial.y1, unless they are there.
-/// Does nothing for what was not recorded.
+/// Arm position and velocity at the first sample, from the recording's first `initial_samples` by
+/// cubic least squares: the velocity is that of the recorded velocity, or else the slope of the
+/// position. Adds them to the recording's overrides as initial.y0 and initial.y1, unless they are
+/// there. What was not recorded is not set.
 void initial_state_from_data(Recording& recording);
 
-/// Standard errors of an initial state that was taken from the samples, by their noise and by what
-/// the cubic leaves of them; zero where it was not.
+/// Standard errors of an initial state that was taken from the samples, from their noise and the
+/// residuals of the cubic; zero where it was not.
 struct InitialErrors {
   double position = 0.0;  ///< m
   double velocity = 0.0;  ///< m/s

@@ -59,8 +59,9 @@ struct Measurement {
 
 /// For a measurement that is filtered or held: sets `uninformative` to the samples that only
 /// repeat, and to those closer to an end than the filter reaches (with a causal one, to the first),
-/// since it saw what was not recorded. What repeats is replaced by a curve between the samples that
-/// do not, so that everything that goes by the values sees the signal and not its stairs.
+/// since their values depend on what was not recorded. Samples that only repeat are replaced by a
+/// curve between the fresh ones, so that everything computed from the values sees the signal and
+/// not its stairs.
 void exclude_uninformative(Measurement& measurement);
 
 /// How many samples of the measurement's noise carry as much information as one independent one;
@@ -79,8 +80,7 @@ struct Recording {
   double command_sigma = 0.0;
   NoiseSource command_noise = NoiseSource::given;  ///< or differences
   std::vector<Measurement> measurements;
-  /// Of the model's channels, beyond their zero, one value per sample; none: they are at their
-  /// zero.
+  /// The model's channels beyond their zero, one value per sample; none: all at their zero.
   std::vector<Samples> channels{};
   InitialState initial_state = InitialState::given;
   /// Samples at the start from which an initial state is taken.
@@ -108,9 +108,9 @@ struct Recording {
   }
 };
 
-/// Whether two recordings are the same one, all or in part, under whatever names: fitted twice it
-/// would make standard errors too small, and fitted it can validate nothing. They are when at the
-/// times that they share they measured the same values of every signal that both have.
+/// Whether two recordings are the same one, wholly or in part, whatever their names: at the times
+/// that they share they have the same values of every signal that both have. Fitted twice, a
+/// recording would make standard errors too small; once fitted, it cannot validate.
 bool share_samples(const Recording& a, const Recording& b);
 
 /// Gaussian knowledge from elsewhere: value = mean +- sigma.
@@ -119,8 +119,8 @@ struct Prior {
   double sigma = 0.0;
 };
 
-/// Which free parameter of a job a result tells of. Where several axes are fitted at once, the axis
-/// will belong here.
+/// The free parameter of a job that a result is about. Where several axes are fitted at once, the
+/// axis will belong here.
 struct ParameterId {
   std::size_t quantity = 0;                ///< index in quantity_list()
   std::optional<std::size_t> recording{};  ///< the only one it applies to; none: all of them
@@ -141,14 +141,16 @@ struct FreeParameter {
   ParameterId id() const { return {quantity, recording}; }
 };
 
-/// The quantity, shared by all recordings, from this initial value within a factor of a hundred, as
-/// far as its range goes; on a linear scale within its whole range if the value is not positive.
+/// A free parameter shared by all recordings, with bounds a factor of a hundred from this initial
+/// value, but within the quantity's range; on a linear scale and within the whole range if the
+/// value is not positive.
 FreeParameter free_parameter(const QuantityEntry& entry, double initial);
-/// That which the sources call so. Throws std::logic_error for a name that they do not know.
+/// The same by the name that the sources use. Throws std::logic_error for a name that they do not
+/// know.
 FreeParameter free_parameter(std::string_view name, double initial);
 
-/// Whether a fit by this criterion takes the quantity to be zero: while it tracks to the end the
-/// lag or delay of a position or velocity. A simulation that tracks a late signal is late itself.
+/// Whether a fit by this criterion takes the quantity to be zero: the lag or delay of a position or
+/// velocity where the fit tracks. A simulation that tracks a late signal is late itself.
 bool is_ignored(const QuantityEntry& entry, const Criterion& criterion);
 
 enum class Loss { squares, huber };
@@ -172,8 +174,9 @@ struct FitOptions {
   bool is_continued() const { return continuation && !tracks(criterion); }
 };
 
-/// What the machine may be asked for. What is not given is taken to be what the recordings covered,
-/// since the machine bore that; the command of an electric drive to be its controller's limit.
+/// Limits of the motions that the machine may be asked for. A limit that is not given is what the
+/// recordings covered, since the machine withstood that; for the command of an electric drive it is
+/// the limit of its controller.
 struct MachineLimits {
   std::optional<double> lowest{}, highest{};  ///< m, position of the arm
   std::optional<double> speed{};              ///< m/s of the arm, either way
@@ -192,15 +195,15 @@ struct Job {
   bool choose_criterion = false;
 
   Vocabulary vocabulary() const { return vocabulary_of(model.structure); }
-  /// What a quantity is on the job's axis.
+  /// The entry of a quantity for the job's axis.
   const QuantityEntry& entry(std::size_t quantity) const {
     return quantity_list(vocabulary())[quantity];
   }
 };
 
-/// The job with the roles of its recordings exchanged: those to validate are fitted, all samples of
-/// them. None where nothing validates, or where a free parameter is one recording's own, or has a
-/// value of its own in a recording to validate.
+/// The job with the roles of its recordings exchanged: those to validate are fitted, with all their
+/// samples. None where there are none, or where a free parameter belongs to one recording or is set
+/// in a recording to validate.
 std::optional<Job> with_exchanged_roles(Job job);
 
 }  // namespace axisfit

@@ -62,7 +62,7 @@ std::vector<double> sixth_differences(std::span<const double> values, std::size_
 
 double noise_from_differences(std::span<const double> values) {
   double spread = spread_of_differences(values, 1);
-  // Of a signal that is frozen at rest, the motion must tell.
+  // A signal that is frozen at rest shows its noise only in motion.
   if (spread == 0.0) spread = spread_of_differences(values, 1, true);
   return std::max(spread / std::sqrt(kGain[0]), resolution_of(values) / std::sqrt(12.0));
 }

@@ -16,17 +16,17 @@ namespace axisfit {
 /// needed, fewer give zero.
 double noise_from_differences(std::span<const double> values);
 
-/// The same of a recorded input; zero for one that is constant from step to step, whose values lie
-/// on a grid because somebody chose them.
+/// The same for a recorded input; zero for a piecewise constant one, whose values lie on a grid
+/// because somebody chose them.
 double noise_of_input(std::span<const double> values);
 
-/// About the mean; zero for no values.
+/// Standard deviation about the mean; zero for no values.
 double standard_deviation(std::span<const double> values);
 
-/// The same of a measurement that may be filtered or held: the standard deviation of the noise
-/// after the filter, taken to be white before. The differences are of samples so far apart that the
-/// filter leaves them a part of that noise; only new samples count. exclude_uninformative() comes
-/// first.
+/// The same for a measurement that may be filtered or held: the standard deviation of the noise
+/// after the filter, assumed white before it. Differences are taken between samples far enough
+/// apart for the filter to leave them a part of that noise; only fresh samples count. Call
+/// exclude_uninformative() first.
 double noise_from_differences(const Measurement& measurement);
 
 /// Differences of the sixth order of samples `stride` apart; empty where there are too few. Those

@@ -199,7 +199,8 @@ double suggested_observer_gain(std::span<const double> times, std::span<const do
 
 namespace {
 
-/// Of the signal with the most samples: the times of several clocks together are never even.
+/// The sampling of the signal with the most samples: the times of several clocks together are never
+/// even.
 Sampling densest_sampling(const Recording& recording) {
   std::vector<double> densest;
   for (const Measurement& m : recording.measurements) {

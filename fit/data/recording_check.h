@@ -21,7 +21,7 @@ struct Sampling {
   double largest_gap = 0.0;  ///< s, zero without gaps
   double gap_at = 0.0;       ///< s, recorded time where the largest one begins
 
-  /// As even as anything that goes from sample to sample needs it.
+  /// Whether the sampling is even enough for whatever goes from sample to sample.
   bool is_even() const { return jitter <= 0.1; }
 };
 Sampling sampling(std::span<const double> times);
@@ -39,14 +39,14 @@ struct ValueCheck {
   /// ever put there: a range that the signal left. Zero where there are none.
   std::size_t clipped = 0;
   double clipped_at = 0.0;  ///< that value
-  /// How often each value is recorded, and a filter that the samples show; 1 and none for a signal
-  /// with a hold or a filter.
+  /// How often each value is recorded, and a filter that the samples show; 1 and none where a hold
+  /// or a filter is declared.
   std::size_t repetition = 1;
   std::optional<SuspectedFilter> filter{};
 };
 
-/// Largest logarithm of the ratio of two sizes of one unit: more than noise makes of a measured
-/// one.
+/// Largest logarithm of the ratio of two sizes that count as having one unit: noise in a measured
+/// size causes less.
 inline constexpr double kSameUnit = 0.14;
 
 /// How a recorded rate compares with the rate of change of another signal.
@@ -72,9 +72,9 @@ std::optional<RateRatio> rate_ratio(std::span<const double> times, std::span<con
 /// where that is empty rad/s to the position.
 ///
 /// `command` is the force that drives the axis, in any unit, one value per sample. The higher the
-/// gain, the more its noise biases the estimates, a mass too large: by the ratio of noise to
-/// signal, times gain, times the root of interval and duration, in standard errors. The gain keeps
-/// that below a quarter.
+/// gain, the more the command's noise biases the estimates (a mass upwards): in standard errors, by
+/// the ratio of noise to signal, times the gain, times the root of interval and duration. The gain
+/// keeps that below a quarter.
 double suggested_observer_gain(std::span<const double> times, std::span<const double> position,
                                std::span<const double> velocity, std::span<const double> command);
 
@@ -96,7 +96,7 @@ struct RecordingCheck {
 
 RecordingCheck check_recording(const Recording& recording);
 
-/// Of every recording of a job, in its order.
+/// Checks every recording of a job, in its order.
 std::vector<RecordingCheck> check_recordings(const Job& job);
 
 }  // namespace axisfit

@@ -19,7 +19,7 @@ struct Sample {
   double observer_force = 0.0;  ///< N, zero when free-running
 };
 
-/// What the simulation says of a recording.
+/// The simulated signals of a recording, and the axis itself.
 struct SimulatedRecording {
   bool finished = false;
   /// Per measurement, in the recording's order, one value per sample, in the signal's unit.

@@ -71,4 +71,18 @@ void exclude_acceleration_at_standstill(Recording& recording) {
     if (m.signal == Signal::acceleration) m.excluded = standstill;
 }
 
+std::optional<ExcludedSamples> excluded_samples(const Measurement& measurement) {
+  ExcludedSamples excluded;
+  for (std::size_t i = 0; i < measurement.excluded.size(); ++i) {
+    if (!measurement.excluded[i]) continue;
+    ++excluded.samples;
+    excluded.mean += measurement.values[i];
+  }
+  if (excluded.samples == 0) return std::nullopt;
+  const double n = static_cast<double>(excluded.samples);
+  excluded.mean /= n;
+  excluded.is_within_noise = std::abs(excluded.mean) < 4.0 * measurement.sigma / std::sqrt(n);
+  return excluded;
+}
+
 }  // namespace axisfit

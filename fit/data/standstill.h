@@ -1,6 +1,7 @@
-// Standstill: stretches of a recording in which the arm does not move.
+// Standstill: parts of a recording in which the arm does not move.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "fit/data/job.h"
@@ -12,7 +13,7 @@ namespace axisfit {
 /// at least twice as long. Empty when neither was recorded.
 std::vector<bool> at_standstill(const Recording& recording);
 
-/// Standard deviation of a signal at standstill, about the mean of each stretch; zero where the
+/// Standard deviation of a signal at standstill, about the mean of each part; zero where the
 /// recording has no standstill.
 double noise_at_standstill(const Recording& recording, const Measurement& measurement);
 
@@ -20,5 +21,13 @@ double noise_at_standstill(const Recording& recording, const Measurement& measur
 /// parameters are, so the accelerometer shows only a bias, which it also has in motion, or an
 /// artefact.
 void exclude_acceleration_at_standstill(Recording& recording);
+
+/// Samples of a signal that do not count, since the arm rests.
+struct ExcludedSamples {
+  std::size_t samples = 0;
+  double mean = 0.0;             ///< of what was measured there
+  bool is_within_noise = false;  ///< whether that mean is no further from zero than noise would be
+};
+std::optional<ExcludedSamples> excluded_samples(const Measurement& measurement);
 
 }  // namespace axisfit

@@ -204,7 +204,7 @@ class JobCheck {
     return nullptr;
   }
 
-  /// What takes so many steps is a mistake in the times, or would be fitted for days.
+  /// So many steps come from a mistake in the times, or would take days to fit.
   void check_length(const Recording& r) {
     constexpr double kStepsBetweenSamples = 1e6, kSteps = 1e8;
     const double step = job_.options.step;
@@ -259,7 +259,7 @@ class JobCheck {
       add(Rule::initial_state, "initial_state: data needs a recorded position or velocity");
   }
 
-  /// What the criterion of the fit asks of a recording.
+  /// Whether a recording suits the criterion of the fit.
   void check_criterion(const Recording& r) {
     const Criterion& criterion = job_.options.criterion;
     if (tracks(criterion)) check_tracked(r);
@@ -277,7 +277,7 @@ class JobCheck {
                       r.name));
   }
 
-  /// What an observer that lasts to the end tracks has to be on time.
+  /// The signal that an observer tracks to the end must not be late.
   void check_tracked(const Recording& r) {
     if (!can_track(r))
       add(Rule::tracked_signal, "a fixed observer gain needs a recorded position or velocity");

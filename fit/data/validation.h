@@ -12,7 +12,7 @@ namespace axisfit {
 
 /// Of a recording.
 inline constexpr std::size_t kLeastSamples = 10;
-/// Of a noise, in any unit. Below this squares of residuals over it overflow.
+/// Least standard deviation of a noise, in any unit: below it, squares of residuals overflow.
 inline constexpr double kMinSigma = 1e-40;
 
 /// A rule that a job breaks, and what it is about.
@@ -51,7 +51,7 @@ struct JobFault {
     second_signal,  ///< of the same kind there is not
     values,         ///< are finite, one for each sample
     flags,          ///< say nothing, or something of each sample
-    filter,         ///< and hold are such as there can be
+    filter,         ///< and hold are possible
     sigma,          ///< is finite and above zero; of a prior, too
     // Of a free parameter.
     quantity,      ///< is one of the axis
@@ -70,7 +70,7 @@ struct JobFault {
 };
 
 /// All rules that the job breaks, whatever it holds: first those of its recordings and parameters,
-/// last its own. What rests on something broken is not judged.
+/// last its own. A rule that depends on a broken one is not checked.
 std::vector<JobFault> faults(const Job& job);
 
 /// Throws std::invalid_argument with a line for each of faults(), which names the recording, signal

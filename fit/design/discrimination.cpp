@@ -49,7 +49,7 @@ double noise_of(const Job& job, Signal signal, const std::vector<double>& values
 
 }  // namespace
 
-Discrimination discriminate(const EffectSelection& selection, const UndecidedPair& rivals,
+Discrimination discriminate(const EffectSelection& selection, const Substitution& rivals,
                             bool new_motions, const RunContext& context) {
   const Job& job = selection.result.job;
   const MachineLimits within = complete_limits(job, selection.result.fit);

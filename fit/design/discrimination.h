@@ -15,13 +15,13 @@ struct Discrimination {
   double size = 0.0;               ///< rms of that difference, in units of the signal's noise
 };
 
-/// In which signal and motion two rivals of a loop differ most. Tried are the motions of the job's
-/// recordings, with the signals that they lack, and, if `new_motions` are safe to ask for, the
-/// family of experiments that keep to the limits for all that the final fit leaves open, see
-/// reach_of(). Limits are completed as for suggest_experiment. Differences are counted in the job's
-/// noise of a signal, or, where it has none, in thousandths of its range. The models are taken as
-/// fitted; refitting them to the new recording would make the difference smaller.
-Discrimination discriminate(const EffectSelection& selection, const UndecidedPair& rivals,
+/// The signal and motion in which two rivals of a search differ most. It tries the motions of the
+/// job's recordings, with the signals that they lack, and, if `new_motions` are safe to ask for,
+/// the family of experiments that keep to the limits for all that the final fit leaves open, see
+/// reach_of(). Limits are completed as for suggest_experiment. Differences are in units of the
+/// job's noise of a signal, or, where it has none, in thousandths of its range. The models are
+/// taken as fitted; refitting them to the new recording would make the difference smaller.
+Discrimination discriminate(const EffectSelection& selection, const Substitution& rivals,
                             bool new_motions, const RunContext& context = {});
 
 }  // namespace axisfit

@@ -62,7 +62,7 @@ bool is_feasible(const MachineLimits& limits, const SimulatedRecording& simulati
          });
 }
 
-/// What each experiment would show; not finite where it does not keep to the limits.
+/// Residuals and Jacobian of each experiment; not finite where it does not keep to the limits.
 std::vector<Linearization> sensitivities_of(const std::vector<Experiment>& candidates,
                                             const Job& next, const FitResult& fit,
                                             const MachineLimits& limits,
@@ -117,7 +117,7 @@ Linearization joined(const Linearization& first, const Linearization& second) {
   return both;
 }
 
-/// Standard errors, of u, from normal equations. An error of one is no knowledge.
+/// Standard errors, of u, from normal equations. An error of one carries no information.
 Eigen::VectorXd errors_of(Eigen::MatrixXd normal) {
   normal.diagonal().array() += 1.0;
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(normal.rows(), normal.cols());
@@ -160,7 +160,7 @@ MachineLimits complete_limits(const Job& job, const FitResult& fit) {
 }
 
 bool is_within(const MachineLimits& limits, double position, double velocity) {
-  // What a recording covered once, a motion may reach.
+  // A motion may reach what a recording covered once.
   constexpr double kTouch = 1e-6;
   return position >= *limits.lowest - kTouch && position <= *limits.highest + kTouch &&
          std::abs(velocity) <= *limits.speed * (1.0 + kTouch);
@@ -257,7 +257,7 @@ std::optional<Reach> reach_of(const Experiment& experiment, const Job& job, cons
       reach.highest = std::max(reach.highest, position);
       reach.speed = std::max(reach.speed, std::abs(velocity));
     };
-    // A fit rejects parameters with which the teeth chatter; the arm hardly moves meanwhile.
+    // A fit rejects parameters with which the gear chatters; the arm hardly moves meanwhile.
     const SimulationResult simulation =
         simulate(model, commands_of(experiment, model, times), times, read);
     if (!simulation.finished || !within) return std::nullopt;
@@ -281,7 +281,7 @@ std::optional<Suggestion> suggest_experiment(const Job& job, const FitResult& fi
     std::pair<std::size_t, double> worst{0, -1.0};
     for (std::size_t i = 0; i < job.free.size(); ++i) {
       const double error = errors[static_cast<Eigen::Index>(i)];
-      // What stands at its bound is as good as known.
+      // A parameter at its bound counts as known.
       if (!fit.parameters[i].uncertainty.at_bound && error > worst.second) worst = {i, error};
     }
     return worst;

@@ -47,12 +47,12 @@ struct Reach {
   double speed = 0.0;                  ///< m/s
 };
 
-/// The first parameter that is held by a bound other than the end of its quantity's range, such as
-/// zero friction: its true value may lie beyond, and no simulation shows what the machine would do.
+/// The first parameter at a bound other than the end of its quantity's range, such as zero
+/// friction: its true value may lie beyond, and no simulation shows what the machine would do.
 std::optional<std::size_t> held_by_bound(const Job& job, const FitResult& fit);
 
-/// Over whatever the fit says the parameters may be: at their estimates, and at 32 corners of their
-/// 95 % intervals, which are all of up to five parameters and otherwise drawn with a seed. A
+/// The reach for all values of the parameters that the fit allows: the estimates, and 32 corners of
+/// their 95 % intervals, which are all of up to five parameters and otherwise drawn with a seed. A
 /// parameter without an interval goes to its bounds: what is not known must not wreck a machine.
 /// Samples as next_sampling_times(). None where a simulation does not finish or leaves the limits,
 /// which are complete.
@@ -69,14 +69,14 @@ struct Suggestion {
   int feasible = 0;           ///< those that kept to the limits at the estimates
 };
 
-/// Of all motions that keep to the limits, see reach_of(), the one after which the least determined
-/// of the parameters is determined best: the largest standard error, relative to the parameter's
-/// size, is smallest (E. Walter and L. Pronzato, Identification of Parametric Models, Springer
-/// 1997, chapter 6). Assumes that the new recording has the signals, the sampling and the noise of
-/// the first one that was fitted, starts where that started, from rest, and leaves residuals of the
-/// size and colour that the fit has left; that the estimates are right; and that the model is
-/// linear over their errors. None when the fit is not usable, a parameter is held by a bound, see
-/// held_by_bound(), or no motion keeps to the limits.
+/// The motion, of all that keep to the limits (see reach_of()), after which the least determined
+/// parameter is determined best: the largest standard error, relative to the parameter's size, is
+/// smallest (E. Walter and L. Pronzato, Identification of Parametric Models, Springer 1997, chapter
+/// 6). Assumes that the new recording has the signals, the sampling and the noise of the first one
+/// that was fitted, starts where that started, from rest, and leaves residuals of the size and
+/// colour that the fit has left; that the estimates are right; and that the model is linear over
+/// their errors. None when the fit is not usable, a parameter is at a bound, see held_by_bound(),
+/// or no motion keeps to the limits.
 std::optional<Suggestion> suggest_experiment(const Job& job, const FitResult& fit,
                                              const RunContext& context = {});
 

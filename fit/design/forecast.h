@@ -8,7 +8,7 @@
 
 namespace axisfit {
 
-/// Were the axis as `values` say, and the noise white and of the stated size.
+/// The errors to expect if the axis is as `values` say, and the noise white and of the stated size.
 struct Forecast {
   bool finite = false;              ///< false: the simulation does not finish
   Uncertainty uncertainty;          ///< that the fit will have
@@ -20,11 +20,11 @@ struct Forecast {
   std::vector<SeriesRows> series;  ///< the columns
 };
 
-/// Of the recordings that are to be fitted, free running, or at a fixed observer gain.
+/// The forecast of a fit to the job's recordings, free running or at a fixed observer gain.
 Forecast forecast(const Job& job, const std::vector<double>& values);
 
-/// What a motion must do for a parameter to be seen, in words that follow "needs"; empty where
-/// nothing general can be said.
+/// The motion that a parameter needs to be seen, in words that follow "needs"; empty where nothing
+/// general can be said.
 std::string_view excitation_needed(const QuantityEntry& quantity, Vocabulary vocabulary);
 
 }  // namespace axisfit

@@ -32,7 +32,7 @@ RunTimeEstimate estimate_run_time(const Job& job) {
   const double starts = std::max(1, job.options.starts);
   const double threads = thread_count(job.options.threads);
   const double per_start = run_time.evaluation * starts / std::min(threads, starts);
-  const double slower = 2.0 / std::min(threads, 8.0);  // candidates share the threads
+  const double slower = 2.0 / std::min(threads, 8.0);  // hypotheses share the threads
   run_time.explained = kStartUp + 60.0 * per_start;
   run_time.unexplained = kStartUp + unexplained * per_start;
   run_time.nothing_missing = run_time.explained + kSearch + 350.0 * slower * run_time.evaluation;

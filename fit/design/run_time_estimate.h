@@ -5,7 +5,7 @@
 
 namespace axisfit {
 
-/// What a run takes, in s, with the analysis of its residual. It depends on what the fit finds: a
+/// The duration of a run, s, with the analysis of its residual. It depends on what the fit finds: a
 /// model that explains the recordings ends at once, any other makes further attempts.
 struct RunTimeEstimate {
   double evaluation = 0.0;  ///< measured: one simulation of all that is fitted, with derivatives

@@ -42,7 +42,8 @@ Spread of_all_but_rivals(const ErrorBudget& budget, double value) {
   if (!budget.scatter) return of_noise(budget).and_also(move_of(budget.gain, value));
   const double between = std::pow(budget.scatter->between, 2);
   const double all = std::pow(error_within_groups(budget, value), 2) + between;
-  // What is inside groups is known well, of which the sum has its share.
+  // The part inside groups is known well, so the sum has more degrees of freedom than the part
+  // between them.
   return spread_of(std::sqrt(all), budget.scatter->degrees_of_freedom * std::pow(all / between, 2));
 }
 

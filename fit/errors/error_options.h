@@ -1,4 +1,4 @@
-// The thresholds of all that is said of errors.
+// The thresholds in what is reported of errors.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,14 @@ namespace axisfit {
 /// Lengths "on the scale of a parameter" are e-folds of a logarithmic one, and half of the range
 /// that its bounds allow of a linear one.
 struct ErrorOptions {
-  /// Distance from a bound, relative to the estimate's size on its scale, at which an estimate is
-  /// held by it. The solver leaves no more.
+  /// Distance from a bound, relative to the estimate's size on its scale, at which an estimate
+  /// counts as at the bound. The solver leaves no more.
   double at_bound = 1e-6;
   /// Part of a combination without effect that leaves a parameter open. Smaller ones come from
   /// rounding.
   double open_part = 0.1;
   /// On the scale of a parameter. An error of more than a factor of e, or an interval as wide as
-  /// the allowed range, is no knowledge.
+  /// the allowed range, carries no information.
   double largest_error = 1.0;
   /// On the same scale: a larger error tells no more than the order of magnitude.
   double weak_error = 0.25;
@@ -29,9 +29,9 @@ struct ErrorOptions {
   /// is left, nobody knows how much there was.
   double least_left = 0.1;
 
-  /// A weak direction is told by the parameters with this part of its largest component or more.
+  /// A weak direction is described by the parameters with this part of its largest component or
+  /// more.
   double told_part = 0.1;
-  /// An exponent this close to 1 or -1 is told as a product or a ratio.
 
   /// A guess is changed by this part ...
   double guess_change = 0.1;
@@ -52,11 +52,12 @@ struct ErrorOptions {
   /// models are fitted to the same recordings.
   double rival_errors = 1.0;
 
-  /// Significance of the likelihood ratio at which scatter counts. Scatter that is left out costs
-  /// coverage, chance that is counted widens intervals a little (bench/results/scatter.md).
+  /// Significance of the likelihood ratio at which scatter counts. Scatter that is missed costs
+  /// coverage; chance that is counted as scatter widens intervals a little
+  /// (bench/results/scatter.md).
   double scatter_significance = 0.2;
-  /// Standard deviation, on the scale of u, of what one group leaves open: far more than anything
-  /// that is determined.
+  /// Standard deviation, on the scale of u, of a parameter that one group leaves open: far more
+  /// than that of any that is determined.
   double open_deviation = 10.0;
   /// A stretch of the only recording has so many samples, for its colour to be known ...
   std::ptrdiff_t stretch_rows = 400;

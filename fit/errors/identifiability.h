@@ -10,7 +10,7 @@
 
 namespace axisfit {
 
-/// What is determined of two parameters of which neither is: first second^exponent.
+/// A combination that is determined, of two parameters that are not: first second^exponent.
 struct Combination {
   std::size_t first = 0, second = 0;  ///< places in the space
   double exponent = 0.0;
@@ -31,12 +31,13 @@ struct WeakDirection {
     bool relative = false;
   };
   std::vector<Part> parts;                   ///< largest first
-  std::optional<Combination> combination{};  ///< that of two parts which is determined
+  std::optional<Combination> combination{};  ///< of two parts, where one is determined
 };
 
 struct Identifiability {
-  /// Of the whitened Jacobian, largest first: the inverse of one is the standard error, under white
-  /// noise, along its direction; e-folds of a logarithmic parameter, magnitudes of a linear one.
+  /// Singular values of the whitened Jacobian, largest first: the inverse of one is the standard
+  /// error, under white noise, along its direction; e-folds of a logarithmic parameter, magnitudes
+  /// of a linear one.
   std::vector<double> singular_values;
   std::vector<std::size_t> without_influence;  ///< parameters that no recorded signal shows
   std::vector<WeakDirection> weak;             ///< weakest first

@@ -7,7 +7,7 @@ enum class ParameterVerdict {
   determined,
   weakly_determined,  ///< to no more than its order of magnitude
   not_determined,     ///< the data leave it open, alone or together with others
-  at_bound,           ///< held by a bound; it has no standard error
+  at_bound,           ///< the estimate is at a bound; it has no standard error
   of_wrong_model,     ///< the model does not describe the machine: the value means nothing
 };
 
@@ -17,8 +17,8 @@ struct ParameterUncertainty {
   bool weak = false;            ///< determined, but to no more than its order of magnitude
   bool of_wrong_model = false;  ///< the model does not describe the machine; no standard error
   double standard_error = 0.0;  ///< in the quantity's unit; 0 unless determined
-  /// Standard error over that of white noise of the stated size; where there is none, the most
-  /// that it could be.
+  /// Standard error over that of white noise of the stated size; where there is no standard error,
+  /// the most that this could be.
   double inflation = 1.0;
   /// 95 % interval, in the quantity's unit: on a logarithmic scale not symmetric; at a bound
   /// one-sided. Both zero where there is none.

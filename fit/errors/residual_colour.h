@@ -10,19 +10,19 @@
 
 namespace axisfit {
 
-/// Of whitened residuals that estimates with the Jacobian J left.
+/// The colour of whitened residuals at estimates with the Jacobian J.
 struct ResidualColour {
-  /// By series, from lag zero on; of white noise only that.
+  /// By series, from lag zero on; for white noise lag zero alone.
   std::vector<std::vector<double>> autocovariance;
   Eigen::MatrixXd middle;  ///< J'G J, with G of these autocovariances
 };
 
-/// Of the rows `series` of `residuals` and of `j`; `inverse` is (J'J)^-1.
+/// The colour of the rows `series` of `residuals` and `j`; `inverse` is (J'J)^-1.
 ///
 /// A series has the autocovariance of its autoregression, never less than the stated noise. The
-/// estimates have followed the residual: of its sum of squares tr(G) they took tr((J'J)^-1 J'G J),
-/// which is one variance for each of them if it is white, and far more if it is as slow as what
-/// they do. The autocovariances are as much larger.
+/// estimates follow the residual, and take tr((J'J)^-1 J'G J) of its sum of squares tr(G): one
+/// variance each if it is white, and far more if it is as slow as what they change. The
+/// autocovariances are scaled up for it.
 ///
 /// Literature: H. White, Econometrica 48 (1980), and J. G. MacKinnon and H. White, Journal of
 /// Econometrics 29 (1985), for the same of residuals that are not equally large.

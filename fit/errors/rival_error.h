@@ -1,4 +1,4 @@
-// What estimates owe to the choice between an effect and its rivals.
+// The error of estimates by the choice between an effect and its rivals.
 #pragma once
 
 #include <optional>
@@ -17,9 +17,9 @@ struct RivalModels {
   std::vector<ParameterId> own;           ///< parameters of the chosen effect
 };
 
-/// Of every parameter of a job's fit the furthest move that is more than its standard error with
-/// a rival in the place of the chosen effect; none of parameters that are the effect's own, not of
-/// the machine or not determined. A standard error is that of the rest of the budget.
+/// For every parameter of a job's fit, the furthest move with a rival in the place of the chosen
+/// effect, if it is more than the standard error from the rest of the budget; none for parameters
+/// that are the effect's own, not of the machine or not determined.
 std::vector<std::optional<RivalShift>> rival_errors(const Job& job,
                                                     std::span<const ParameterResult> parameters,
                                                     std::span<const RivalModels> rivals,

@@ -17,7 +17,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Of the estimates by one group, on the scales of u.
+/// The estimates by one group alone, on the scales of u.
 struct Alone {
   VectorXd step;         ///< from the solution
   MatrixXd covariance;   ///< C_i
@@ -27,8 +27,8 @@ struct Alone {
 /// Rows of a group in the linearisation: those of each of its series.
 using Rows = std::vector<SeriesRows>;
 
-/// What a group says alone: by the colour of the residual that it would leave alone, for what it
-/// leaves of the others' estimates is what is looked for.
+/// The estimates by a group alone. The colour is that of the residual which it would leave alone:
+/// its residual at the estimates of all groups has the scatter in it.
 Alone alone(const VectorXd& residuals, const MatrixXd& jacobian, const Rows& rows,
             const ErrorOptions& options) {
   const Index n = jacobian.cols();
@@ -167,8 +167,7 @@ std::size_t stretches_of(const Linearization& at, std::size_t recording,
       std::clamp<Index>(rows / options.stretch_rows, 1, options.most_stretches));
 }
 
-/// Whether what happens in a stretch of the only fitted recording has little to do with those
-/// before.
+/// Whether a stretch of the only fitted recording hardly depends on those before it.
 bool forgets_within_stretches(const Job& job, const ErrorOptions& options) {
   if (tracks(job.options.criterion)) return true;
   const auto fitted = std::ranges::find(job.recordings, Role::fit, &Recording::role);

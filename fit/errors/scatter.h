@@ -1,8 +1,8 @@
 // How the parameters of a machine differ from recording to recording.
 //
-// A standard error says how well one recording, or all of them together, tell a parameter, as if
-// the machine had the same one in all of them. Friction, offsets and gains have not: they go with
-// temperature, grease and load. So every recording has parameters of its own about those of the
+// A standard error says how well one recording, or all of them together, determine a parameter, as
+// if it were the same in all of them. Friction, offsets and gains do not: they change with
+// temperature, grease and load. So every recording gets parameters of its own about those of the
 // machine, b_i = b + N(0, T) with T diagonal, and the standard deviations in T are estimated, too.
 //
 // Near the solution the problem is linear: with J_i and r_i the rows of a recording, it would move
@@ -10,8 +10,8 @@
 // residual (uncertainty.h). d_i is normal about the machine's with C_i + T, and T maximises the
 // restricted likelihood. A standard deviation counts where its likelihood ratio is significant at
 // 20 %. The estimate of all recordings together is the mean of d_i with the weights P_i = (J'J)^-1
-// J_i'J_i, whose variance grows by the sum of P_i T P_i', which is known as well as groups are
-// many.
+// J_i'J_i. Its variance grows by the sum of P_i T P_i', which is known the better, the more groups
+// there are.
 //
 // Literature: D. A. Harville, Journal of the American Statistical Association 72 (1977).
 #pragma once
@@ -26,13 +26,13 @@
 
 namespace axisfit {
 
-/// What one recording, or a stretch of one, says of a parameter by itself.
+/// The estimate of a parameter by one recording, or a stretch of one, alone.
 struct EstimateOfGroup {
   double value = 0.0, standard_error = 0.0;  ///< in the quantity's unit
   bool determined = false;
 };
 
-/// Of one free parameter.
+/// The scatter of one free parameter.
 struct ParameterScatter {
   std::size_t parameter = 0;  ///< its place in Job::free
   /// Standard deviation between groups, in the quantity's unit; zero where they show none.
@@ -61,9 +61,9 @@ struct Scatter {
 /// begins.
 bool is_of_machine(const Job& job, std::size_t parameter);
 
-/// By the estimates of a usable fit at this observer gain, without scatter in their budgets. Of two
-/// or more fitted recordings, or of stretches of one where the fit tracks it with a fixed observer
-/// or begins anew in short windows (elsewhere what happens in a stretch depends on those before).
+/// The scatter behind the estimates of a usable fit at this observer gain, whose budgets have none
+/// yet. Groups are two or more fitted recordings, or stretches of one that the fit tracks with a
+/// fixed observer or simulates in short windows (otherwise a stretch depends on those before it).
 /// Recordings to validate are shown, too, and have no share. None where there is nothing to
 /// compare. Parameters at a bound, of one recording alone and of the initial state have no scatter.
 /// Costs one residual with its Jacobian.

@@ -12,7 +12,7 @@
 namespace axisfit {
 namespace {
 
-/// (J'J)^-1, of columns J of any length, over what is not rounding.
+/// (J'J)^-1, of columns J of any length, without directions that are mere rounding.
 class NormalInverse {
  public:
   NormalInverse(const Eigen::MatrixXd& j, double open_part) : length_(j.colwise().norm()) {
@@ -59,8 +59,8 @@ struct Spread {
   double input_part = 0.0;  ///< of the variances, the largest that noise of the input makes
 };
 
-/// Of the parameters `chosen`. The rows after the last series are those of priors, whose variance
-/// is one.
+/// The covariance of the parameters `chosen`. The rows after the last series are those of priors,
+/// whose variance is one.
 Spread spread_of(const Linearization& at, const ResidualColour& colour,
                  const std::vector<Eigen::Index>& chosen, const NormalInverse& inverse) {
   Eigen::Index end = 0;

@@ -13,13 +13,13 @@ namespace axisfit {
 struct Uncertainty {
   std::vector<ErrorBudget> budgets;              ///< by parameter: sampling and noise of the input
   std::vector<ParameterUncertainty> parameters;  ///< what those come to
-  /// Of the estimates of u; not a number where a parameter has no standard error.
+  /// Correlation of the estimates of u; not a number where a parameter has no standard error.
   Eigen::MatrixXd correlation;
   double degrees_of_freedom = 0.0;  ///< independent samples, parameters subtracted
   double autocorrelation_time =
       1.0;  ///< samples per independent sample, of the most coloured signal
-  /// Of the variance of an estimate under noise of the stated sizes, what that of the input makes:
-  /// of the estimate where it is largest.
+  /// The part of noise of the input in the variance of an estimate, under noise of the stated
+  /// sizes; the largest of all estimates.
   double input_part = 0.0;
 };
 

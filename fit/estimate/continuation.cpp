@@ -21,7 +21,7 @@ struct StartOptions {
   /// By which the gain is lowered for the second start. A high one feeds the noise of the readings
   /// into the simulation, which can bias weakly determined parameters for good.
   double lower_gain = 5.0;
-  /// Factor within which a start is perturbed, either way: about what initial values are off.
+  /// Factor within which a start is perturbed, either way: about the usual error of initial values.
   double perturbation = 3.0;
   /// Perturbations of an attempt. Where nothing could be simulated so far each costs little: then
   /// more of them are tried.

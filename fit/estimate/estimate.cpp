@@ -136,11 +136,10 @@ bool is_not_followed(const Job& job, const FitResult& result, std::size_t record
 }
 
 /// Whether the model explains everything is for the test of the residuals to decide.
-FitVerdict verdict_of(const Job& job, const FitResult& result) {
+FitVerdict verdict_of(const Job& job, const FitResult& result, const SolveResult& solved) {
   using enum FitVerdict::Kind;
-  if (result.status == Status::failed) return {.kind = not_simulated};
-  if (result.status == Status::not_converged)
-    return {.kind = no_minimum, .iteration_limit = job.options.max_iterations};
+  if (!solved.usable) return {.kind = not_simulated};
+  if (!solved.converged) return {.kind = no_minimum, .iteration_limit = job.options.max_iterations};
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     for (std::size_t m = 0; m < result.recordings[r].signals.size(); ++m)
       if (is_not_followed(job, result, r, m))
@@ -221,11 +220,8 @@ FitResult estimate(const Job& job, const RunContext& context, std::span<const do
   result.identifiability = identifiability(
       space, solved.u, at_solution,
       std::sqrt(found.autocorrelation_time * std::max(1.0, result.reduced_chi_square)));
-  result.status = !solved.usable     ? Status::failed
-                  : solved.converged ? Status::converged
-                                     : Status::not_converged;
   result.at_solution = std::make_shared<const Linearization>(std::move(at_solution));
-  result.verdict = verdict_of(job, result);
+  result.verdict = verdict_of(job, result, solved);
   result.usable = result.verdict.kind == FitVerdict::Kind::usable;
   return result;
 }
@@ -234,7 +230,6 @@ FitResult evaluated(const Job& job) {
   const ParameterSpace space(job);
   const Eigen::VectorXd none(0);
   FitResult result;
-  result.status = Status::converged;
   result.observer_gain = final_gain(job);
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     result.recordings.push_back(evaluate_recording(job, space, r, none, result.observer_gain));

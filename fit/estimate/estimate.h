@@ -17,12 +17,6 @@
 
 namespace axisfit {
 
-enum class Status {
-  converged,      ///< a minimum was found
-  not_converged,  ///< the iteration limit came first
-  failed,         ///< no point could be simulated to the end
-};
-
 /// Differences between a measured and a simulated signal.
 struct SignalError {
   Signal signal = Signal::velocity;
@@ -80,12 +74,12 @@ struct FitVerdict {
   /// Of a usable fit: the parameters that are neither determined nor at a bound.
   std::vector<ParameterId> undetermined{};
 
+  bool has_minimum() const { return kind == Kind::usable || kind == Kind::signal_not_followed; }
   bool operator==(const FitVerdict&) const = default;
 };
 
 struct FitResult {
-  Status status = Status::failed;
-  bool usable = false;  ///< may be relied on for what it says: converged, and better than nothing
+  bool usable = false;  ///< converged, and follows every fitted signal
   FitVerdict verdict;
   std::string message;       ///< the solver's reason to stop
   bool interrupted = false;  ///< not all starts were finished
@@ -104,10 +98,9 @@ struct FitResult {
   double input_part = 0.0;          ///< that noise of the input makes, see uncertainty.h
   Identifiability identifiability;  ///< at the solution
   double observer_gain = 0.0;       ///< of the last stage
-  /// 1/s, at which what was estimated predicts the recordings to validate better; see
-  /// other_gains.h.
+  /// 1/s, the gain whose estimates predict the recordings to validate better, see other_gains.h.
   std::optional<double> better_gain{};
-  /// 1/s, at which noise of the inputs would not add up, see quiet_gain().
+  /// 1/s, a gain at which noise of the inputs would not add up, see quiet_gain().
   std::optional<double> quiet_gain{};
   int iterations = 0;         ///< of the best start, all stages
   std::vector<Stage> stages;  ///< of the best start
@@ -128,16 +121,16 @@ std::vector<double> values_of(const FitResult& result);
 FitResult estimate(const Job& job, const RunContext& context = {},
                    std::span<const double> from = {});
 
-/// Fits a job, and where the noise of a measurement is to be estimated together with the
-/// parameters, goes on in turn: sigma in the job becomes the size of the residual, degrees of
-/// freedom counted, and the job is fitted again with it, until both stay. That is the maximum of
-/// the likelihood of independent normal noise. A signal has one sigma in all recordings in which it
-/// is to be estimated.
+/// Fits a job. Where the noise of a measurement is to be estimated together with the parameters, it
+/// alternates: sigma in the job becomes the size of the residual, degrees of freedom counted, and
+/// the job is fitted again with it, until both stay. This is the maximum of the likelihood of
+/// independent normal noise. A signal has one sigma in all recordings in which it is to be
+/// estimated.
 FitResult estimate_with_noise(Job& job, const RunContext& context = {},
                               std::span<const double> from = {});
 
-/// The job's model as it is, judged on its recordings: a fit of nothing. Its free parameters must
-/// be none.
+/// The job's model as it is, judged on its recordings: a fit without parameters. The job must have
+/// none that are free.
 FitResult evaluated(const Job& job);
 
 /// The model with the estimates in place of the free quantities that all recordings share.

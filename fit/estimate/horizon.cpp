@@ -75,8 +75,8 @@ Recording piece_of(Recording recording, std::size_t first, std::size_t end) {
   return recording;
 }
 
-/// The job without a stretch: what is before and behind it are recordings of their own, for a run
-/// through it would be told by its end what happened there.
+/// The job without a stretch: what is before and after it are recordings of their own, since the
+/// state after it would tell a run what happened in it.
 Job without(Job job, const Stretch& stretch) {
   constexpr std::size_t kFewest = 40;
   const Recording whole = job.recordings[stretch.recording];
@@ -135,13 +135,13 @@ HorizonChoice choose_horizon(const Job& job, const RunContext& context) {
   for (const Stretch& s : stretches) choice.longest = std::max(choice.longest, s.duration);
   choice.trials = criteria_for(job, stretches);
 
-  // From a poor start it is a fit that tracks, or did at first, that gets near; the others begin
-  // there.
+  // From a poor start only a fit that tracks, at least at first, gets near; the others begin where
+  // it ends.
   Job tracking = job;
   tracking.options = recipe::rough(job.options);
   tracking.options.criterion = choice.trials.front().criterion;
   const FitResult near = estimate(tracking, context.quiet());
-  if (near.status == Status::failed)
+  if (near.verdict.kind == FitVerdict::Kind::not_simulated)
     throw NoHorizon("horizon: auto: the model cannot be simulated at any start: " + near.message);
   const std::vector<double> from = values_of(near);
 
@@ -184,8 +184,8 @@ HorizonChoice choose_horizon(const Job& job, const RunContext& context) {
   }
   if (!std::isfinite(choice.trials[choice.chosen].error))
     throw NoHorizon(
-        "horizon: auto: with no horizon can the model be simulated through the stretches that are "
-        "left out: give a horizon, such as 'horizon: 1 s'");
+        "horizon: auto: with every horizon the fit, or the simulation of a stretch that was left "
+        "out, failed: give a horizon, such as 'horizon: 1 s'");
   return choice;
 }
 

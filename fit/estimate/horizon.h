@@ -1,8 +1,8 @@
-// The choice of what a fit minimises: how far ahead the simulation predicts.
+// The choice of the horizon: how far ahead the simulation of a fit predicts.
 //
-// The same model, wrong in the same way, has other parameters with each horizon. Which of them
-// predict best is asked of the fitted recordings alone: each of their stretches is left out once,
-// the rest is fitted with every horizon, and the model then runs free through that stretch.
+// An incomplete model has different parameters with each horizon. The fitted recordings alone
+// decide which of them predict best: each of their stretches is left out once, the rest is fitted
+// with every horizon, and the model then runs free through that stretch.
 #pragma once
 
 #include <stdexcept>
@@ -16,9 +16,9 @@ namespace axisfit {
 /// One of the criteria, and how it did.
 struct HorizonTrial {
   Criterion criterion;
-  /// Root of the mean square over the stretches left out and the fitted signals, of the free run
-  /// from how the stretch begins, per standard deviation of the signal. Infinite where a fit or a
-  /// run failed.
+  /// Rms error of the free run over the stretches left out and the fitted signals, per standard
+  /// deviation of the signal. The run begins with the state that suits the first tenth of the
+  /// stretch best. Infinite where a fit or a run failed.
   double error = 0.0;
 };
 
@@ -31,7 +31,7 @@ struct HorizonChoice {
   const HorizonTrial& best() const { return trials[chosen]; }
 };
 
-/// With no horizon can the model be fitted and simulated.
+/// No horizon can be chosen: the model cannot be simulated at the start, or every horizon fails.
 struct NoHorizon : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

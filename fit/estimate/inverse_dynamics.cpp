@@ -21,8 +21,8 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, values.size())));
 }
 
-/// Mean of a command over an interval about any instant. That of the force that gave the mean
-/// acceleration there; at a switch it has no jump.
+/// Mean of a command over an interval about any instant. It belongs to the mean acceleration there,
+/// and has no jump at a switch.
 class MeanCommand {
  public:
   explicit MeanCommand(const Schedule& command) : command_(command) {
@@ -159,7 +159,7 @@ std::optional<Trajectory> trajectory_of(const Job& job, const Model<double>& mod
   for (std::size_t i = edge; i + edge < n; ++i)
     path.counts[i] =
         std::abs(path.velocity[i]) > rest && (recording.held_out.empty() || !recording.held_out[i]);
-  // Of stretches at rest nothing remains, and of what does as much as the low-pass leaves apart.
+  // Nothing remains of parts at rest; of the rest, as many samples as the low-pass leaves apart.
   const std::vector<double> remaining = low_pass(path.counts, h, path.cutoff);
   const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(0.4 / (path.cutoff * h)));
   for (std::size_t i = edge; i + edge < n; i += stride)
@@ -310,14 +310,15 @@ bool is_free(const Job& job, std::string_view name) {
   return std::ranges::count(job.free, quantity_index(name), &FreeParameter::quantity) > 0;
 }
 
-/// Whether the balance of forces can tell a quantity of the job.
+/// Whether the balance of forces can determine a quantity of the job.
 bool is_balanced(const Job& job, const QuantityEntry& entry) {
   if (entry.group == "elastic_mode" || (!entry.group.empty() && !entry.effect)) return false;
   const bool is_gain = entry.name == "K_f" || entry.name == "K_m" || entry.name == "r_g";
   return !(is_gain && is_free(job, "M"));
 }
 
-/// Holds what the balance cannot tell; the places in the job of those that remain.
+/// Fixes the parameters that the balance cannot determine; returns the places in the job of the
+/// others.
 std::vector<std::size_t> keep_balanced(Job& job, const std::vector<Trajectory>& paths) {
   std::vector<std::size_t> places(job.free.size());
   std::iota(places.begin(), places.end(), std::size_t{0});
@@ -414,7 +415,7 @@ std::optional<InverseDynamics> inverse_dynamics(const Job& job) {
   constexpr int kWeighings = 3;
   for (int pass = 0; pass <= kWeighings; ++pass) {
     SolveOptions options;
-    options.penalize_distance_from_start = pass == 0;  // what it cannot tell does not run away
+    options.penalize_distance_from_start = pass == 0;  // a parameter that it cannot tell stays
     const SolveResult solved = minimize(space, costs_of(balanced, space, paths), u, options);
     if (!solved.usable) return std::nullopt;
     u = solved.u;

@@ -16,13 +16,13 @@ namespace axisfit {
 /// highest_gain(). Nothing where every input is exact, or no simulation can track.
 ///
 /// Noise of standard deviation s_a in the acceleration, s_x in a recorded position or s_v in a
-/// recorded velocity, from sample to sample, gives a bandwidth of sqrt(s_a / s_x) or s_a / s_v.
-/// What s_a is in a job's units follows from what the noise does to a simulation that tracks.
+/// recorded velocity, from sample to sample, gives a bandwidth of sqrt(s_a / s_x) or s_a / s_v. In
+/// a job's units, s_a follows from the effect of the noise on a tracking simulation.
 std::optional<double> kalman_gain(const Job& job, const std::vector<double>& values);
 
-/// That gain, for a free run that noise of the inputs moves by more than three times the noise of
-/// the readings: its residual says little of the model, and its estimates err more than those of a
-/// fit that tracks. Nothing for any other fit.
+/// The same gain for a free run that noise of the inputs moves by more than three times the noise
+/// of the readings: its residual says little of the model, and its estimates err more than those of
+/// a fit that tracks. Nothing for any other fit.
 std::optional<double> quiet_gain(const Job& job, const FitResult& fit);
 
 /// Whether a search that was `asked` for a free run came to track because of that noise. A

@@ -11,7 +11,7 @@
 namespace axisfit {
 
 /// Fits a job of fixed observer gain again at a third and at three times that gain, from the fit's
-/// values: those of them that are usable. None of other jobs, or of a fit that is not usable.
+/// values: returns those that are usable; none for other jobs, or for a fit that is not usable.
 std::vector<FitResult> fits_at_other_gains(const Job& job, const FitResult& fit,
                                            const RunContext& context = {},
                                            const ErrorOptions& options = {});

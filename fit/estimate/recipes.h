@@ -9,21 +9,22 @@
 
 namespace axisfit::recipe {
 
-/// What begins near its minimum finds it at once: one start, one continuation.
+/// For a fit that begins near its minimum and finds it at once: one start, one continuation.
 inline FitOptions once(FitOptions options) {
   options.starts = 1;
   options.attempts = 1;
   return options;
 }
 
-/// What begins at a minimum, or close by, and must not leave it: no continuation, which could.
+/// For a fit that begins at a minimum, or close by, and must not leave it: no continuation, which
+/// could.
 inline FitOptions polish(FitOptions options) {
   options.starts = 1;
   options.continuation.reset();
   return options;
 }
 
-/// Where the minimum is, to a small part of the standard errors: others go on from there.
+/// For a fit from which others go on: accurate to a small part of the standard errors.
 inline FitOptions rough(FitOptions options) {
   options.tolerance = 1e-6;
   return options;

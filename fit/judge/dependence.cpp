@@ -53,17 +53,16 @@ std::vector<std::size_t> quantile_ranges(const std::vector<double>& x, std::size
   return range;
 }
 
-constexpr std::size_t kRanges = 12;
-constexpr double kSignificant = 1e-3;
+constexpr GradeOptions kOptions;
 
-/// That of a series on a variable; none where there is none beyond chance.
+/// The dependence of a series on a variable; none where it is not beyond chance.
 std::optional<Dependence> dependence_on(const std::string& name, const std::vector<double>& x,
                                         const std::vector<double>& values) {
   struct Range {
     double count = 0.0, mean = 0.0;
   };
   std::map<std::size_t, Range> ranges;
-  const auto range = quantile_ranges(x, kRanges);
+  const auto range = quantile_ranges(x, kOptions.ranges);
   for (std::size_t i = 0; i < x.size(); ++i) {
     Range& r = ranges[range[i]];
     r.count += 1.0;
@@ -84,7 +83,7 @@ std::optional<Dependence> dependence_on(const std::string& name, const std::vect
   const double groups = static_cast<double>(ranges.size() - 1);
   const double p =
       fisher_upper_tail(between / groups / residual_variance, groups, degrees_of_freedom);
-  if (!(p < kSignificant)) return std::nullopt;
+  if (!(p < kOptions.significance)) return std::nullopt;
   return Dependence{name, between / (n * mean_square(values)), p};
 }
 
@@ -117,10 +116,9 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
     std::vector<double> instants;
     for (const std::size_t i : series.samples) instants.push_back(times[i]);
     test.outliers = outliers(series.values);
-    // Beside its neighbours alone, the last count of an encoder stands out.
-    constexpr double kNoise = 4.0;
-    std::erase_if(test.outliers,
-                  [&](std::size_t i) { return std::abs(series.values[i]) < kNoise; });
+    std::erase_if(test.outliers, [&](std::size_t i) {
+      return std::abs(series.values[i]) < kOptions.outlier_sigmas;
+    });
     test.drift = drift(instants, series.values);
     test.resolution = resolution_of(recording.measurements[series.measurement].values);
     const auto look_at = [&](const std::string& name, auto&& value) {

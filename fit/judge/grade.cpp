@@ -6,18 +6,12 @@
 namespace axisfit {
 namespace {
 
-// Half is what a model must do to be one.
-constexpr double kLeastPercent = 50.0;
-// Of a simulation that drifts, the missing force must be small all the more.
-constexpr double kSmallForcePercent = 10.0;
-
 /// Whether the recordings tell anything of a parameter; of one at its bound, how far away it is.
-bool is_informed(const FreeParameter& free, const ParameterUncertainty& u) {
+bool is_informed(const FreeParameter& free, const ParameterUncertainty& u, double part) {
   if (!u.at_bound) return u.determined;
   if (!u.has_interval()) return false;
   const auto scale = [&](double x) { return free.logarithmic ? std::log(x) : x; };
-  constexpr double kPart = 0.25;
-  return scale(u.upper) - scale(u.lower) < kPart * (scale(free.upper) - scale(free.lower));
+  return scale(u.upper) - scale(u.lower) < part * (scale(free.upper) - scale(free.lower));
 }
 
 double variance_of(const Recording& recording, const Measurement& measurement) {
@@ -33,27 +27,28 @@ double variance_of(const Recording& recording, const Measurement& measurement) {
 }
 
 /// How well a simulation with these errors follows a signal, see FitGrade::percent.
-double followed_percent(double variance, const SignalError& error) {
+double followed_percent(double variance, const SignalError& error, double noisy_chi_square) {
   const bool noise_known = error.noise != NoiseSource::fit;
   const double noise = noise_known ? error.sigma * error.sigma : 0.0;
   const double unexplained = std::max(0.0, error.rmse * error.rmse - noise);
-  // What is hardly more than noise proves nothing either way.
-  if (unexplained == 0.0 || (noise_known && error.reduced_chi_square <= 2.0)) return 100.0;
+  // A residual that is hardly more than noise proves nothing.
+  if (unexplained == 0.0 || (noise_known && error.reduced_chi_square <= noisy_chi_square))
+    return 100.0;
   return 100.0 * (1.0 - std::sqrt(unexplained / std::max(variance - noise, 0.0)));
 }
 
 /// The worst signal of the free-running simulation.
-FitGrade worst_simulation(const Job& job, const FitResult& fit) {
+FitGrade worst_simulation(const Job& job, const FitResult& fit, const GradeOptions& options) {
   FitGrade worst{.reason = FitGrade::Reason::simulation, .percent = 100.0};
   for (std::size_t r = 0; r < job.recordings.size(); ++r)
     for (std::size_t m = 0; m < job.recordings[r].measurements.size(); ++m) {
       const Measurement& measurement = job.recordings[r].measurements[m];
       if (!measurement.fitted) continue;
       const bool finished = fit.recordings[r].free_running.finished;
-      const double percent = finished
-                                 ? followed_percent(variance_of(job.recordings[r], measurement),
-                                                    fit.recordings[r].signals[m])
-                                 : NAN;
+      const double percent =
+          finished ? followed_percent(variance_of(job.recordings[r], measurement),
+                                      fit.recordings[r].signals[m], options.noisy_chi_square)
+                   : NAN;
       if (percent >= worst.percent) continue;
       worst.recording = r;
       worst.signal = measurement.signal;
@@ -77,7 +72,8 @@ FitGrade worst_force(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-FitGrade grade_of(const Job& job, const FitResult& fit, const std::optional<Diagnosis>& diagnosis) {
+FitGrade grade_of(const Job& job, const FitResult& fit, const std::optional<Diagnosis>& diagnosis,
+                  const GradeOptions& options) {
   using enum FitGrade::Reason;
   const auto graded = [](Grade grade, FitGrade basis) {
     basis.grade = grade;
@@ -87,21 +83,22 @@ FitGrade grade_of(const Job& job, const FitResult& fit, const std::optional<Diag
   if (kind == FitVerdict::Kind::not_simulated || kind == FitVerdict::Kind::no_minimum) return {};
   bool informed = false;
   for (std::size_t i = 0; i < fit.parameters.size(); ++i)
-    informed = informed || is_informed(job.free[i], fit.parameters[i].uncertainty);
+    informed =
+        informed || is_informed(job.free[i], fit.parameters[i].uncertainty, options.informed_part);
   if (!informed) return graded(Grade::nothing_determined, {.reason = parameters});
-  const FitGrade simulation_found = worst_simulation(job, fit);
+  const FitGrade simulation_found = worst_simulation(job, fit, options);
   if (kind == FitVerdict::Kind::signal_not_followed)
-    return graded(Grade::model_wrong, simulation_found.percent >= kLeastPercent
+    return graded(Grade::model_wrong, simulation_found.percent >= options.least_followed
                                           ? FitGrade{.reason = simulation,
                                                      .recording = fit.verdict.recording,
                                                      .signal = fit.verdict.signal}
                                           : simulation_found);
   const FitGrade force_found = diagnosis ? worst_force(*diagnosis) : FitGrade{};
-  if (force_found.percent > kLargestForcePercent) return graded(Grade::model_wrong, force_found);
-  if (!(simulation_found.percent >= kLeastPercent)) {
+  if (force_found.percent > options.largest_force) return graded(Grade::model_wrong, force_found);
+  if (!(simulation_found.percent >= options.least_followed)) {
     const bool only_drifts = fit.observer_gain > 0.0 && diagnosis &&
                              std::isfinite(simulation_found.percent) &&
-                             force_found.percent < kSmallForcePercent;
+                             force_found.percent < options.small_force;
     FitGrade found = graded(only_drifts ? Grade::usable : Grade::model_wrong, simulation_found);
     if (only_drifts) found.reason = tracking_only;
     return found;

@@ -1,4 +1,4 @@
-// The grade of a fit: how far it can be relied on, in the words of a colleague.
+// The grade of a fit: how far it can be relied on.
 #pragma once
 
 #include <optional>
@@ -6,9 +6,6 @@
 #include "fit/judge/diagnosis.h"
 
 namespace axisfit {
-
-/// Per cent of the drive force that may be missing of a model that describes the machine.
-constexpr double kLargestForcePercent = 50.0;
 
 /// Best first.
 enum class Grade {
@@ -46,6 +43,7 @@ struct FitGrade {
 };
 
 /// `diagnosis` is that of the fit; without one a fit is not called explained.
-FitGrade grade_of(const Job& job, const FitResult& fit, const std::optional<Diagnosis>& diagnosis);
+FitGrade grade_of(const Job& job, const FitResult& fit, const std::optional<Diagnosis>& diagnosis,
+                  const GradeOptions& options = {});
 
 }  // namespace axisfit

@@ -20,8 +20,8 @@ double rms(const std::vector<double>& values, std::size_t first) {
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, values.size() - first)));
 }
 
-/// N rms of the low-passed observer force that white noise of the measurement makes: the hold
-/// follows a velocity like k / (s + k), a position like (2 w s + w^2) / (s + w)^2.
+/// N rms of the low-passed observer force that white noise of the measurement makes: the observer
+/// tracks a velocity like k / (s + k), a position like (2 w s + w^2) / (s + w)^2.
 double noise_floor(const Recording& recording, const Observer& observer, double mass,
                    double interval, double cutoff) {
   const Measurement* m =
@@ -91,6 +91,13 @@ MissingForce missing_force(const Job& job, const FitResult& result, std::size_t 
   missing.drive_rms = rms(low_pass(std::move(drive), interval, missing.cutoff), first);
   missing.found = true;
   return missing;
+}
+
+std::vector<MissingForce> missing_forces(const Job& job, const FitResult& result) {
+  std::vector<MissingForce> forces;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    forces.push_back(missing_force(job, result, r));
+  return forces;
 }
 
 }  // namespace axisfit

@@ -12,8 +12,8 @@
 namespace axisfit {
 
 struct MissingForce {
-  bool found = false;           ///< false: neither velocity nor position was recorded, or it failed
-  double cutoff = 0.0;          ///< Hz, of the zero-phase low-pass; the hold is 2 pi times as firm
+  bool found = false;   ///< false: neither velocity nor position was recorded, or it failed
+  double cutoff = 0.0;  ///< Hz, of the zero-phase low-pass; the observer gain is 2 pi times that
   std::vector<double> force;    ///< N on the arm side, per sample, low-passed
   std::vector<Sample> samples;  ///< the axis at those samples
   double rms = 0.0;             ///< N, over the scored samples
@@ -25,8 +25,11 @@ struct MissingForce {
 /// is hardly more.
 double percent_of_drive(const MissingForce& force);
 
-/// Of one recording, with the parameters of a fit. The cutoff is 40 Hz, halved while noise makes
-/// more than 1 % of the largest drive force, down to 5 Hz.
+/// The missing force of one recording, with the parameters of a fit. The cutoff is 40 Hz, halved
+/// while noise makes more than 1 % of the largest drive force, down to 5 Hz.
 MissingForce missing_force(const Job& job, const FitResult& result, std::size_t recording);
+
+/// Of every recording.
+std::vector<MissingForce> missing_forces(const Job& job, const FitResult& result);
 
 }  // namespace axisfit

@@ -13,10 +13,10 @@ namespace axisfit {
 /// farther than Gaussian noise, white or coloured, goes in 99 % of all series, however long. Up to
 /// three in a row may be bad.
 ///
-/// What a wrong model leaves is no outlier. Steps, slow errors and oscillations have neighbours
-/// that go along, or out to the other side; a sample is one only where its own neighbours stay
-/// within a third of its deviation. An event shorter than three samples cannot be distinguished
-/// from bad ones.
+/// The residual of a wrong model is no outlier. In steps, slow errors and oscillations the
+/// neighbours deviate, too, to the same side or the other; a sample is an outlier only where its
+/// own neighbours stay within a third of its deviation. An event shorter than three samples cannot
+/// be distinguished from bad ones.
 ///
 /// Values are finite and evenly spaced in time. The series has its own scale: nothing is found in
 /// fewer than 30 samples, nor among the first two and the last two, where a spike is not seen to

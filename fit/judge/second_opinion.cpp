@@ -22,19 +22,15 @@ double cost_at(const Job& job, const std::vector<double>& values, double observe
 
 /// Whether the missing force or the simulation tells that the model is wrong, or the fit is.
 bool is_graded_wrong(const Job& job, const FitResult& fit) {
-  Diagnosis diagnosis;
-  for (std::size_t r = 0; r < job.recordings.size(); ++r)
-    diagnosis.forces.push_back(missing_force(job, fit, r));
-  return !grade_of(job, fit, diagnosis).is_usable();
+  return !grade_of(job, fit, Diagnosis{.forces = missing_forces(job, fit)}).is_usable();
 }
 
 }  // namespace
 
 InverseStart try_inverse_start(Job& job, FitResult& fit, const RunContext& context) {
   const std::optional<InverseDynamics> estimate = inverse_dynamics(job);
-  // One that explains next to nothing is no start.
-  constexpr double kLargestPart = 0.7;
-  if (!estimate || !(estimate->residual < kLargestPart * estimate->drive_rms))
+  const GradeOptions options;
+  if (!estimate || !(estimate->residual < options.useful_residual * estimate->drive_rms))
     return InverseStart::not_tried;
   const std::vector<double> from = start_from(job, *estimate);
   const double cost = cost_at(job, values_of(fit), fit.observer_gain);
@@ -46,11 +42,11 @@ InverseStart try_inverse_start(Job& job, FitResult& fit, const RunContext& conte
   FitResult other = estimate_with_noise(again, context, from);
   again.options = job.options;
   const auto rank = [](const FitResult& f, double c) {
-    return std::tuple(!f.usable, f.status == Status::failed, c);
+    return std::tuple(!f.usable, f.verdict.kind == FitVerdict::Kind::not_simulated, c);
   };
-  constexpr double kLower = 0.999;  // or else it is the same minimum
   const double other_cost = cost_at(job, values_of(other), fit.observer_gain);
-  if (!(rank(other, other_cost) < rank(fit, kLower * cost))) return InverseStart::no_better;
+  if (!(rank(other, other_cost) < rank(fit, options.same_minimum * cost)))
+    return InverseStart::no_better;
   other.starts.insert(other.starts.begin(), fit.starts.begin(), fit.starts.end());
   fit = std::move(other);
   job = std::move(again);
@@ -61,7 +57,7 @@ std::optional<SecondOpinion> second_opinion(const Job& job, const FitResult& fit
   std::optional<InverseDynamics> estimate = inverse_dynamics(job);
   if (!estimate) return std::nullopt;
   SecondOpinion opinion{*std::move(estimate), {}};
-  constexpr double kErrors = 5.0, kPart = 0.1;
+  const GradeOptions options;
   for (std::size_t i = 0; i < opinion.estimate.parameters.size() && opinion.estimate.exact; ++i) {
     const InverseEstimate& own = opinion.estimate.parameters[i];
     const ParameterResult& other = fit.parameters[own.parameter];
@@ -69,8 +65,9 @@ std::optional<SecondOpinion> second_opinion(const Job& job, const FitResult& fit
         std::hypot(own.uncertainty.standard_error, other.uncertainty.standard_error);
     const double difference = std::abs(own.value - other.value);
     const double size = std::max(std::abs(own.value), std::abs(other.value));
-    if (fit.usable && other.uncertainty.determined && difference > kErrors * error &&
-        difference > kPart * size)
+    if (fit.usable && other.uncertainty.determined &&
+        difference > options.contradiction_errors * error &&
+        difference > options.contradiction_part * size)
       opinion.contradictions.push_back(i);
   }
   return opinion;

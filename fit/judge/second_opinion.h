@@ -1,5 +1,5 @@
-// What the inverse-dynamics estimate (inverse_dynamics.h) is good for once there is a fit: another
-// start where that is bad, and a second opinion where it is not.
+// Uses of the inverse-dynamics estimate (inverse_dynamics.h) beside a fit: another start where the
+// fit is bad, and a second opinion where it is not.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace axisfit {
 
-/// What came of a fit that began again from the inverse-dynamics estimate.
+/// The outcome of a fit that began again from the inverse-dynamics estimate.
 enum class InverseStart {
   not_tried,  ///< there was no reason to, or no such estimate
   no_better,  ///< the fit from the initial values was kept

@@ -94,17 +94,18 @@ void allow_for_parameters(const Job& job, const FitResult& result,
     add_input_noise(other, unfitted, *noise, false, list);
 }
 
-bool is_explained(const ResidualSeries& series) {
+bool is_explained(const ResidualSeries& series, const GradeOptions& options) {
   const double root = std::sqrt(static_cast<double>(series.values.size()) / series.noise_time);
   if (series.noise == NoiseSource::fit)
     return autocorrelation_time(series.values) <
-           series.noise_time * (1.0 + std::max(0.25, 8.0 / root));
-  // Standard error of the mean square of white noise, times root: about the true size, or about one
-  // that noise_from_differences() found in as many samples (both scatter; by simulation).
-  const double spread = series.noise == NoiseSource::given ? std::sqrt(2.0) : 3.2;
+           series.noise_time *
+               (1.0 + std::max(options.colour_excess, options.colour_errors / root));
+  const double spread =
+      series.noise == NoiseSource::given ? std::sqrt(2.0) : options.spread_of_estimated_noise;
   const double input = series.input_noise_given ? series.input_noise : 0.0;
-  return mean_square(series.values) <
-         1.0 + std::max(0.05, 4.0 * spread / root) + 4.0 * series.allowance + input;
+  return mean_square(series.values) < 1.0 +
+                                          std::max(options.excess, options.errors * spread / root) +
+                                          options.errors * series.allowance + input;
 }
 
 }  // namespace axisfit

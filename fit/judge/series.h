@@ -6,6 +6,7 @@
 
 #include "base/autocovariance.h"
 #include "fit/estimate/estimate.h"
+#include "fit/judge/options.h"
 
 namespace axisfit {
 
@@ -18,7 +19,7 @@ struct SeriesKey {
   bool operator==(const SeriesKey&) const = default;
 };
 
-/// What belongs to a key in a list of things derived from SeriesKey; null where there is none.
+/// The element of a list with this key, of a type derived from SeriesKey; null where there is none.
 template <class List>
 auto* find_series(List& list, const SeriesKey& key) {
   const auto at = std::ranges::find_if(list, [&](const SeriesKey& k) { return k == key; });
@@ -32,10 +33,10 @@ struct ResidualSeries : SeriesKey {
   /// Samples of the noise per independent one: above one where the filter of the measurement made
   /// it so.
   double noise_time = 1.0;
-  /// What the uncertainty of the estimates alone adds to the mean square, on average; zero where
-  /// the series was fitted, and until allow_for_parameters() finds it.
+  /// Mean square that the uncertainty of the estimates adds, on average; zero where the series was
+  /// fitted, and until allow_for_parameters() finds it.
   double allowance = 0.0;
-  /// What noise of the input of the stated size adds to the mean square, the most of its draws.
+  /// Mean square that noise of the input of the stated size adds, the largest of its draws.
   double input_noise = 0.0;
   /// Whether the size of that is given. One that was estimated excuses nothing.
   bool input_noise_given = false;
@@ -49,17 +50,17 @@ std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& res
 /// Number of fitted samples.
 double samples_of(const std::vector<ResidualSeries>& list);
 
-/// Finds the allowances of all series that were not fitted: what the fit leaves open, another
-/// motion may show all the more. Likewise what noise of their inputs adds, where it is given.
+/// Finds the allowances of all series that were not fitted: another motion may show more of what
+/// the fit leaves open. Likewise finds what noise of their inputs adds, where it is given.
 void allow_for_parameters(const Job& job, const FitResult& result,
                           std::vector<ResidualSeries>& list);
 
 /// Whether a series shows no more than its noise: a mean square within 5 % of one, or within four
 /// standard errors of that of white noise, the allowance four times, and noise of the input where
-/// its size is given. The colour of the residual widens nothing, for what a model lacks is
-/// coloured, too; that which a filter of the measurement gives its noise does. Where the noise was
-/// estimated from the series itself, its size carries no information: then, whether it is no more
-/// coloured than that.
-bool is_explained(const ResidualSeries& series);
+/// its size is given. The colour of the residual does not widen these limits, for what a model
+/// lacks is coloured, too; the colour that a filter of the measurement gives its noise does. Where
+/// the noise was estimated from the series itself, its size carries no information: the series is
+/// then explained if it is hardly more coloured than that.
+bool is_explained(const ResidualSeries& series, const GradeOptions& options = {});
 
 }  // namespace axisfit

@@ -20,7 +20,8 @@ std::vector<std::size_t> to_validate(const Job& job) {
   return recordings;
 }
 
-/// Of all recordings one after the other; empty where one is not simulated to its end.
+/// Window errors of all recordings, one after the other; empty where one is not simulated to its
+/// end.
 std::vector<double> window_errors(const ModelEntry& model,
                                   const std::vector<std::size_t>& recordings, double horizon) {
   std::vector<double> all;
@@ -117,7 +118,7 @@ std::optional<Comparison> compare_models(const std::vector<ModelEntry>& models,
     all += times.back() - times.front();
   }
   Comparison comparison;
-  // Round ones that leave eight windows together, and the whole.
+  // Round horizons that leave eight windows in all, and whole recordings.
   constexpr double kWindows = 8.0;
   for (const double horizon : {0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0})
     if (horizon >= 0.01 * shortest && kWindows * horizon <= all)

@@ -35,10 +35,10 @@ std::vector<double> without(const std::vector<double>& force,
   return {left.data(), left.data() + left.size()};
 }
 
-/// What a recording says of the missing force; nothing where it is not more than the noise makes.
-/// Without what other parameters would make there, for these have errors and a scatter of their
-/// own: viscous and dry friction, a constant force, and the drive's gain, which is a mass as well.
-/// (With the acceleration besides, it would be the balance of forces itself.)
+/// The missing force of a recording; nothing where it is no more than noise. The part that other
+/// parameters would make is taken out, for these have errors and a scatter of their own: viscous
+/// and dry friction, a constant force, and the drive's gain, which is a mass as well. (With the
+/// acceleration besides, it would be the balance of forces itself.)
 std::optional<ForceSeries> force_series(const Recording& r, const MissingForce& missing) {
   constexpr double kClear = 1.5;
   if (!missing.found) return std::nullopt;
@@ -191,8 +191,8 @@ AxisUncertainty axis_uncertainty(const Job& job, const FitResult& fit,
     // On a logarithmic scale the errors are those of the logarithm.
     const double per_unit = free.logarithmic ? 1.0 / p.value : 1.0;
     UncertainQuantity q{free.quantity, free.logarithmic, error * per_unit, 0.0, 1.0};
-    // What changes from stretch to stretch changes during a prediction, too: it is part of the
-    // missing force, and its mean is as uncertain as the estimate.
+    // A parameter that changes from stretch to stretch changes during a prediction, too: the change
+    // is part of the missing force, and the mean is as uncertain as the estimate.
     if (scatter && !scatter->of_stretches) {
       const auto s = std::ranges::find(scatter->parameters, i, &ParameterScatter::parameter);
       if (s != scatter->parameters.end() && s->error) {

@@ -1,8 +1,8 @@
-// What a fitted model says of motions that it was not fitted to, and how far to believe it.
+// Predictions of motions that a model was not fitted to, and how far to trust them.
 //
-// Its parameters have errors, and scatter from recording to recording; a force that it lacks acts
-// besides, measured in the recordings that were fitted, without what other parameters would make
-// of them. All three are drawn together and simulated (sim/ensemble.h): free running, for a
+// The parameters have errors, and scatter from recording to recording. A force that the model lacks
+// acts besides: it is measured in the fitted recordings, without the part that other parameters
+// would make. All three are drawn together and simulated (sim/ensemble.h), free running, for a
 // prediction has nothing to track.
 #pragma once
 
@@ -23,8 +23,9 @@
 
 namespace axisfit {
 
-/// What is not known of a fitted axis, with the missing force of each of its recordings. Parameters
-/// of one recording, at a bound, or that the data leave open are taken as they are.
+/// The uncertainty of a fitted axis, with the missing force of each of its recordings. Parameters
+/// that belong to one recording, are at a bound, or are left open by the data are taken as they
+/// are.
 AxisUncertainty axis_uncertainty(const Job& job, const FitResult& fit,
                                  const std::optional<Scatter>& scatter,
                                  std::span<const MissingForce> forces);
@@ -43,7 +44,7 @@ struct RecordingPrediction {
   std::vector<SignalPrediction> signals;  ///< none where the draws are too few for a band
 };
 
-/// Of the recordings to validate. Throws Interrupted.
+/// Predicts the recordings to validate. Throws Interrupted.
 std::vector<RecordingPrediction> predict_recordings(const Job& job, const FitResult& fit,
                                                     const AxisUncertainty& uncertainty,
                                                     const RunContext& context = {});
@@ -62,8 +63,8 @@ struct MotionPrediction {
   std::vector<Column> columns;  ///< those of record_with_bands()
 };
 
-/// By the fitted model, of the signals that were recorded, at the rate of the first recording.
-/// Throws std::runtime_error where the motion cannot be simulated or has no band.
+/// Predicts the signals that were recorded, by the fitted model, at the sampling rate of the first
+/// recording. Throws std::runtime_error where the motion cannot be simulated or has no band.
 MotionPrediction predict_motion(const Job& job, const FitResult& fit,
                                 const AxisUncertainty& uncertainty, MotionToPredict motion);
 

@@ -21,9 +21,9 @@ std::vector<double> difference(const ResidualSeries& a, const ResidualSeries& b)
   return d;
 }
 
-/// Of the sum of products of a change with the residual that it leaves, if they have nothing to do
-/// with each other. Both may be large at the same places, such as where the motion turns: then
-/// their products scatter more than those of two stationary series.
+/// The variance of the sum of products of a change with the residual that it leaves, if they have
+/// nothing to do with each other. Both may be large at the same places, such as where the motion
+/// turns: then their products scatter more than those of two stationary series.
 double variance_of_products(const std::vector<double>& change, const ResidualSeries& after) {
   std::vector<double> products(change.size());
   double square = 0.0;
@@ -105,28 +105,33 @@ double least_bic_difference(const std::vector<ResidualSeries>& best, double more
   return more_parameters * std::log(std::max(2.0, samples)) - gain;
 }
 
-bool is_clearly_worse(double bic_difference) { return bic_difference > 2.0 * std::log(100.0); }
-
-bool is_needed(const Improvement& gain, std::size_t parameters, bool replicates) {
-  const double price = static_cast<double>(parameters) * std::log(std::max(2.0, gain.samples));
-  return gain.comparable && gain.fit_gain > price && (replicates || gain.p_value < kChance);
+bool is_clearly_worse(double bic_difference, const SearchOptions& options) {
+  return bic_difference > 2.0 * std::log(options.acceptance.odds);
 }
 
-Determination determination(const Job& job, const FitResult& result, const Candidate& candidate,
-                            const std::vector<ResidualSeries>& residuals) {
+bool is_needed(const Improvement& gain, std::size_t parameters, bool replicates,
+               const SearchOptions& options) {
+  const double price = static_cast<double>(parameters) * std::log(std::max(2.0, gain.samples));
+  return gain.comparable && gain.fit_gain > price &&
+         (replicates || gain.p_value < options.acceptance.chance);
+}
+
+Determination determination(const Job& job, const FitResult& result, const Hypothesis& hypothesis,
+                            const std::vector<ResidualSeries>& residuals,
+                            const SearchOptions& options) {
   Determination d;
-  const std::size_t own = candidate.parameters();
+  const std::size_t own = hypothesis.parameters();
   const std::size_t first = job.free.size() - own;
-  const std::size_t strengths = candidate.strengths.size();
+  const std::size_t strengths = hypothesis.strengths.size();
   for (std::size_t i = first; i < job.free.size(); ++i) {
     const ParameterResult& p = result.parameters[i];
     if (p.uncertainty.at_bound && !d.at_bound) d.at_bound = p.id;
-    if (i >= first + strengths && !candidate.gives_backlash && !p.uncertainty.determined &&
-        !d.undetermined)
+    if (i >= first + strengths && hypothesis.kind != HypothesisKind::transmission &&
+        !p.uncertainty.determined && !d.undetermined)
       d.undetermined = p.id;
   }
-  constexpr double kByChance = 3e-4;
-  d.required = chi_square_upper_quantile(kByChance, static_cast<double>(strengths));
+  d.required =
+      chi_square_upper_quantile(options.acceptance.strength_chance, static_cast<double>(strengths));
 
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values_of(result));
@@ -149,9 +154,9 @@ Determination determination(const Job& job, const FitResult& result, const Candi
   Eigen::VectorXd zero(static_cast<Eigen::Index>(strengths));
   for (std::size_t i = 0; i < strengths; ++i)
     // To first order in the compliance, none is one more of the logarithm of the stiffness.
-    zero[static_cast<Eigen::Index>(i)] = std::isinf(candidate.neutral[i])
+    zero[static_cast<Eigen::Index>(i)] = std::isinf(hypothesis.neutral[i])
                                              ? u[static_cast<Eigen::Index>(first + i)] + 1.0
-                                             : space.internal(first + i, candidate.neutral[i]);
+                                             : space.internal(first + i, hypothesis.neutral[i]);
   const Eigen::VectorXd shown =
       mark - at.jacobian.middleCols(static_cast<Eigen::Index>(first),
                                     static_cast<Eigen::Index>(strengths)) *
@@ -169,35 +174,33 @@ Determination determination(const Job& job, const FitResult& result, const Candi
   return d;
 }
 
-double least_gain(const Candidate& candidate, double samples, std::size_t tried) {
-  return static_cast<double>(candidate.parameters()) * std::log(std::max(2.0, samples)) +
+double least_gain(const Hypothesis& hypothesis, double samples, std::size_t tried) {
+  return static_cast<double>(hypothesis.parameters()) * std::log(std::max(2.0, samples)) +
          2.0 * std::log(static_cast<double>(std::max<std::size_t>(1, tried)));
 }
 
-std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvement& gain,
-                                      const Determination& determined, std::size_t tried,
-                                      double chance, bool replicates) {
+std::optional<Rejection> rejection_of(const Hypothesis& hypothesis, const Improvement& gain,
+                                      const Determination& determined, const Strictness& strictness,
+                                      const SearchOptions& options) {
   using enum Rejection::Test;
+  const SearchOptions::Acceptance& limits = options.acceptance;
+  const auto& [tried, chance, replicates] = strictness;
   if (!gain.comparable) return Rejection{.test = simulation};
-  const double required = least_gain(candidate, gain.samples, tried);
+  const double required = least_gain(hypothesis, gain.samples, tried);
   if (gain.fit_gain < required)
     return Rejection{.test = significance,
                      .found = std::max(0.0, gain.fit_gain),
                      .required = required,
                      .tried = tried};
-  constexpr double kMinPercent = 0.5;
-  // An effect that is there passes with nine in ten of such recordings.
-  constexpr double kPower = 4.4;
   const bool fails = !replicates && gain.p_value > chance;
-  const bool is_unseen = fails && gain.expected_z < kPower;
+  const bool is_unseen = fails && gain.expected_z < limits.power;
   if (fails && !is_unseen) return Rejection{.test = validation, .found = gain.p_value};
-  if (!replicates && !is_unseen && gain.validate_percent < kMinPercent)
+  if (!replicates && !is_unseen && gain.validate_percent < limits.least_percent)
     return Rejection{.test = validation_size, .found = gain.validate_percent};
   if (determined.at_bound) return Rejection{.test = bound, .parameter = determined.at_bound};
   if (determined.undetermined)
     return Rejection{.test = shape, .parameter = determined.undetermined};
-  constexpr double kAlias = 1e-10;  // below is rounding
-  if (determined.distinct < kAlias) return Rejection{.test = distinct};
+  if (determined.distinct < limits.alias) return Rejection{.test = distinct};
   if (determined.wald < determined.required)
     return Rejection{.test = strength, .found = std::sqrt(determined.wald)};
   if (is_unseen) return Rejection{.test = power, .found = gain.p_value};

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "fit/judge/series.h"
-#include "fit/search/catalogue.h"
+#include "fit/search/hypothesis.h"
+#include "fit/search/options.h"
 
 namespace axisfit {
 
@@ -43,10 +44,10 @@ double bic_difference(const std::vector<ResidualSeries>& best, std::size_t best_
 /// known.
 double least_bic_difference(const std::vector<ResidualSeries>& best, double more_parameters);
 
-/// Whether a difference of that is ground for a preference: odds of more than a hundred to one.
-bool is_clearly_worse(double bic_difference);
+/// Whether a difference of that is ground for a preference.
+bool is_clearly_worse(double bic_difference, const SearchOptions& options = {});
 
-/// What the fit says of a candidate's own parameters, the last of the job's.
+/// What the fit says of a hypothesis's own parameters, the last of the job's.
 struct Determination {
   /// Sum of squares that would be lost with strengths of zero, in units as above: the square of
   /// value over standard error where there is one strength.
@@ -57,19 +58,18 @@ struct Determination {
   std::optional<ParameterId> undetermined;  ///< a shape that the data leave open
 };
 
-Determination determination(const Job& job, const FitResult& result, const Candidate& candidate,
-                            const std::vector<ResidualSeries>& residuals);
-
-/// How probable it may be that an effect helps by chance on what was not fitted.
-constexpr double kChance = 1e-3;
+Determination determination(const Job& job, const FitResult& result, const Hypothesis& hypothesis,
+                            const std::vector<ResidualSeries>& residuals,
+                            const SearchOptions& options = {});
 
 /// Whether an accepted effect is needed beside those that were accepted later. `gain` is what it
 /// does to the model without it: more to the fit than the price of its parameters by Schwarz's
 /// criterion, and more than chance to what was not fitted.
 /// With `replicates` only the former counts, see replication.h.
-bool is_needed(const Improvement& gain, std::size_t parameters, bool replicates = false);
+bool is_needed(const Improvement& gain, std::size_t parameters, bool replicates,
+               const SearchOptions& options = {});
 
-/// A test that a candidate failed.
+/// A test that a hypothesis failed.
 struct Rejection {
   enum class Test {
     fit,              ///< there is no usable fit with it
@@ -87,27 +87,31 @@ struct Rejection {
     period,           ///< the recordings to validate, fitted by themselves, show another period
   };
   Test test = Test::fit;
-  /// Of significance, the fall of the sum of squares; of validation and power, the p-value; of
-  /// validation_size, the fall of the validation error, %; of share, that beyond the noise; of
-  /// strength, the standard errors from zero; of period, that which they show.
+  /// By test, significance: the fall of the sum of squares; validation and power: the p-value;
+  /// validation_size: the fall of the validation error, %; share: that beyond the noise; strength:
+  /// the standard errors from zero; period: that which they show.
   double found = 0.0;
   double required = 0.0;  ///< of significance: the least fall of the sum of squares
-  std::size_t tried = 0;  ///< of significance: candidates and settings among which it was chosen
+  std::size_t tried = 0;  ///< of significance: hypotheses and settings among which it was chosen
   std::optional<ParameterId> parameter{};  ///< of bound and shape
 
   bool operator==(const Rejection&) const = default;
 };
 
-/// The fall of the sum of squares that a candidate must bring: the price of its parameters by
+/// The fall of the sum of squares that a hypothesis must bring: the price of its parameters by
 /// Schwarz's criterion, and that of having been chosen among so many.
-double least_gain(const Candidate& candidate, double samples, std::size_t tried);
+double least_gain(const Hypothesis& hypothesis, double samples, std::size_t tried);
 
-/// The first test that the candidate fails; none when it may stay.
-/// `tried` is the number of candidates and settings among which it was chosen. `chance` is how
-/// probable it may be that it lowers the validation error by chance; of one that replicates,
-/// nothing is asked of that error.
-std::optional<Rejection> rejection_of(const Candidate& candidate, const Improvement& gain,
-                                      const Determination& determined, std::size_t tried,
-                                      double chance = kChance, bool replicates = false);
+/// How strict the acceptance test is.
+struct Strictness {
+  std::size_t tried = 1;  ///< hypotheses and settings among which one was chosen
+  double chance = 1e-3;   ///< how probable it may be that it lowers the validation error by chance
+  bool replicates = false;  ///< other recordings tell the same: nothing is asked of that error
+};
+
+/// The first test that the hypothesis fails; none when it may stay.
+std::optional<Rejection> rejection_of(const Hypothesis& hypothesis, const Improvement& gain,
+                                      const Determination& determined, const Strictness& strictness,
+                                      const SearchOptions& options = {});
 
 }  // namespace axisfit

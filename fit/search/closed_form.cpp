@@ -46,7 +46,7 @@ std::string power_unit(const Variable& x, int power) {
   return power == 1 ? fmt::format("N/{}", x.unit) : fmt::format("N/{}^{}", x.unit, power);
 }
 
-/// All terms over a range of the variable. Of what is inside a term, steps of a twentieth.
+/// All terms over a range of the variable. What is inside a term varies in steps of a twentieth.
 std::vector<Form> forms_over(const Variable& x, Vocabulary vocabulary, double from, double to) {
   std::vector<Form> list;
   const std::string force(unit_on(vocabulary, "N"));
@@ -149,12 +149,12 @@ class SplineFit {
   std::optional<LeastSquaresSolver> whole_, held_;
 };
 
-/// Of the coefficients of a curve those that the recordings determine, and their covariance.
+/// The coefficients of a curve that the recordings determine, and their covariance.
 class KnownCoefficients {
  public:
   /// Nothing where they are too few, or their covariance is none.
   static std::optional<KnownCoefficients> of(const Job& job, const FitResult& fit,
-                                             const Candidate& curve) {
+                                             const Hypothesis& curve) {
     if (fit.correlation.rows() != static_cast<Eigen::Index>(job.free.size())) return std::nullopt;
     KnownCoefficients known;
     std::vector<Eigen::Index> of_fit;
@@ -224,7 +224,7 @@ std::size_t best_beside(const Eigen::MatrixXd& terms, const Eigen::VectorXd& lef
 }  // namespace
 
 std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
-                                      const Candidate& curve) {
+                                      const Hypothesis& curve) {
   const auto* x = std::ranges::find(kVariables, quantity_list()[curve.strengths.front()].group,
                                     &Variable::effect);
   if (x == std::end(kVariables)) return std::nullopt;
@@ -233,7 +233,7 @@ std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
   const bool closes = x->unit == "rad";
   double from = 0.0, to = 2.0 * std::numbers::pi;
   if (!closes) {
-    const CandidateValues own = candidate_values(job, fit, curve);
+    const HypothesisValues own = values_in(fitted_model(job, fit), curve);
     from = own.shapes[0];
     to = own.shapes[1];
   }
@@ -296,8 +296,8 @@ std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
   }
 }
 
-bool is_confirmed(const ClosedForm& form, const Candidate& curve, const SelectionStep& with_curve,
-                  const SelectionStep& without, const RunContext& context) {
+bool is_confirmed(const ClosedForm& form, const Hypothesis& curve, const FittedModel& with_curve,
+                  const FittedModel& without, const SearchContext& context) {
   Job job = with_curve.job;
   set_initial_values(job, values_of(with_curve.fit));
   std::erase_if(job.free, [&](const FreeParameter& p) {
@@ -311,10 +311,11 @@ bool is_confirmed(const ClosedForm& form, const Candidate& curve, const Selectio
   if (!fit.usable) return false;
   const auto found = residual_series(job, fit);
   const Improvement gain = improvement(residual_series(without.job, without.fit), found);
-  if (!gain.comparable || gain.p_value > kChance) return false;
-  return !is_clearly_worse(bic_difference(residual_series(with_curve.job, with_curve.fit),
-                                          with_curve.job.free.size(), found,
-                                          job.free.size() + form.parameters));
+  if (!gain.comparable || gain.p_value > context.options.acceptance.chance) return false;
+  return !is_clearly_worse(
+      bic_difference(residual_series(with_curve.job, with_curve.fit), with_curve.job.free.size(),
+                     found, job.free.size() + form.parameters),
+      context.options);
 }
 
 }  // namespace axisfit

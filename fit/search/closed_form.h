@@ -20,7 +20,7 @@ struct ClosedForm {
   double chi_square = 0.0;  ///< of the coefficients about it, their covariance as estimated
   double degrees_of_freedom = 0.0;
   std::size_t parameters = 0;  ///< factors, and what was chosen inside the terms
-  /// Of the curve that is nearest to the terms, with what other effects hold of it.
+  /// The curve that is nearest to the terms, with what other effects hold of it.
   std::vector<double> coefficients{};
 };
 
@@ -30,14 +30,15 @@ struct ClosedForm {
 /// criterion, those inside a term, too.
 ///
 /// Nothing where the coefficients contradict every such sum (beyond the 99.9 % quantile of
-/// chi-square), or are cheaper than it. What is assumed: the fit is linear in the coefficients, as
+/// chi-square), or are cheaper than it. Assumes that the fit is linear in the coefficients, as
 /// far as they are uncertain, and their covariance is right.
-std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit, const Candidate& curve);
+std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
+                                      const Hypothesis& curve);
 
 /// Whether what is not fitted confirms the form as it did the curve: in the curve's place, all else
 /// refitted, it lowers the validation error of the model without either by more than chance, and
 /// explains the recordings not clearly worse than the curve.
-bool is_confirmed(const ClosedForm& form, const Candidate& curve, const SelectionStep& with_curve,
-                  const SelectionStep& without, const RunContext& context = {});
+bool is_confirmed(const ClosedForm& form, const Hypothesis& curve, const FittedModel& with_curve,
+                  const FittedModel& without, const SearchContext& context = {});
 
 }  // namespace axisfit

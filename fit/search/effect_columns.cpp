@@ -30,12 +30,12 @@ bool is_affine(std::size_t quantity) {
   return !slots::needs(alone).is_smooth() || !(slots::affine(with.effects, alone) == without);
 }
 
-/// Whether a candidate's forces can be read off a trajectory without it.
-bool is_smooth_force(const Candidate& candidate) {
-  return candidate.probes.empty() && std::ranges::none_of(candidate.strengths, is_affine);
+/// Whether a hypothesis's forces can be read off a trajectory without it.
+bool is_smooth_force(const Hypothesis& hypothesis) {
+  return hypothesis.probes.empty() && std::ranges::none_of(hypothesis.strengths, is_affine);
 }
 
-/// Of an instrument that is late the readings are taken more densely.
+/// The readings of an instrument that is late are taken more densely.
 bool is_late_instrument(std::size_t quantity) {
   const QuantityEntry& entry = quantity_list()[quantity];
   return entry.signal && (entry.quantity.symbol == "lag" || entry.quantity.symbol == "delay");
@@ -52,9 +52,7 @@ Eigen::MatrixXd per_unit(Eigen::MatrixXd columns, const ParameterSpace& space,
 }
 
 Job with_setting(const Job& job, const EffectSetting& setting) {
-  Candidate candidate = *setting.candidate;
-  candidate.shapes_are_free = setting.with_shapes;
-  return with_candidate(job, candidate, {}, setting.strengths, setting.shapes);
+  return with_hypothesis(job, *setting.hypothesis, {}, setting.own, !setting.with_shapes);
 }
 
 /// Derivatives of the smooth accelerations along a trajectory, with respect to up to two quantities
@@ -110,7 +108,7 @@ class SmoothForce {
     return input;
   }
   bool needs_memory() const { return equations_.parts().needs.hysteresis; }
-  /// What is remembered where the motion turned: between two instants, nearly at the first.
+  /// The memory at the place where the motion turned: between two instants, nearly at the first.
   RestMemory<T> memory_after(const Mode& mode, const AxisInstant& at,
                              const RestMemory<T>& memory) const {
     State<T> y = state(at);
@@ -147,18 +145,18 @@ std::vector<Eigen::MatrixXd> EffectColumns::derivatives(
   std::vector<std::size_t> alone;
   for (std::size_t s = 0; s < settings.size(); ++s) {
     const EffectSetting& setting = settings[s];
-    const Candidate& candidate = *setting.candidate;
-    if (!candidate.shapes.empty() && !is_smooth_force(candidate)) {
+    const Hypothesis& hypothesis = *setting.hypothesis;
+    if (!hypothesis.shapes.empty() && !is_smooth_force(hypothesis)) {
       alone.push_back(s);
       continue;
     }
-    std::vector<std::size_t> quantities = candidate.strengths;
+    std::vector<std::size_t> quantities = hypothesis.strengths;
     if (setting.with_shapes)
-      quantities.insert(quantities.end(), candidate.shapes.begin(), candidate.shapes.end());
+      quantities.insert(quantities.end(), hypothesis.shapes.begin(), hypothesis.shapes.end());
     result[s].resize(rows_, static_cast<Eigen::Index>(quantities.size()));
     for (std::size_t k = 0; k < quantities.size(); ++k) {
       const std::size_t q = quantities[k];
-      const bool is_force = !candidate.shapes.empty() || !is_affine(q);
+      const bool is_force = !hypothesis.shapes.empty() || !is_affine(q);
       (is_force ? forces : is_late_instrument(q) ? late : batch).push_back({s, k, q});
     }
   }
@@ -191,10 +189,10 @@ void EffectColumns::add_batch(const std::vector<EffectSetting>& settings,
   for (const Column& c : columns) {
     if (place.contains(c.quantity)) continue;
     place.emplace(c.quantity, static_cast<Eigen::Index>(job.free.size()));
-    Candidate one = *settings[c.setting].candidate;
+    Hypothesis one = *settings[c.setting].hypothesis;
     one.strengths = {c.quantity};
     one.neutral = {one.neutral[c.index]};
-    job = with_candidate(job, one, {}, one.neutral, {});
+    job = with_hypothesis(job, one, {}, {one.neutral, {}});
   }
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(initial_values(job));

@@ -1,4 +1,4 @@
-// What candidates would do to the residuals of a job, to first order, many of them at once.
+// What hypotheses would do to the residuals of a job, to first order, many of them at once.
 //
 // The derivative of the state with respect to a strength obeys the equations of the state,
 // linearised, driven by the derivative of the rates. So one simulation without the effects carries
@@ -11,22 +11,22 @@
 #include <deque>
 #include <vector>
 
-#include "fit/search/catalogue.h"
+#include "fit/search/hypothesis.h"
 #include "fit/solve/residual.h"
 #include "fit/solve/run_context.h"
 
 namespace axisfit {
 
-/// A candidate at one setting. It must outlive what is asked of it.
+/// A hypothesis, which must outlive what is asked of it, at one setting.
 struct EffectSetting {
-  const Candidate* candidate = nullptr;
-  std::vector<double> strengths, shapes;
+  const Hypothesis* hypothesis = nullptr;
+  HypothesisValues own;
   bool with_shapes = false;  ///< whether the derivatives with respect to the shapes are wanted, too
 };
 
 class EffectColumns {
  public:
-  /// Of a job without free parameters, which must outlive it, tracked with this observer gain, 1/s.
+  /// The job has no free parameters, is tracked with this observer gain (1/s), and must outlive it.
   EffectColumns(const Job& job, double observer_gain, const RunContext& context);
 
   /// For each setting the derivatives of the whitened residuals (rows as RecordingCost has them,

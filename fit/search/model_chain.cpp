@@ -4,43 +4,44 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "fit/search/backlash.h"
+#include "fit/search/transmission.h"
 #include "fit/solve/parameters.h"
 
 namespace axisfit {
 
-std::vector<double> SelectionStep::values() const {
+std::vector<double> FittedModel::values() const {
   std::vector<double> values = values_of(fit);
   values.push_back(fit.observer_gain);
   return values;
 }
 
-Improvement improvement(const SelectionStep& before, const SelectionStep& after) {
+Improvement improvement(const FittedModel& before, const FittedModel& after) {
   return improvement(residual_series(before.job, before.fit),
                      residual_series(after.job, after.fit));
 }
 
-bool explains(const SelectionStep& model) {
+bool explains(const FittedModel& model) {
   auto series = residual_series(model.job, model.fit);
-  if (std::ranges::all_of(series, is_explained)) return !series.empty();
+  const auto is_noise = [](const ResidualSeries& s) { return is_explained(s); };
+  if (std::ranges::all_of(series, is_noise)) return !series.empty();
   const auto fails = [](const ResidualSeries& s) { return s.fitted && !is_explained(s); };
   if (std::ranges::any_of(series, fails)) return false;  // nothing is allowed these
   allow_for_parameters(model.job, model.fit, series);
-  return !series.empty() && std::ranges::all_of(series, is_explained);
+  return !series.empty() && std::ranges::all_of(series, is_noise);
 }
 
-void ModelChain::append(AcceptedEffect effect, Job job, FitResult fit) {
-  models_.push_back({effect.candidate.name, std::move(job), std::move(fit)});
+void ModelChain::append(Accepted effect, Job job, FitResult fit) {
+  models_.push_back({effect.hypothesis.name, std::move(job), std::move(fit)});
   accepted_.push_back(std::move(effect));
   neighbours_ = {};  // of the model before, not to be copied with every state put aside
 }
 
-void ModelChain::restart(SelectionStep declared) {
+void ModelChain::restart(FittedModel declared) {
   models_ = {std::move(declared)};
   accepted_.clear();
 }
 
-void ModelChain::replace(SelectionStep declared, SelectionStep last) {
+void ModelChain::replace(FittedModel declared, FittedModel last) {
   models_.front() = std::move(declared);
   set_last(std::move(last));
 }
@@ -58,8 +59,8 @@ bool ModelChain::explained() {
   return *known;
 }
 
-const SelectionStep& ModelChain::without(std::size_t place) {
-  std::optional<SelectionStep>& reduced = neighbours().reduced[place];
+const FittedModel& ModelChain::without(std::size_t place) {
+  std::optional<FittedModel>& reduced = neighbours().reduced[place];
   if (!reduced) reduced = reduce(place);
   return *reduced;
 }
@@ -71,7 +72,7 @@ void ModelChain::fit_without(const std::vector<std::size_t>& places) {
   });
 }
 
-SelectionStep ModelChain::reduce(std::size_t place) const {
+FittedModel ModelChain::reduce(std::size_t place) const {
   return accepted_.size() == 1 ? declared() : with_accepted(declared().job, place);
 }
 
@@ -79,17 +80,16 @@ template <class Kept>
 Job ModelChain::job_with(const Job& declared, Kept&& kept) const {
   Job job = declared;
   std::vector<double> values;
-  const double motor =
-      mass_of_motor(job.model.structure, fitted_model(current().job, current().fit));
+  const Model<double> fitted = fitted_model(current().job, current().fit);
+  const double motor = mass_of_motor(job.model.structure, fitted);
   for (std::size_t i = 0; i < job.free.size(); ++i) {
     const bool is_mass = quantity_list()[job.free[i].quantity].name == "M";
     values.push_back(current().fit.parameters[i].value + (is_mass ? motor : 0.0));
   }
   for (std::size_t a = 0; a < accepted_.size(); ++a) {
-    const Candidate& candidate = accepted_[a].candidate;
+    const Hypothesis& hypothesis = accepted_[a].hypothesis;
     if (!kept(a)) continue;
-    const CandidateValues own = candidate_values(current().job, current().fit, candidate);
-    job = with_candidate(job, candidate, values, own.strengths, own.shapes);
+    job = with_hypothesis(job, hypothesis, values, values_in(fitted, hypothesis));
     values = initial_values(job);
   }
   set_initial_values(job, values);
@@ -99,44 +99,44 @@ Job ModelChain::job_with(const Job& declared, Kept&& kept) const {
 Job ModelChain::job_with_accepted(const Job& declared, std::optional<std::size_t> except) const {
   return job_with(declared, [&](std::size_t a) {
     return !except ||
-           (a != *except && !is_part_of(accepted_[a].candidate, accepted_[*except].candidate));
+           (a != *except && !is_part_of(accepted_[a].hypothesis, accepted_[*except].hypothesis));
   });
 }
 
-SelectionStep ModelChain::with_accepted(const Job& declared,
-                                        std::optional<std::size_t> except) const {
+FittedModel ModelChain::with_accepted(const Job& declared,
+                                      std::optional<std::size_t> except) const {
   Job job = job_with_accepted(declared, except);
   FitResult fit = refit(job, *context_);
   return {"", std::move(job), std::move(fit)};
 }
 
-std::vector<Candidate> ModelChain::erase(std::size_t place) {
-  const Candidate whole = accepted_[place].candidate;
-  std::vector<Candidate> parts;
-  std::erase_if(accepted_, [&](const AcceptedEffect& a) {
-    if (!is_part_of(a.candidate, whole)) return same_effect(a.candidate, whole);
-    parts.push_back(a.candidate);
+std::vector<Hypothesis> ModelChain::erase(std::size_t place) {
+  const Hypothesis whole = accepted_[place].hypothesis;
+  std::vector<Hypothesis> parts;
+  std::erase_if(accepted_, [&](const Accepted& a) {
+    if (!is_part_of(a.hypothesis, whole)) return is_same(a.hypothesis, whole);
+    parts.push_back(a.hypothesis);
     return true;
   });
   return parts;
 }
 
-void ModelChain::set_last(SelectionStep last) {
+void ModelChain::set_last(FittedModel last) {
   models_.resize(1);
   if (accepted_.empty()) return;
-  last.added = accepted_.back().candidate.name;
+  last.added = accepted_.back().hypothesis.name;
   models_.push_back(std::move(last));
 }
 
-std::vector<SelectionStep> ModelChain::models() const {
+std::vector<FittedModel> ModelChain::models() const {
   if (models_.size() == accepted_.size() + 1) return models_;
-  std::vector<SelectionStep> all(accepted_.size() + 1);
+  std::vector<FittedModel> all(accepted_.size() + 1);
   all.front() = declared();
   all.back() = current();
   parallel_for(accepted_.size() - 1, [&](std::size_t i) {
     Job job = job_with(declared().job, [&](std::size_t a) { return a <= i; });
     FitResult fit = refit(job, *context_);
-    all[i + 1] = {accepted_[i].candidate.name, std::move(job), std::move(fit)};
+    all[i + 1] = {accepted_[i].hypothesis.name, std::move(job), std::move(fit)};
   });
   return all;
 }

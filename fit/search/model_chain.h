@@ -6,39 +6,33 @@
 #include <string>
 #include <vector>
 
-#include "fit/search/extended_model.h"
+#include "fit/search/tried.h"
 
 namespace axisfit {
 
 /// One intermediate model: the declared one, and one after each accepted effect.
-struct SelectionStep {
+struct FittedModel {
   std::string added;  ///< the effect; empty for the declared model
   Job job;
   FitResult fit;
 
-  /// Of the free parameters, and last the observer gain: two steps of a search that agree in them
-  /// are the same model.
+  /// The estimates, and last the observer gain: two models of a search that agree in them are the
+  /// same.
   std::vector<double> values() const;
 };
 
 /// By how much the second lowers the errors of the first, see acceptance.h.
-Improvement improvement(const SelectionStep& before, const SelectionStep& after);
+Improvement improvement(const FittedModel& before, const FittedModel& after);
 
 /// Whether the model leaves nothing but noise in any signal.
-bool explains(const SelectionStep& model);
+bool explains(const FittedModel& model);
 
-/// Another effect that explained as much as an accepted one when that was chosen.
-struct Rival {
-  Candidate candidate;
-  /// Without strengths: it has not been fitted yet.
-  CandidateValues values;
-  /// Of the other free parameters, where its refit starts; empty: from where all else is.
-  std::vector<double> others{};
-};
-
-struct AcceptedEffect {
-  Candidate candidate;
-  std::vector<Rival> rivals;
+/// A hypothesis that became part of the model.
+struct Accepted {
+  Hypothesis hypothesis;
+  /// Others that explained as much when it was chosen, and where their refits start: without
+  /// strengths, one that has not been fitted; without others, from where all else is.
+  std::vector<Scored> rivals{};
   bool is_seen_elsewhere = false;  ///< it replicates, or held-out stretches show it
 };
 
@@ -48,41 +42,41 @@ struct AcceptedEffect {
 class ModelChain {
  public:
   /// The context must outlive it.
-  ModelChain(SelectionStep declared, const RunContext& context)
+  ModelChain(FittedModel declared, const SearchContext& context)
       : context_(&context), models_{std::move(declared)} {}
 
-  const SelectionStep& declared() const { return models_.front(); }
-  const SelectionStep& current() const { return models_.back(); }
-  const std::vector<AcceptedEffect>& accepted() const { return accepted_; }
-  std::vector<AcceptedEffect>& accepted() { return accepted_; }
+  const FittedModel& declared() const { return models_.front(); }
+  const FittedModel& current() const { return models_.back(); }
+  const std::vector<Accepted>& accepted() const { return accepted_; }
+  std::vector<Accepted>& accepted() { return accepted_; }
 
-  void append(AcceptedEffect effect, Job job, FitResult fit);
+  void append(Accepted effect, Job job, FitResult fit);
   /// Begins anew with a declared model.
-  void restart(SelectionStep declared);
+  void restart(FittedModel declared);
   /// Puts another declared model in the place of the present one, and the last model with the
   /// accepted effects that follow from it.
-  void replace(SelectionStep declared, SelectionStep last);
+  void replace(FittedModel declared, FittedModel last);
 
   /// The last model without one accepted effect, and what is part of it, refitted.
-  const SelectionStep& without(std::size_t place);
+  const FittedModel& without(std::size_t place);
   /// Fits without each of these, side by side.
   void fit_without(const std::vector<std::size_t>& places);
 
   /// A declared job with the accepted effects, but for one, that starts from where they are.
   Job job_with_accepted(const Job& declared, std::optional<std::size_t> except = {}) const;
   /// That, refitted.
-  SelectionStep with_accepted(const Job& declared, std::optional<std::size_t> except = {}) const;
+  FittedModel with_accepted(const Job& declared, std::optional<std::size_t> except = {}) const;
 
   /// Strikes an accepted effect off the list, and what is part of it; returns the latter. The
   /// models are as before, until set_last().
-  std::vector<Candidate> erase(std::size_t place);
+  std::vector<Hypothesis> erase(std::size_t place);
   /// Replaces the last model by one with all accepted effects, after some were removed or
   /// exchanged.
-  void set_last(SelectionStep last);
+  void set_last(FittedModel last);
 
   /// The declared model, and with one accepted effect more each, the last. Refits those between
   /// where effects were removed or exchanged.
-  std::vector<SelectionStep> models() const;
+  std::vector<FittedModel> models() const;
 
   /// Whether the last model leaves nothing but noise, see explains().
   bool explained();
@@ -95,21 +89,21 @@ class ModelChain {
  private:
   /// What was found beside the present model.
   struct Neighbours {
-    std::vector<double> of;                             ///< values and gain of that model
-    std::optional<bool> explained{};                    ///< takes simulations
-    std::vector<std::optional<SelectionStep>> reduced;  ///< without each of the accepted effects
+    std::vector<double> of;                           ///< values and gain of that model
+    std::optional<bool> explained{};                  ///< takes simulations
+    std::vector<std::optional<FittedModel>> reduced;  ///< without each of the accepted effects
     bool has_elsewhere = false;
     std::optional<FitResult> elsewhere{};
   };
   Neighbours& neighbours();
-  SelectionStep reduce(std::size_t place) const;
+  FittedModel reduce(std::size_t place) const;
   /// A declared job with those accepted effects that are `kept`.
   template <class Kept>
   Job job_with(const Job& declared, Kept&& kept) const;
 
-  const RunContext* context_;
-  std::vector<SelectionStep> models_;  ///< the declared one, the last, and some between
-  std::vector<AcceptedEffect> accepted_;
+  const SearchContext* context_;
+  std::vector<FittedModel> models_;  ///< the declared one, the last, and some between
+  std::vector<Accepted> accepted_;
   Neighbours neighbours_;
 };
 

@@ -8,75 +8,80 @@ namespace {
 
 /// What the recordings to validate, fitted by themselves, say of an effect; nothing where they
 /// cannot be.
-std::optional<Replication> found_elsewhere(SearchState& state, const Candidate& candidate,
-                                           const RunContext& context) {
+std::optional<Replication> found_elsewhere(SearchState& state, const Hypothesis& hypothesis,
+                                           const SearchContext& context) {
   if (!state.chain.has_elsewhere())
-    state.report_progress(context, "do the recordings to validate tell the same?");
+    state.report_progress(context.run, "do the recordings to validate tell the same?");
   const std::optional<FitResult>& elsewhere = state.chain.elsewhere();
   if (!elsewhere) return std::nullopt;
-  return replication(state.current().job, state.current().fit, *elsewhere, candidate);
+  return replication(state.current().job, state.current().fit, *elsewhere, hypothesis,
+                     context.options);
 }
 
-bool is_alike_elsewhere(SearchState& state, const Candidate& candidate, const RunContext& context) {
-  const auto found = found_elsewhere(state, candidate, context);
+bool is_alike_elsewhere(SearchState& state, const Hypothesis& hypothesis,
+                        const SearchContext& context) {
+  const auto found = found_elsewhere(state, hypothesis, context);
   return found && found->is_alike;
 }
 
 }  // namespace
 
-std::optional<Candidate> drop_degenerate(SearchState& state) {
+bool drop_degenerate(SearchState& state) {
   for (std::size_t a = 0; a < state.accepted().size(); ++a) {
-    const Candidate candidate = state.accepted()[a].candidate;
-    const auto shape = shape_at_bound(state.current().job, state.current().fit, candidate);
+    const Hypothesis hypothesis = state.accepted()[a].hypothesis;
+    const auto shape = shape_at_bound(state.current().job, state.current().fit, hypothesis);
     if (!shape) continue;
-    const SelectionStep& reduced = state.chain.without(a);
+    const FittedModel& reduced = state.chain.without(a);
     if (!reduced.fit.usable) continue;
-    state.trials.fail(candidate, {.test = Rejection::Test::bound, .parameter = shape});
+    state.outcomes.fail(hypothesis, {.test = Rejection::Test::bound, .parameter = shape});
     state.take_out(a, reduced);
-    return candidate;
+    state.degenerate.push_back(hypothesis);
+    return true;
   }
-  return std::nullopt;
+  return false;
 }
 
-void eliminate_backward(SearchState& state, const RunContext& context) {
-  bool is_far = !state.chain.explained();
-  const auto is_plain = [&](const AcceptedEffect& effect) {
-    return is_far && is_alike_elsewhere(state, effect.candidate, context);
+void eliminate_backward(SearchState& state, const SearchContext& context) {
+  bool is_far = !state.explained();
+  const auto is_plain = [&](const Accepted& effect) {
+    return is_far && is_alike_elsewhere(state, effect.hypothesis, context);
   };
   for (std::size_t a = 0; a < state.accepted().size();) {
-    const AcceptedEffect& effect = state.accepted()[a];
+    const Accepted& effect = state.accepted()[a];
     if (is_plain(effect)) {
       ++a;
       continue;
     }
-    state.report_progress(context, "is " + effect.candidate.name + " necessary?");
+    state.report_progress(context.run, "is " + effect.hypothesis.name + " necessary?");
     std::vector<std::size_t> doubted;
     for (std::size_t b = a; b < state.accepted().size(); ++b)
       if (!is_plain(state.accepted()[b])) doubted.push_back(b);
     state.chain.fit_without(doubted);
-    const SelectionStep& reduced = state.chain.without(a);
-    if (!reduced.fit.usable || is_needed(improvement(reduced, state.current()),
-                                         effect.candidate.parameters(), effect.is_seen_elsewhere)) {
+    const FittedModel& reduced = state.chain.without(a);
+    if (!reduced.fit.usable ||
+        is_needed(improvement(reduced, state.current()), effect.hypothesis.parameters(),
+                  effect.is_seen_elsewhere, context.options)) {
       ++a;
       continue;
     }
-    state.trials.reject(effect.candidate, Reason::not_needed);
+    state.outcomes.reject(effect.hypothesis, Reason::not_needed);
     state.take_out(a, reduced);
-    is_far = !state.chain.explained();
+    is_far = !state.explained();
     a = 0;
   }
 }
 
-void drop_imitators(SearchState& state, const RunContext& context) {
-  constexpr double kLeastPercent = 25.0;
-  while (!state.accepted().empty() && !state.chain.explained()) {
+void drop_imitators(SearchState& state, const SearchContext& context) {
+  while (!state.accepted().empty() && !state.explained()) {
     std::optional<std::size_t> least;
-    double percent = kLeastPercent;
+    double percent = context.options.far_from_noise.of_effect;
     for (std::size_t a = 0; a < state.accepted().size(); ++a) {
-      const Candidate& candidate = state.accepted()[a].candidate;
-      if (candidate.is_curve || is_alike_elsewhere(state, candidate, context)) continue;
-      state.report_progress(context, "what does " + candidate.name + " explain?");
-      const SelectionStep& reduced = state.chain.without(a);
+      const Hypothesis& hypothesis = state.accepted()[a].hypothesis;
+      if (hypothesis.kind == HypothesisKind::curve ||
+          is_alike_elsewhere(state, hypothesis, context))
+        continue;
+      state.report_progress(context.run, "what does " + hypothesis.name + " explain?");
+      const FittedModel& reduced = state.chain.without(a);
       if (!reduced.fit.usable) continue;
       const double explained = improvement(reduced, state.current()).missing_percent;
       if (explained >= percent) continue;
@@ -84,53 +89,52 @@ void drop_imitators(SearchState& state, const RunContext& context) {
       least = a;
     }
     if (!least) return;
-    state.trials.fail(state.accepted()[*least].candidate,
-                      {.test = Rejection::Test::share, .found = percent});
+    state.outcomes.fail(state.accepted()[*least].hypothesis,
+                        {.test = Rejection::Test::share, .found = percent});
     state.take_out(*least, state.chain.without(*least));
   }
 }
 
-void drop_unreplicated_of_a_poor_model(SearchState& state, double least_share,
-                                       const RunContext& context) {
-  const std::optional<Rejection> rejection = rejection_of_all(state, least_share);
+void drop_unreplicated_of_a_poor_model(SearchState& state, const SearchContext& context) {
+  const std::optional<Rejection> rejection = rejection_of_all(state, context.options);
   for (std::size_t a = 0; rejection && a < state.accepted().size();) {
-    const Candidate candidate = state.accepted()[a].candidate;
-    if (!candidate.is_instrument() && is_alike_elsewhere(state, candidate, context)) {
+    const Hypothesis hypothesis = state.accepted()[a].hypothesis;
+    if (!hypothesis.is_of_instrument() && is_alike_elsewhere(state, hypothesis, context)) {
       ++a;
       continue;
     }
-    state.trials.fail(candidate, *rejection);
+    state.outcomes.fail(hypothesis, *rejection);
     state.take_out(a, state.chain.without(a));
   }
 }
 
-void drop_other_periods(SearchState& state, const RunContext& context) {
+void drop_other_periods(SearchState& state, const SearchContext& context) {
   for (std::size_t a = 0; a < state.accepted().size();) {
-    const Candidate candidate = state.accepted()[a].candidate;
+    const Hypothesis hypothesis = state.accepted()[a].hypothesis;
     const auto found =
-        candidate.has_phase ? found_elsewhere(state, candidate, context) : std::nullopt;
+        hypothesis.has_phase ? found_elsewhere(state, hypothesis, context) : std::nullopt;
     if (!found || !found->has_other_period) {
       ++a;
       continue;
     }
-    state.trials.fail(candidate,
-                      {.test = Rejection::Test::period, .found = found->parameters.back().value});
+    state.outcomes.fail(hypothesis,
+                        {.test = Rejection::Test::period, .found = found->parameters.back().value});
     state.take_out(a, state.chain.without(a));
   }
 }
 
-std::optional<Rejection> rejection_of_all(SearchState& state, double least_share) {
-  if (state.accepted().empty() || state.chain.explained()) return std::nullopt;
+std::optional<Rejection> rejection_of_all(SearchState& state, const SearchOptions& options) {
+  if (state.accepted().empty() || state.explained()) return std::nullopt;
   const double percent = improvement(state.chain.declared(), state.current()).missing_percent;
-  if (percent >= least_share) return std::nullopt;
+  if (percent >= options.far_from_noise.of_model) return std::nullopt;
   return Rejection{.test = Rejection::Test::share, .found = percent};
 }
 
-void record_replications(SearchState& state, const RunContext& context) {
-  for (const AcceptedEffect& a : state.accepted())
-    if (EffectTrial* trial = state.trials.find(a.candidate))
-      if (auto found = found_elsewhere(state, a.candidate, context))
-        trial->replication = std::move(found);
+void record_replications(SearchState& state, const SearchContext& context) {
+  for (const Accepted& a : state.accepted())
+    if (Outcome* outcome = state.outcomes.find(a.hypothesis))
+      if (auto found = found_elsewhere(state, a.hypothesis, context))
+        outcome->replication = std::move(found);
 }
 
 }  // namespace axisfit

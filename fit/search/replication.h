@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "fit/estimate/estimate.h"
-#include "fit/search/catalogue.h"
+#include "fit/search/hypothesis.h"
+#include "fit/search/options.h"
 
 namespace axisfit {
 
@@ -14,23 +15,23 @@ namespace axisfit {
 /// after homing) is estimated anew, so that it hides nothing. Nothing where no recording is to
 /// validate, where a parameter belongs to one recording, or where there is no usable fit.
 std::optional<FitResult> fit_elsewhere(const Job& job, const FitResult& fit,
-                                       const RunContext& context = {});
+                                       const SearchContext& context = {});
 
 /// What two fits to different recordings say of one effect.
 struct Replication {
   std::vector<ParameterResult> parameters;  ///< of the effect, as found elsewhere
   bool is_alike = false;
   bool is_near = false;  ///< alike but for the distance from zero: neither proof nor objection
-  /// Of an effect with a phase: it is beyond doubt in both, and has another period there. A slow
+  /// An effect with a phase is beyond doubt in both, and has another period there. A slow
   /// disturbance looks like part of a period, of another one in every recording.
   bool has_other_period = false;
 };
 
-/// Alike are estimates that are determined in both, far from zero in both (a strength beyond 4
-/// standard errors), and apart by no more than 3 standard errors of their difference, or by a tenth
-/// where these are smaller: no model is better than that. Of a phase only the amplitude counts.
-/// A curve is never alike: it fits whatever there is. Both fits are of the job.
+/// Alike are estimates that are determined in both, far from zero in both, and near each other by
+/// their standard errors or by a part of their size (SearchOptions::Replication). Where there is
+/// a phase, only the amplitude counts. A curve is never alike: it fits whatever there is. Both fits
+/// are of the job.
 Replication replication(const Job& job, const FitResult& fit, const FitResult& elsewhere,
-                        const Candidate& candidate);
+                        const Hypothesis& hypothesis, const SearchOptions& options = {});
 
 }  // namespace axisfit

@@ -6,11 +6,11 @@ namespace axisfit {
 
 std::vector<RivalModels> rival_models(const EffectSelection& selection) {
   std::vector<RivalModels> models;
-  for (const UndecidedPair& pair : selection.rivals) {
+  for (const Substitution& pair : selection.substitutions) {
     RivalModels& found = models.emplace_back(
         RivalModels{pair.chosen, pair.rival, pair.with_chosen, pair.with_rival, {}});
     const auto chosen = std::ranges::find(selection.effects, pair.chosen,
-                                          [](const EffectTrial& t) { return t.candidate.name; });
+                                          [](const Outcome& o) { return o.hypothesis.name; });
     if (chosen != selection.effects.end())
       for (const ParameterResult& p : chosen->parameters) found.own.push_back(p.id);
   }

@@ -1,4 +1,4 @@
-// The undecided pairs of a selection, for the errors of its estimates.
+// The substitutions of a selection, for the errors of its estimates.
 #pragma once
 
 #include <vector>

@@ -4,138 +4,142 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "fit/search/alternatives.h"
-#include "fit/search/round.h"
+#include "fit/search/catalogue.h"
+#include "fit/search/imitators.h"
 #include "fit/solve/parameters.h"
 
 namespace axisfit {
 namespace {
 
-bool is_delay(const Candidate& candidate) {
-  return !candidate.is_constant && candidate.strengths.size() == 1 &&
-         quantity_list()[candidate.strengths.front()].quantity.unit == "s";
+bool is_delay(const Hypothesis& hypothesis) {
+  return hypothesis.kind != HypothesisKind::constant && hypothesis.strengths.size() == 1 &&
+         quantity_list()[hypothesis.strengths.front()].quantity.unit == "s";
 }
 
 /// Whether they say the same of the machine, with other numbers: a drive's droop that is linear or
 /// quadratic. Two channels are two causes.
-bool is_form_of_same_effect(const Candidate& a, const Candidate& b) {
+bool is_form_of_same_effect(const Hypothesis& a, const Hypothesis& b) {
   const QuantityEntry& p = quantity_list()[a.strengths.front()];
   const QuantityEntry& q = quantity_list()[b.strengths.front()];
   return p.effect && p.effect == q.effect && p.quantity.channel == q.quantity.channel;
 }
 
 /// The constants that may be wrong in place of one that was corrected become its rivals.
-void add_alternatives(AcceptedEffect& accepted, const SelectionStep& model) {
-  if (!accepted.candidate.is_constant) return;
-  for (Alternative& a :
-       alternatives(model.job, model.fit, accepted.candidate, catalogue(model.job, {}))) {
-    std::erase_if(accepted.rivals,
-                  [&](const Rival& r) { return same_effect(r.candidate, a.candidate); });
-    accepted.rivals.insert(accepted.rivals.begin(),
-                           {a.candidate, {{a.strength}, {}}, std::move(a.values)});
+void add_imitators(Accepted& accepted, const FittedModel& model, const SearchOptions& options) {
+  if (accepted.hypothesis.kind != HypothesisKind::constant) return;
+  for (Scored& imitator :
+       imitators(model.job, model.fit, accepted.hypothesis, catalogue(model.job, {}), options)) {
+    std::erase_if(accepted.rivals, [&](const Scored& rival) {
+      return is_same(*rival.hypothesis, *imitator.hypothesis);
+    });
+    accepted.rivals.insert(accepted.rivals.begin(), std::move(imitator));
   }
 }
 
-/// Where the fit of a rival starts: one that has not been fitted with the strengths that suit all
-/// else as it is.
-CandidateValues first_values(const Job& others, const Rival& rival, const RunContext& context) {
-  if (!rival.values.strengths.empty()) return rival.values;
-  const Candidate& candidate = rival.candidate;
-  const Job alone = with_candidate(fixed_at(others, initial_values(others)), candidate, {},
-                                   candidate.neutral, rival.values.shapes);
+/// Where the refit of a rival starts: with strengths that suit all else as it is, where it has
+/// none.
+Scored with_strengths(Scored rival, const Job& others, const SearchContext& context) {
+  if (!rival.own.strengths.empty()) return rival;
+  const Hypothesis& hypothesis = *rival.hypothesis;
+  rival.own.strengths = hypothesis.neutral;
+  const Job alone =
+      with_hypothesis(fixed_at(others, initial_values(others)), hypothesis, {}, rival.own);
   const FitResult fit = refit(alone, context);
-  if (!fit.usable) return {candidate.neutral, rival.values.shapes};
-  return candidate_values(alone, fit, candidate);
+  if (fit.usable) rival.own = values_in(fitted_model(alone, fit), hypothesis);
+  return rival;
 }
 
-/// Fits those of an accepted effect's rivals that `counts` in its place, from where all else is.
+/// Refits those of an accepted hypothesis' rivals that `counts` in its place, from where all else
+/// is.
 template <class Counts>
-std::vector<ExtendedModel> fit_rivals(const SearchState& state, std::size_t place, Counts&& counts,
-                                      const RunContext& context) {
-  constexpr std::size_t kMost = 8;
-  std::vector<Rival> rivals = state.accepted()[place].rivals;
-  std::erase_if(rivals, [&](const Rival& rival) {
-    return !counts(rival.candidate) ||
-           std::ranges::any_of(state.accepted(), [&](const AcceptedEffect& other) {
-             return same_effect(other.candidate, rival.candidate);
+std::vector<Tried> try_rivals(const SearchState& state, std::size_t place, Counts&& counts,
+                              const SearchContext& context) {
+  std::vector<Scored> rivals = state.accepted()[place].rivals;
+  std::erase_if(rivals, [&](const Scored& rival) {
+    return !counts(*rival.hypothesis) ||
+           std::ranges::any_of(state.accepted(), [&](const Accepted& other) {
+             return is_same(other.hypothesis, *rival.hypothesis);
            });
   });
-  std::vector<ExtendedModel> list(std::min(rivals.size(), kMost));
+  std::vector<Tried> list(std::min(rivals.size(), context.options.rivals.refitted));
   if (list.empty()) return list;
   const Job others = state.chain.job_with_accepted(state.chain.declared().job, place);
   parallel_for(list.size(), [&](std::size_t i) {
-    const Rival& rival = rivals[i];
-    const CandidateValues first = first_values(others, rival, context);
-    list[i] = fit_extended_model(others, rival.candidate,
-                                 rival.others.empty() ? initial_values(others) : rival.others,
-                                 first.strengths, first.shapes, context);
+    Scored start = with_strengths(rivals[i], others, context);
+    if (start.others.empty()) start.others = initial_values(others);
+    list[i] = try_hypothesis(others, start, context);
   });
-  std::erase_if(list, [](const ExtendedModel& e) { return !e.fit.usable; });
+  std::erase_if(list, [](const Tried& t) { return !t.fit.usable; });
   return list;
 }
 
 /// By how much it explains the recordings worse than the present model, whose residuals are given.
-double loss_with(const ExtendedModel& e, const SelectionStep& present,
+double loss_with(const Tried& tried, const FittedModel& present,
                  const std::vector<ResidualSeries>& residuals) {
-  return bic_difference(residuals, present.job.free.size(), e.residuals, e.job.free.size());
+  return bic_difference(residuals, present.job.free.size(), tried.residuals, tried.job.free.size());
 }
 
 }  // namespace
 
-std::optional<Exchange> better_rival(SearchState& state, std::size_t tried,
-                                     const RunContext& context) {
-  const SelectionStep& present = state.current();
+bool are_delays(const Hypothesis& a, const Hypothesis& b) { return is_delay(a) && is_delay(b); }
+
+std::optional<TriedRival> better_rival(SearchState& state, std::size_t tried,
+                                       const SearchContext& context) {
+  const FittedModel& present = state.current();
   const auto now = residual_series(present.job, present.fit);
+  const Strictness strictness{tried, context.options.acceptance.chance};
   for (std::size_t a = 0; a < state.accepted().size(); ++a) {
-    const AcceptedEffect& accepted = state.accepted()[a];
+    const Accepted& accepted = state.accepted()[a];
     if (accepted.rivals.empty()) continue;
-    state.report_progress(context, "any better than " + accepted.candidate.name + "?");
-    for (ExtendedModel& e : fit_rivals(
-             state, a, [](const Candidate&) { return true; }, context)) {
-      if (!is_clearly_worse(-loss_with(e, present, now))) continue;
-      const SelectionStep& reduced = state.chain.without(a);
-      judge(e, residual_series(reduced.job, reduced.fit), tried);
-      if (!e.rejection) return Exchange{a, std::move(e)};
+    state.report_progress(context.run, "any better than " + accepted.hypothesis.name + "?");
+    for (Tried& rival : try_rivals(
+             state, a, [](const Hypothesis&) { return true; }, context)) {
+      if (!is_clearly_worse(-loss_with(rival, present, now), context.options)) continue;
+      const FittedModel& reduced = state.chain.without(a);
+      judge(rival, residual_series(reduced.job, reduced.fit), strictness, context.options);
+      if (!rival.rejection) return TriedRival{a, std::move(rival)};
     }
   }
   return std::nullopt;
 }
 
-std::vector<RivalPair> equal_rivals(SearchState& state, int round, const RunContext& context) {
-  std::vector<AcceptedEffect>& accepted = state.chain.accepted();
+std::vector<TriedRival> equal_rivals(SearchState& state, int round, const SearchContext& context) {
+  std::vector<Accepted>& accepted = state.chain.accepted();
   if (accepted.empty()) return {};
-  state.report_progress(context, "any equals?");
-  const SelectionStep& present = state.current();
-  for (AcceptedEffect& effect : accepted) add_alternatives(effect, present);
-  // What leaves nothing but noise needs no more parameters.
-  const bool is_noise = state.chain.explained();
-  const auto has_more = [&](const Candidate& rival, std::size_t a) {
-    return rival.parameters() > accepted[a].candidate.parameters();
+  state.report_progress(context.run, "any equals?");
+  const FittedModel& present = state.current();
+  for (Accepted& one : accepted) add_imitators(one, present, context.options);
+  // A model that leaves nothing but noise needs no more parameters.
+  const bool is_noise = state.explained();
+  const auto has_more = [&](const Hypothesis& rival, std::size_t a) {
+    return rival.parameters() > accepted[a].hypothesis.parameters();
   };
-  std::vector<std::vector<ExtendedModel>> rivals(accepted.size());
+  std::vector<std::vector<Tried>> rivals(accepted.size());
   parallel_for(accepted.size(), [&](std::size_t a) {
-    const Candidate& chosen = accepted[a].candidate;
-    const auto counts = [&](const Candidate& rival) {
+    const Hypothesis& chosen = accepted[a].hypothesis;
+    const auto counts = [&](const Hypothesis& rival) {
       // A clock that is off has precedence: no part of the machine is its equal.
-      const bool is_behind = chosen.is_timing && !rival.is_timing;
+      const bool is_behind =
+          chosen.kind == HypothesisKind::clock && rival.kind != HypothesisKind::clock;
       return !is_behind && !is_form_of_same_effect(chosen, rival) &&
              !(is_noise && has_more(rival, a));
     };
-    rivals[a] = fit_rivals(state, a, counts, context);
+    rivals[a] = try_rivals(state, a, counts, context);
   });
   const auto now = residual_series(present.job, present.fit);
-  std::vector<RivalPair> pairs;
+  std::vector<TriedRival> equals;
   for (std::size_t a = 0; a < accepted.size(); ++a) {
-    for (const ExtendedModel& e : rivals[a]) {
+    for (Tried& rival : rivals[a]) {
       // More parameters must explain more than they cost.
-      const double loss = loss_with(e, present, now);
-      if (has_more(e.candidate, a) ? loss >= 0.0 : is_clearly_worse(loss)) continue;
-      if (state.trials.find(e.candidate) == nullptr) state.trials.record(e, &e, round);
-      pairs.push_back({a, e.candidate, fitted_model(e.job, e.fit),
-                       is_delay(accepted[a].candidate) && is_delay(e.candidate)});
+      const double loss = loss_with(rival, present, now);
+      if (has_more(rival.hypothesis, a) ? loss >= 0.0 : is_clearly_worse(loss, context.options))
+        continue;
+      if (state.outcomes.find(rival.hypothesis) == nullptr)
+        state.outcomes.record(rival, &rival, round);
+      equals.push_back({a, std::move(rival)});
     }
   }
-  return pairs;
+  return equals;
 }
 
 }  // namespace axisfit

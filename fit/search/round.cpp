@@ -21,15 +21,14 @@ bool is_of_validation(const Rejection& rejection) {
   return rejection.test == Rejection::Test::validation || rejection.test == Rejection::Test::power;
 }
 
-bool all_are_rejected(const std::vector<ExtendedModel>& models) {
-  return std::ranges::all_of(models,
-                             [](const ExtendedModel& e) { return e.rejection.has_value(); });
+bool all_are_rejected(const std::vector<Tried>& models) {
+  return std::ranges::all_of(models, [](const Tried& e) { return e.rejection.has_value(); });
 }
 
 class RoundTrial {
  public:
-  RoundTrial(const SelectionStep& model, const RoundOptions& options, RoundMemory& memory,
-             const RunContext& context)
+  RoundTrial(const FittedModel& model, const RoundOptions& options, RoundMemory& memory,
+             const SearchContext& context)
       : model_(model),
         options_(options),
         memory_(memory),
@@ -51,62 +50,67 @@ class RoundTrial {
 
  private:
   void report_progress(const std::string& phase, int done = 0, int of = 0) const {
-    context_.report({phase, done, of, model_.fit.reduced_chi_square});
+    context_.run.report({phase, done, of, model_.fit.reduced_chi_square});
   }
 
-  /// A simulation that is far from the data must track them to be scored. Of one that is close, the
+  /// A simulation that is far from the data must track them to be scored. Where it is close, the
   /// free run is scored, too: an instrument that errs misleads whatever tracks it.
   std::vector<double> gains_to_score() const {
-    constexpr double kClose = 25.0;
     const bool is_free = !tracks(model_.job.options.criterion);
     if (is_free && options_.explained) return {0.0};
     std::vector<double> gains = score_gains(model_.job);
     if (const auto close = close_gain(model_.job, values_of(model_.fit), context_))
       gains.insert(gains.begin(), *close);
-    if (is_free && model_.fit.reduced_chi_square < kClose) gains.push_back(0.0);
+    if (is_free && model_.fit.reduced_chi_square < limits().close_chi_square) gains.push_back(0.0);
     return gains;
   }
 
-  const ShortlistEntry& entry(std::size_t place) const { return memory_.list->entries[place]; }
+  const SearchOptions::Round& limits() const { return context_.options.round; }
+  Strictness strictness() const { return {result_.tried, options_.chance}; }
+  /// However lenient the round is.
+  Strictness strict(bool replicates) const {
+    return {result_.tried, context_.options.acceptance.chance, replicates};
+  }
+
+  const Scored& entry(std::size_t place) const { return memory_.list->entries[place]; }
 
   /// The places in the shortlist of what is to be refitted.
   std::vector<std::size_t> choice() {
     if (!memory_.list) {
       report_progress("scoring effects");
-      memory_.list = shortlist(model_.job, values_of(model_.fit), gains_to_score(), options_.curves,
-                               options_.shortlist, context_);
+      memory_.list =
+          shortlist(model_.job, values_of(model_.fit), gains_to_score(), options_.curves, context_);
       memory_.refits.resize(memory_.list->entries.size());
     }
     result_.tried = memory_.list->tried;
     std::vector<std::size_t> places(memory_.list->entries.size());
     std::iota(places.begin(), places.end(), 0);
     std::erase_if(places, [&](std::size_t place) {
-      const auto is_this = [&other = entry(place).candidate](const Candidate& c) {
-        return same_effect(c, other);
+      const auto is_this = [&other = *entry(place).hypothesis](const Hypothesis& c) {
+        return is_same(c, other);
       };
       return is_hopeless(entry(place)) || std::ranges::any_of(options_.excluded, is_this);
     });
     return places;
   }
 
-  /// Whether the acceptance test would find it no better than chance. What a score promises holds
-  /// to first order: the refit may find more, above all of what gains much.
-  bool is_hopeless(const ShortlistEntry& entry) const {
-    constexpr double kPart = 0.4, kMuch = 10.0;
-    const double least = least_gain(entry.candidate, samples_of(before_), result_.tried);
-    if (options_.explained) return entry.gain < least;
-    return entry.promise < kPart * least && entry.gain < kMuch * least;
+  /// Whether the acceptance test would find it no better than chance. A score holds to
+  /// first order: the refit may find more, above all where the score is large.
+  bool is_hopeless(const Scored& entry) const {
+    const double least = least_gain(*entry.hypothesis, samples_of(before_), result_.tried);
+    if (options_.explained) return entry.scaled_gain < least;
+    return entry.promise < limits().promise * least && entry.scaled_gain < limits().much * least;
   }
 
-  /// What promises little beside the best is refitted only where that does not pass, and what a
-  /// simpler effect does as well where none of these does.
+  /// A hypothesis that promises little beside the best is refitted only where that does not pass,
+  /// and one that a simpler one equals only where none of these does.
   void refit_in_turns(std::vector<std::size_t> places) {
-    constexpr double kRival = 0.6;
     double promised = 0.0;
     for (const std::size_t place : places)
-      if (!entry(place).is_second) promised = std::max(promised, entry(place).gain);
+      if (!entry(place).is_second) promised = std::max(promised, entry(place).scaled_gain);
     const auto turn = [&](std::size_t place) {
-      return entry(place).is_second ? 2 : entry(place).gain >= kRival * promised ? 0 : 1;
+      if (entry(place).is_second) return 2;
+      return entry(place).scaled_gain >= limits().rival_part * promised ? 0 : 1;
     };
     std::ranges::stable_sort(places, {}, turn);
     auto next = places.begin();
@@ -121,14 +125,14 @@ class RoundTrial {
 
   /// Refits with each of these and judges it.
   void refit_all(std::span<const std::size_t> places) {
-    std::vector<ExtendedModel>& models = result_.models;
+    std::vector<Tried>& models = result_.models;
     const std::size_t first = models.size();
     models.resize(first + places.size());
-    // What takes longest first, so that nobody waits for it at the end.
+    // The longest first, so that no thread waits for it at the end.
     std::vector<std::size_t> order(places.size());
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) {
-      return entry(places[i]).candidate.parameters();
+      return entry(places[i]).hypothesis->parameters();
     });
     int done = 0;
     std::mutex mutex;
@@ -137,52 +141,46 @@ class RoundTrial {
       const auto report = [&](int step) {
         const std::lock_guard lock(mutex);
         done += step;
-        report_progress("trying " + entry(place).candidate.name, done,
+        report_progress("trying " + entry(place).hypothesis->name, done,
                         static_cast<int>(places.size()));
       };
       report(0);
-      ExtendedModel& e = models[first + order[k]];
+      Tried& e = models[first + order[k]];
       e = refitted(place);
-      judge(e, before_, result_.tried, options_.chance);
+      judge(e, before_, strictness(), context_.options);
       if (is_cut_short(e)) {
         resume(e, context_);
         memory_.refits[place] = e;
-        judge(e, before_, result_.tried, options_.chance);
+        judge(e, before_, strictness(), context_.options);
       }
       report(1);
     });
   }
 
   /// Whether a refit promises to pass, but for want of iterations.
-  bool is_cut_short(const ExtendedModel& e) const {
+  bool is_cut_short(const Tried& e) const {
     return e.fit.verdict.kind == FitVerdict::Kind::no_minimum && e.gain.comparable &&
            e.gain.p_value < options_.chance &&
-           e.gain.fit_gain > least_gain(e.candidate, e.gain.samples, result_.tried);
+           e.gain.fit_gain > least_gain(e.hypothesis, e.gain.samples, result_.tried);
   }
 
   /// With an entry of the shortlist.
-  const ExtendedModel& refitted(std::size_t place) {
-    std::optional<ExtendedModel>& known = memory_.refits[place];
-    if (!known) {
-      const ShortlistEntry& p = entry(place);
-      ExtendedModel e = fit_extended_model(model_.job, p.candidate, p.score.values,
-                                           p.score.strengths, p.score.shapes, context_);
-      e.score = p.score.gain;
-      known = std::move(e);
-    }
+  const Tried& refitted(std::size_t place) {
+    std::optional<Tried>& known = memory_.refits[place];
+    if (!known) known = try_hypothesis(model_.job, entry(place), context_);
     return *known;
   }
 
-  /// Of several settings of one effect.
+  /// Drops all but one of several settings of one effect.
   void keep_the_best_setting() {
-    const auto is_preferred = [](const ExtendedModel& a, const ExtendedModel& b) {
+    const auto is_preferred = [](const Tried& a, const Tried& b) {
       if (a.rejection.has_value() != b.rejection.has_value()) return !a.rejection;
       return bic_advantage(a, b) > 0.0;
     };
-    std::vector<ExtendedModel> kept;
-    for (ExtendedModel& e : result_.models) {
+    std::vector<Tried> kept;
+    for (Tried& e : result_.models) {
       const auto other = std::ranges::find_if(
-          kept, [&](const ExtendedModel& c) { return same_effect(c.candidate, e.candidate); });
+          kept, [&](const Tried& c) { return is_same(c.hypothesis, e.hypothesis); });
       if (other == kept.end())
         kept.push_back(std::move(e));
       else if (is_preferred(e, *other))
@@ -194,44 +192,46 @@ class RoundTrial {
   /// Asks other data of what explains the most, and so on down to what explains clearly less than
   /// one that they confirm.
   void try_elsewhere() {
-    std::vector<ExtendedModel*> order;
-    for (ExtendedModel& e : result_.models)
+    std::vector<Tried*> order;
+    for (Tried& e : result_.models)
       if (e.fit.usable && is_of_validation(*e.rejection)) order.push_back(&e);
     std::ranges::stable_sort(order, std::greater{},
-                             [](const ExtendedModel* e) { return e->gain.fit_gain; });
-    constexpr std::size_t kAtOnce = 2;
-    const ExtendedModel* best = nullptr;
-    for (std::size_t first = 0; first < order.size(); first += kAtOnce) {
-      std::span<ExtendedModel*> next(order);
-      next = next.subspan(first, std::min(kAtOnce, order.size() - first));
-      if (best != nullptr && is_clearly_worse(bic_advantage(*best, *next.front()))) return;
-      report_progress("does " + next.front()->candidate.name + " replicate?");
+                             [](const Tried* e) { return e->gain.fit_gain; });
+    const std::size_t at_once = limits().at_once;
+    const Tried* best = nullptr;
+    for (std::size_t first = 0; first < order.size(); first += at_once) {
+      std::span<Tried*> next(order);
+      next = next.subspan(first, std::min(at_once, order.size() - first));
+      if (best != nullptr &&
+          is_clearly_worse(bic_advantage(*best, *next.front()), context_.options))
+        return;
+      report_progress("does " + next.front()->hypothesis.name + " replicate?");
       parallel_for(next.size(), [&](std::size_t i) { try_to_replicate(*next[i]); });
-      std::vector<ExtendedModel*> asked;
+      std::vector<Tried*> asked;
       std::ranges::copy_if(next, std::back_inserter(asked), wants_stretches);
       try_on_stretches(asked);
-      for (const ExtendedModel* e : next)
+      for (const Tried* e : next)
         if (best == nullptr && !e->rejection) best = e;
     }
   }
 
-  Determination determined(const ExtendedModel& e) const {
-    return determination(e.job, e.fit, e.candidate, e.residuals);
+  Determination determined(const Tried& e) const {
+    return determination(e.job, e.fit, e.hypothesis, e.residuals, context_.options);
   }
 
-  /// What lowers the error of one recording and not that of another may yet be in both, where
-  /// something else differs between them.
-  void try_to_replicate(ExtendedModel& e) {
-    if (e.candidate.is_curve) return;  // proves nothing, see replication()
+  /// An effect that lowers the error of one recording and not that of another may yet be in both,
+  /// where something else differs between them.
+  void try_to_replicate(Tried& e) {
+    if (e.hypothesis.kind == HypothesisKind::curve) return;  // proves nothing, see replication()
     const std::optional<FitResult> elsewhere = fitted_elsewhere(e);
     if (!elsewhere) return;
-    Replication found = replication(e.job, e.fit, *elsewhere, e.candidate);
+    Replication found = replication(e.job, e.fit, *elsewhere, e.hypothesis, context_.options);
     if (!found.is_alike) return;
-    e.rejection = rejection_of(e.candidate, e.gain, determined(e), result_.tried, kChance, true);
+    e.rejection = rejection_of(e.hypothesis, e.gain, determined(e), strict(true), context_.options);
     if (!e.rejection) e.replication = std::move(found);
   }
 
-  std::optional<FitResult> fitted_elsewhere(const ExtendedModel& e) {
+  std::optional<FitResult> fitted_elsewhere(const Tried& e) {
     const std::vector<double> values = values_of(e.fit);
     const auto known = [&] {
       const std::lock_guard lock(elsewhere_);
@@ -244,12 +244,12 @@ class RoundTrial {
     return memory_.elsewhere.emplace(values, std::move(fit)).first->second;
   }
 
-  /// What the recordings to validate could not have shown is judged by stretches of the fitted
-  /// ones, held out from both fits.
-  void try_on_stretches(const std::vector<ExtendedModel*>& asked) {
+  /// Effects that the recordings to validate could not have shown are judged by stretches of the
+  /// fitted ones, held out from both fits.
+  void try_on_stretches(const std::vector<Tried*>& asked) {
     if (asked.empty()) return;
-    report_progress("do held-out stretches show " + asked.front()->candidate.name + "?");
-    const auto held_out = [&](SelectionStep model) {
+    report_progress("do held-out stretches show " + asked.front()->hypothesis.name + "?");
+    const auto held_out = [&](FittedModel model) {
       model = with_held_out_blocks(std::move(model), context_);
       auto series = residual_series(model.job, model.fit);
       std::erase_if(series, [&](const ResidualSeries& s) {
@@ -265,11 +265,12 @@ class RoundTrial {
         memory_.on_stretches = held_out(model_);
     });
     for (std::size_t i = 0; i < asked.size(); ++i) {
-      ExtendedModel& e = *asked[i];
+      Tried& e = *asked[i];
       Improvement gain = improvement(*memory_.on_stretches, with[i]);
       gain.fit_gain = e.gain.fit_gain;
       gain.samples = e.gain.samples;
-      if (rejection_of(e.candidate, gain, determined(e), result_.tried)) continue;
+      if (rejection_of(e.hypothesis, gain, determined(e), strict(false), context_.options))
+        continue;
       e.rejection.reset();
       e.gain = gain;
       e.on_stretches = true;
@@ -278,60 +279,53 @@ class RoundTrial {
 
   /// Whether the recordings to validate could not have shown it and stretches could: a disturbance
   /// goes on from one stretch to the next, and only another recording tells it from a law.
-  static bool wants_stretches(const ExtendedModel* e) {
+  static bool wants_stretches(const Tried* e) {
     static const std::size_t kOverTime = *effect_named(ForceOverTime<double>::name);
     return e->rejection && e->rejection->test == Rejection::Test::power &&
-           quantity_list()[e->candidate.strengths.front()].effect != kOverTime;
+           quantity_list()[e->hypothesis.strengths.front()].effect != kOverTime;
   }
 
   void choose() {
-    const ExtendedModel* best = nullptr;
-    for (const ExtendedModel& e : result_.models)
+    const Tried* best = nullptr;
+    for (const Tried& e : result_.models)
       if (!e.rejection && (best == nullptr || bic_advantage(e, *best) > 0.0)) best = &e;
     if (best == nullptr) return;
-    const auto is_equal = [&](const ExtendedModel& e) {
-      return !e.rejection && !is_clearly_worse(bic_advantage(*best, e));
+    const auto is_equal = [&](const Tried& e) {
+      return !e.rejection && !is_clearly_worse(bic_advantage(*best, e), context_.options);
     };
-    // No simpler effect does as well.
-    for (const ExtendedModel& e : result_.models)
-      if (e.candidate.parameters() < best->candidate.parameters() && is_equal(e)) best = &e;
-    // Nor does a clock that is a little off: that is no part of the machine.
-    for (const ExtendedModel& e : result_.models)
-      if (!best->candidate.is_timing && e.candidate.is_timing && is_equal(e)) best = &e;
+    // A simpler effect that does as well goes first.
+    for (const Tried& e : result_.models)
+      if (e.hypothesis.parameters() < best->hypothesis.parameters() && is_equal(e)) best = &e;
+    // So does a clock that is a little off: that is no part of the machine.
+    for (const Tried& e : result_.models)
+      if (best->hypothesis.kind != HypothesisKind::clock &&
+          e.hypothesis.kind == HypothesisKind::clock && is_equal(e))
+        best = &e;
     result_.best = static_cast<std::size_t>(best - result_.models.data());
   }
 
-  const SelectionStep& model_;
+  const FittedModel& model_;
   const RoundOptions& options_;
   RoundMemory& memory_;
   std::mutex elsewhere_;  // of the memory
-  const RunContext& context_;
+  const SearchContext& context_;
   const std::vector<ResidualSeries> before_;
   RoundResult result_;
 };
 
 }  // namespace
 
-RoundResult try_round(const SelectionStep& model, const RoundOptions& options, RoundMemory& memory,
-                      const RunContext& context) {
+RoundResult try_round(const FittedModel& model, const RoundOptions& options, RoundMemory& memory,
+                      const SearchContext& context) {
   return RoundTrial(model, options, memory, context).run();
 }
 
-void judge(ExtendedModel& e, const std::vector<ResidualSeries>& before, std::size_t tried,
-           double chance) {
-  e.gain = improvement(before, e.residuals);
-  e.rejection = e.fit.usable ? rejection_of(e.candidate, e.gain,
-                                            determination(e.job, e.fit, e.candidate, e.residuals),
-                                            tried, chance)
-                             : Rejection{.test = Rejection::Test::fit};
-}
-
-SelectionStep with_held_out_blocks(SelectionStep model, const RunContext& context) {
-  constexpr std::size_t kBlocks = 10;
+FittedModel with_held_out_blocks(FittedModel model, const SearchContext& context) {
+  const std::size_t blocks = context.options.round.blocks;
   for (Recording& r : model.job.recordings) {
     r.held_out.assign(r.times.size(), false);
     for (std::size_t i = 0; i < r.times.size(); ++i)
-      r.held_out[i] = i * kBlocks / r.times.size() % 2 == 1;
+      r.held_out[i] = i * blocks / r.times.size() % 2 == 1;
   }
   model.fit = refit_from(model.job, values_of(model.fit), context);
   return model;

@@ -1,4 +1,4 @@
-// One round of a search: which effect, added to the present model, explains the most.
+// One round of a search: which hypothesis, added to the present model, explains the most.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,14 @@
 
 namespace axisfit {
 
-/// What the rounds of a search share.
+/// What a round is to do.
 struct RoundOptions {
   bool curves = false;  ///< those without a name, instead of the catalogue's
-  int shortlist = 6;    ///< effects that are refitted
   /// How probable it may be that an effect lowers the validation error by chance.
-  double chance = kChance;
-  bool held_out_blocks = false;       ///< no recording is to validate, see with_held_out_blocks()
-  bool explained = false;             ///< what explains() says of the model
-  std::vector<Candidate> excluded{};  ///< not to be tried
+  double chance = SearchOptions::Acceptance().chance;
+  bool held_out_blocks = false;        ///< no recording is to validate, see with_held_out_blocks()
+  bool explained = false;              ///< what explains() says of the model
+  std::vector<Hypothesis> excluded{};  ///< not to be tried
 };
 
 /// What a round computed of its model, for another round of the same model with other options.
@@ -27,33 +26,29 @@ struct RoundOptions {
 struct RoundMemory {
   std::vector<double> of{};  ///< values and observer gain of the model
   std::optional<Shortlist> list{};
-  std::vector<std::optional<ExtendedModel>> refits{};  ///< of the list's entries, not judged
-  /// By the values of an extended model, see fit_elsewhere().
+  std::vector<std::optional<Tried>> refits{};  ///< of the list's entries, not judged
+  /// By the values of the extended model, see fit_elsewhere().
   std::map<std::vector<double>, std::optional<FitResult>> elsewhere{};
-  /// Of the model fitted to every second stretch, see with_held_out_blocks().
+  /// The residuals of the model fitted to every second stretch, see with_held_out_blocks().
   std::optional<std::vector<ResidualSeries>> on_stretches{};
 };
 
 struct RoundResult {
-  std::vector<ExtendedModel> models;  ///< refitted and judged, each effect once
-  std::optional<std::size_t> best{};  ///< of them; none: no effect passes
-  std::size_t tried = 1;              ///< candidates and settings among which they were chosen
-  /// Not refitted, since a simpler one gained as much.
-  std::vector<ShortlistEntry> seconds{};
+  std::vector<Tried> models;          ///< refitted and judged, each hypothesis once
+  std::optional<std::size_t> best{};  ///< of them; none: none passes
+  std::size_t tried = 1;              ///< hypotheses and settings among which they were chosen
+  std::vector<Scored> seconds{};      ///< not refitted, since a simpler one gained as much
 };
 
-/// Scores all effects, refits a shortlist, and takes the best that passes the acceptance test.
+/// Scores all hypotheses, refits a shortlist, and takes the best that passes the acceptance test.
 /// Where the size of the residual is that of the noise, an effect may yet be hidden in it: then
 /// only those are refitted whose score is beyond chance. Uses what the memory has of this model,
 /// and leaves there what it computed.
-RoundResult try_round(const SelectionStep& model, const RoundOptions& options, RoundMemory& memory,
-                      const RunContext& context);
+RoundResult try_round(const FittedModel& model, const RoundOptions& options, RoundMemory& memory,
+                      const SearchContext& context);
 
-/// Puts an extended model, chosen among so many, to the acceptance test: against these residuals.
-void judge(ExtendedModel& e, const std::vector<ResidualSeries>& before, std::size_t tried,
-           double chance = kChance);
-
-/// The model fitted to five of ten stretches of each recording: every second is left to be judged.
-SelectionStep with_held_out_blocks(SelectionStep model, const RunContext& context);
+/// The model fitted to every second of some blocks of each recording: the others are left to be
+/// judged.
+FittedModel with_held_out_blocks(FittedModel model, const SearchContext& context);
 
 }  // namespace axisfit

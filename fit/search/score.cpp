@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "fit/criterion/gains.h"
 #include "fit/estimate/recipes.h"
+#include "fit/search/catalogue.h"
 #include "fit/search/effect_columns.h"
 #include "fit/search/periods.h"
 #include "fit/solve/residual.h"
@@ -30,8 +31,8 @@ Eigen::MatrixXd basis_of(const Eigen::MatrixXd& a) {
 }
 
 SearchScales scales_of(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
-                       double rate, const Linearization& base, const Eigen::MatrixXd& basis,
-                       const StopFlag* stop) {
+                       double gain, const Linearization& base, const Eigen::MatrixXd& basis,
+                       const SearchContext& context) {
   SearchScales s{INFINITY, -INFINITY, 0.0, INFINITY, -INFINITY, INFINITY, -INFINITY};
   const Model<double> model = model_at(job, space, u.data(), 0);
   s.mass = Equations<double>(model).moving_mass();
@@ -39,7 +40,7 @@ SearchScales scales_of(const Job& job, const ParameterSpace& space, const Eigen:
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     const Recording& recording = job.recordings[r];
     if (recording.role != Role::fit) continue;
-    const Observer observer = observer_for(recording, rate);
+    const Observer observer = observer_for(recording, gain);
     const SimulatedRecording simulation = simulate_recording(job, space, r, u.data(), observer);
     for (const Sample& sample : simulation.samples) {
       s.position_low = std::min(s.position_low, sample.position);
@@ -51,12 +52,12 @@ SearchScales scales_of(const Job& job, const ParameterSpace& space, const Eigen:
     s.end = std::max(s.end, recording.times.back());
     s.interval = std::max(s.interval, mean_interval(recording.times));
     const Eigen::Index rows = RecordingCost(job, space, r, observer).num_residuals();
-    constexpr std::size_t kPeriods = 3;
     for (const bool of_drive : {false, true}) {
       auto& periods = of_drive ? s.drive_periods : s.periods;
       for (const double period :
            periods_in(recording, simulation, observer, base.residuals.segment(row, rows),
-                      basis.middleRows(row, rows), kPeriods, of_drive, stop))
+                      basis.middleRows(row, rows), context.options.scoring.periods, of_drive,
+                      context.run.stop))
         periods.push_back(period);
     }
     row += rows;
@@ -65,12 +66,14 @@ SearchScales scales_of(const Job& job, const ParameterSpace& space, const Eigen:
   return s;
 }
 
-/// What one step of least squares makes of a candidate's columns.
+/// What one step of least squares makes of a hypothesis's columns.
 class Scorer {
  public:
   Scorer(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
-         const Linearization& base, const Eigen::MatrixXd& basis, const Eigen::VectorXd& residual)
-      : job_(job),
+         const Linearization& base, const Eigen::MatrixXd& basis, const Eigen::VectorXd& residual,
+         const SearchOptions::Scoring& options)
+      : options_(options),
+        job_(job),
         space_(space),
         u_(u),
         base_(base),
@@ -78,47 +81,51 @@ class Scorer {
         residual_(residual),
         solver_(base.jacobian) {}
 
-  /// Enters strengths, values and gain where that is more than the score has.
-  void consider(const EffectSetting& setting, const Eigen::MatrixXd& rows, Score& score) const {
+  /// Enters what the setting promises where that is more than the score has.
+  void consider(const EffectSetting& setting, const Eigen::MatrixXd& rows, Scored& score) const {
+    const Hypothesis& hypothesis = *setting.hypothesis;
+    if (rows.size() == 0) return;  // its simulation does not finish
     const Eigen::MatrixXd derivatives = with_priors(rows);
     const Eigen::MatrixXd columns = projected(derivatives);
     if (columns.size() == 0) return;
     const Eigen::VectorXd step = LeastSquaresSolver(columns).solve(-residual_);
     if (!step.allFinite()) return;
-    std::vector<double> reached;
-    for (std::size_t k = 0; k < setting.strengths.size(); ++k) {
-      const Quantity& q = job_.entry(setting.candidate->strengths[k]).quantity;
-      reached.push_back(
-          moved(*setting.candidate, setting.strengths[k], step[static_cast<Eigen::Index>(k)]));
-      if (setting.strengths.size() == 1 && (reached[k] < q.lower || reached[k] > q.upper)) return;
+    const std::vector<double>& strengths = setting.own.strengths;
+    HypothesisValues reached{{}, setting.own.shapes};
+    for (std::size_t k = 0; k < strengths.size(); ++k) {
+      const Quantity& q = job_.entry(hypothesis.strengths[k]).quantity;
+      const double moved = moved_by(hypothesis, strengths[k], step[static_cast<Eigen::Index>(k)]);
+      reached.strengths.push_back(moved);
+      if (strengths.size() == 1 && (moved < q.lower || moved > q.upper)) return;
     }
     Eigen::VectorXd change = columns * step;
     const double gain = residual_.squaredNorm() - (residual_ + change).squaredNorm();
     if (!(gain > score.gain)) return;
     score.gain = gain;
     score.change = std::move(change);
-    score.shapes = setting.shapes;
-    score.strengths = reached;
+    score.own = std::move(reached);
     // The free parameters adapt to the effect, no further than a linear step can be trusted.
     Eigen::VectorXd way = solver_.solve(-(base_.residuals + derivatives * step));
+    const double most = options_.largest_log_step;
     for (std::size_t i = 0; i < space_.size(); ++i) {
       double& by = way[static_cast<Eigen::Index>(i)];
-      if (space_[i].logarithmic) by = std::clamp(by, -0.7, 0.7);
+      if (space_[i].logarithmic) by = std::clamp(by, -most, most);
     }
-    score.values = space_.values(u_ + way);
+    score.others = space_.values(u_ + way);
   }
 
   /// The step of the shapes, from a score and the derivatives with respect to strengths and shapes
   /// there; none where they say nothing.
   std::optional<Eigen::VectorXd> step_of_shapes(const EffectSetting& setting,
                                                 const Eigen::MatrixXd& rows) const {
+    if (rows.size() == 0) return std::nullopt;
     const Eigen::MatrixXd columns = projected(with_priors(rows));
     if (columns.size() == 0) return std::nullopt;
-    const auto strengths = static_cast<Eigen::Index>(setting.strengths.size());
+    const auto strengths = static_cast<Eigen::Index>(setting.own.strengths.size());
     Eigen::VectorXd way(strengths);
     for (Eigen::Index k = 0; k < strengths; ++k)
-      way[k] = setting.strengths[static_cast<std::size_t>(k)] -
-               setting.candidate->neutral[static_cast<std::size_t>(k)];
+      way[k] = setting.own.strengths[static_cast<std::size_t>(k)] -
+               setting.hypothesis->neutral[static_cast<std::size_t>(k)];
     const Eigen::VectorXd there = residual_ + columns.leftCols(strengths) * way;
     const Eigen::VectorXd step = LeastSquaresSolver(columns).solve(-there);
     if (!step.allFinite()) return std::nullopt;
@@ -126,14 +133,14 @@ class Scorer {
   }
 
  private:
-  static double moved(const Candidate& candidate, double value, double step) {
+  static double moved_by(const Hypothesis& hypothesis, double value, double step) {
     if (std::isinf(value)) return 1.0 / step;
-    return candidate.is_constant && value > 0.0 ? value * std::exp(step) : value + step;
+    return hypothesis.kind == HypothesisKind::constant && value > 0.0 ? value * std::exp(step)
+                                                                      : value + step;
   }
 
   /// Candidates have no part in what is known of the free parameters.
   Eigen::MatrixXd with_priors(const Eigen::MatrixXd& rows) const {
-    if (rows.cols() == 0) return {};
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(residual_.size(), rows.cols());
     all.topRows(rows.rows()) = rows;
     return all;
@@ -143,10 +150,12 @@ class Scorer {
   Eigen::MatrixXd projected(const Eigen::MatrixXd& derivatives) const {
     Eigen::MatrixXd columns = derivatives - basis_ * (basis_.transpose() * derivatives);
     for (Eigen::Index k = 0; k < columns.cols(); ++k)
-      if (!(columns.col(k).norm() >= 1e-4 * derivatives.col(k).norm())) return {};
+      if (!(columns.col(k).norm() >= options_.least_own_part * derivatives.col(k).norm()))
+        return {};
     return columns;
   }
 
+  const SearchOptions::Scoring& options_;
   const Job& job_;
   const ParameterSpace& space_;
   const Eigen::VectorXd& u_;
@@ -156,117 +165,108 @@ class Scorer {
   const LeastSquaresSolver solver_;
 };
 
-/// The mean derivatives up to each of a candidate's probes, from the residuals without it.
-std::vector<std::pair<double, Eigen::MatrixXd>> probed(const Job& fixed, const Candidate& candidate,
+/// The mean derivatives up to each of a hypothesis' probes, from the residuals without it.
+std::vector<std::pair<double, Eigen::MatrixXd>> probed(const Job& fixed,
+                                                       const Hypothesis& hypothesis,
                                                        const std::vector<double>& shapes,
-                                                       double rate,
+                                                       double gain,
                                                        const Eigen::VectorXd& without) {
   std::vector<std::pair<double, Eigen::MatrixXd>> list;
-  Candidate shaped = candidate;
-  shaped.shapes_are_free = false;
-  for (const double probe : candidate.probes) {
+  for (const double probe : hypothesis.probes) {
     const std::vector<double> strength{probe};
-    const Job extended = with_candidate(fixed, shaped, {}, strength, shapes);
+    const Job extended = with_hypothesis(fixed, hypothesis, {}, {strength, shapes}, true);
     const ParameterSpace space(extended);
-    const Eigen::VectorXd there = residuals_at(extended, space, space.internal(strength), rate);
+    const Eigen::VectorXd there = residuals_at(extended, space, space.internal(strength), gain);
     if (there.size() == 0 || there.size() > without.size()) continue;
     list.emplace_back(probe, (there - without.head(there.size())) /
-                                 distance_from_neutral(probe, candidate.neutral[0]));
+                                 distance_from_neutral(probe, hypothesis.neutral[0]));
   }
   return list;
 }
 
 /// Each setting of another transmission takes simulations of its own: those in the middle are tried
 /// first, where there are many.
-bool is_tried_first(const Candidate& candidate, std::size_t setting) {
-  const std::size_t all = candidate.settings.size();
-  return !candidate.gives_backlash || all < 9 || (3 * setting >= all && 3 * setting < 2 * all);
+bool is_tried_first(const Hypothesis& hypothesis, std::size_t setting,
+                    const SearchOptions::Scoring& options) {
+  const std::size_t all = hypothesis.settings.size();
+  return hypothesis.kind != HypothesisKind::transmission || all < options.first_settings ||
+         (3 * setting >= all && 3 * setting < 2 * all);
 }
 
-/// Whether a candidate's settings that were tried are worth trying the others, too: with a part of
-/// what the best of all candidates gains.
-bool gains_part_of(double best, std::size_t candidate, const std::vector<Score*>& tried) {
-  constexpr double kPart = 0.1;
-  return std::ranges::any_of(tried, [&](const Score* score) {
-    return score->candidate == candidate && score->gain >= kPart * best;
-  });
-}
-
-/// Of one shape, the least and the most that is tried.
-std::pair<double, double> range_of_settings(const Candidate& candidate, std::size_t shape) {
+/// The least and the most that is tried of one shape.
+std::pair<double, double> range_of_settings(const Hypothesis& hypothesis, std::size_t shape,
+                                            const SearchOptions::Scoring& options) {
   double least = INFINITY, most = -INFINITY;
-  for (const auto& setting : candidate.settings) {
+  for (const auto& setting : hypothesis.settings) {
     least = std::min(least, setting[shape]);
     most = std::max(most, setting[shape]);
   }
-  // A period is not on a grid, but where the spectrum has a peak.
-  constexpr double kBeyond = 0.05;
-  const double beyond = kBeyond * std::max(std::abs(least), std::abs(most));
+  const double beyond = options.beyond_tried * std::max(std::abs(least), std::abs(most));
   return {least - beyond, most + beyond};
 }
 
-/// The shapes of the candidates that gain most go on from the settings tried to where they gain
+/// The best score of each of the few hypotheses whose shapes are worth another step.
+std::vector<Scored*> scores_to_refine(std::vector<Scored>& scores, std::size_t count) {
+  std::vector<Scored*> order;
+  for (Scored& score : scores) order.push_back(&score);
+  std::ranges::stable_sort(order, std::greater{}, [](const Scored* s) { return s->gain; });
+  std::vector<Scored*> chosen;
+  for (Scored* score : order) {
+    const Hypothesis& hypothesis = *score->hypothesis;
+    if (hypothesis.shapes.empty() || !hypothesis.estimates_shapes() || !hypothesis.probes.empty() ||
+        !(score->gain > 0.0))
+      continue;
+    const bool known = std::ranges::any_of(
+        chosen, [&](const Scored* other) { return other->hypothesis == score->hypothesis; });
+    if (!known && chosen.size() < count) chosen.push_back(score);
+  }
+  return chosen;
+}
+
+/// The shapes of the hypotheses that gain most go on from the settings tried to where they gain
 /// most, by steps of Gauss and Newton.
 void refine_shapes(const Job& fixed, const EffectColumns& columns, const Scorer& scorer,
-                   ScoreTest& test) {
-  constexpr std::size_t kRefined = 8;
-  constexpr int kSteps = 2;
-  std::vector<std::size_t> order(test.scores.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, std::greater{},
-                           [&](std::size_t i) { return test.scores[i].gain; });
-  std::vector<std::size_t> chosen;
-  for (const std::size_t i : order) {
-    const Candidate& candidate = test.candidates[test.scores[i].candidate];
-    if (candidate.shapes.empty() || !candidate.shapes_are_free || !candidate.probes.empty() ||
-        !(test.scores[i].gain > 0.0))
-      continue;
-    const bool known = std::ranges::any_of(chosen, [&](std::size_t other) {
-      return test.scores[other].candidate == test.scores[i].candidate;
-    });
-    if (!known && chosen.size() < kRefined) chosen.push_back(i);
-  }
-  for (int step = 0; step < kSteps; ++step) {
+                   const SearchOptions::Scoring& options, std::vector<Scored>& scores) {
+  const std::vector<Scored*> chosen = scores_to_refine(scores, options.refined);
+  for (int step = 0; step < options.refinements; ++step) {
     std::vector<EffectSetting> here;
-    for (const std::size_t i : chosen) {
-      const Score& score = test.scores[i];
-      here.push_back({&test.candidates[score.candidate], score.strengths, score.shapes, true});
-    }
+    for (const Scored* score : chosen) here.push_back({score->hypothesis.get(), score->own, true});
     const std::vector<Eigen::MatrixXd> slopes = columns.derivatives(here);
     std::vector<EffectSetting> next;
-    std::vector<std::size_t> of_next;
+    std::vector<Scored*> of_next;
     for (std::size_t c = 0; c < chosen.size(); ++c) {
       const auto way = scorer.step_of_shapes(here[c], slopes[c]);
       if (!way) continue;
-      EffectSetting moved{here[c].candidate, here[c].candidate->neutral, here[c].shapes};
-      const Job ranges = with_candidate(fixed, *moved.candidate, {}, moved.strengths, moved.shapes);
-      const std::size_t first = ranges.free.size() - moved.shapes.size();
-      for (std::size_t k = 0; k < moved.shapes.size(); ++k) {
+      const Hypothesis& hypothesis = *here[c].hypothesis;
+      EffectSetting moved{&hypothesis, {hypothesis.neutral, here[c].own.shapes}};
+      std::vector<double>& shapes = moved.own.shapes;
+      const Job ranges = with_hypothesis(fixed, hypothesis, {}, moved.own);
+      const std::size_t first = ranges.free.size() - shapes.size();
+      for (std::size_t k = 0; k < shapes.size(); ++k) {
         const FreeParameter& p = ranges.free[first + k];
-        const double most = p.logarithmic ? 0.7 : 0.1 * (p.upper - p.lower);
+        const double most = p.logarithmic ? options.largest_log_step
+                                          : options.largest_linear_step * (p.upper - p.lower);
         const double by = std::clamp((*way)[static_cast<Eigen::Index>(k)], -most, most);
-        const double value = p.logarithmic ? moved.shapes[k] * std::exp(by) : moved.shapes[k] + by;
-        const auto [least, most_tried] = range_of_settings(*moved.candidate, k);
-        moved.shapes[k] =
-            std::clamp(value, std::max(p.lower, least), std::min(p.upper, most_tried));
+        const double value = p.logarithmic ? shapes[k] * std::exp(by) : shapes[k] + by;
+        const auto [least, most_tried] = range_of_settings(hypothesis, k, options);
+        shapes[k] = std::clamp(value, std::max(p.lower, least), std::min(p.upper, most_tried));
       }
       next.push_back(std::move(moved));
       of_next.push_back(chosen[c]);
     }
     const std::vector<Eigen::MatrixXd> there = columns.derivatives(next);
-    for (std::size_t c = 0; c < next.size(); ++c)
-      scorer.consider(next[c], there[c], test.scores[of_next[c]]);
+    for (std::size_t c = 0; c < next.size(); ++c) scorer.consider(next[c], there[c], *of_next[c]);
   }
 }
 
 /// The fit at an observer gain that a score test starts from. Not usable: nothing finite.
 SolveResult tracking_fit(const Job& job, const ParameterSpace& space,
-                         const std::vector<double>& values, double rate,
-                         const RunContext& context) {
+                         const std::vector<double>& values, double gain,
+                         const SearchContext& context) {
   SolveOptions options;
-  options.max_iterations = 15;
-  options.function_tolerance = 1e-6;
-  return solve(job, space, space.internal(values), rate, options, context);
+  options.max_iterations = context.options.scoring.tracking_iterations;
+  options.function_tolerance = context.options.scoring.tracking_tolerance;
+  return solve(job, space, space.internal(values), gain, options, context.run);
 }
 
 Job with_coarse_steps(Job job) {
@@ -274,14 +274,42 @@ Job with_coarse_steps(Job job) {
   return job;
 }
 
-ScoreTest scored(const Job& job, const std::vector<double>& values, double rate, bool curves,
-                 const RunContext& context) {
+/// Looks at those of the scores that have probes, each with simulations of its own.
+void probe(const std::vector<Scored*>& scores, const Job& fixed, double gain,
+           const Eigen::VectorXd& without, const Scorer& scorer, const RunContext& context) {
+  parallel_for(scores.size(), [&](std::size_t i) {
+    context.check_stop();
+    Scored& score = *scores[i];
+    const Hypothesis& hypothesis = *score.hypothesis;
+    const EffectSetting absent{&hypothesis, {hypothesis.neutral, score.own.shapes}};
+    for (const auto& [strength, derivative] :
+         probed(fixed, hypothesis, score.own.shapes, gain, without))
+      scorer.consider(absent, derivative, score);
+  });
+}
+
+/// A score of nothing yet for every setting of the named hypotheses, or of the curves.
+std::vector<Scored> settings_of(std::vector<Hypothesis> all, bool curves,
+                                const std::vector<double>& others) {
+  std::vector<Scored> scores;
+  for (Hypothesis& one : all) {
+    if ((one.kind == HypothesisKind::curve) != curves) continue;
+    const auto hypothesis = std::make_shared<const Hypothesis>(std::move(one));
+    for (const auto& setting : hypothesis->settings)
+      scores.push_back({hypothesis, {hypothesis->neutral, setting}, others});
+  }
+  return scores;
+}
+
+ScoreTest scored(const Job& job, const std::vector<double>& values, double gain, bool curves,
+                 const SearchContext& context) {
   ScoreTest test;
+  const SearchOptions::Scoring& options = context.options.scoring;
   const ParameterSpace space(job);
-  const SolveResult tracking = tracking_fit(job, space, values, rate, context);
+  const SolveResult tracking = tracking_fit(job, space, values, gain, context);
   if (!tracking.usable) return test;
   const std::vector<double> tracking_values = space.values(tracking.u);
-  const Linearization base = linearize(job, space, tracking, rate);
+  const Linearization base = linearize(job, space, tracking, gain);
   if (!base.finite) return test;
   const Eigen::MatrixXd basis = basis_of(base.jacobian);
   test.residuals = base.residuals - basis * (basis.transpose() * base.residuals);
@@ -290,75 +318,64 @@ ScoreTest scored(const Job& job, const std::vector<double>& values, double rate,
   test.mean_square = test.sum_of_squares / static_cast<double>(test.residuals.size());
   test.usable = std::isfinite(test.sum_of_squares);  // squares may overflow
   if (!test.usable) return test;
-  test.candidates =
-      catalogue(job, scales_of(job, space, tracking.u, rate, base, basis, context.stop));
-  std::erase_if(test.candidates, [&](const Candidate& c) { return c.is_curve != curves; });
-  for (std::size_t c = 0; c < test.candidates.size(); ++c)
-    for (const auto& setting : test.candidates[c].settings)
-      test.scores.push_back({c, setting, {}, tracking_values, 0.0, {}});
+  std::vector<Scored>& scores = test.scores;
+  scores =
+      settings_of(catalogue(job, scales_of(job, space, tracking.u, gain, base, basis, context)),
+                  curves, tracking_values);
 
   const Job fixed = fixed_at(job, tracking_values);
-  const EffectColumns columns(fixed, rate, context);
-  Scorer scorer(fixed, space, tracking.u, base, basis, test.residuals);
+  const EffectColumns columns(fixed, gain, context.run);
+  const Scorer scorer(fixed, space, tracking.u, base, basis, test.residuals, options);
   std::vector<EffectSetting> settings;
-  std::vector<Score*> of_setting;
-  for (Score& score : test.scores) {
-    const Candidate& candidate = test.candidates[score.candidate];
-    score.strengths = candidate.neutral;
-    if (!candidate.probes.empty()) continue;
-    settings.push_back({&candidate, candidate.neutral, score.shapes});
-    of_setting.push_back(&score);
+  std::vector<Scored*> of_setting, first, rest;
+  for (std::size_t i = 0, setting = 0; i < scores.size(); ++i, ++setting) {
+    Scored& score = scores[i];
+    if (i > 0 && score.hypothesis != scores[i - 1].hypothesis) setting = 0;
+    if (score.hypothesis->probes.empty()) {
+      settings.push_back({score.hypothesis.get(), score.own});
+      of_setting.push_back(&score);
+    } else {
+      (is_tried_first(*score.hypothesis, setting, options) ? first : rest).push_back(&score);
+    }
   }
   const std::vector<Eigen::MatrixXd> derivatives = columns.derivatives(settings);
   for (std::size_t i = 0; i < settings.size(); ++i)
     scorer.consider(settings[i], derivatives[i], *of_setting[i]);
-  const auto probe = [&](const std::vector<Score*>& scores) {
-    parallel_for(scores.size(), [&](std::size_t i) {
-      context.check_stop();
-      Score& score = *scores[i];
-      const Candidate& candidate = test.candidates[score.candidate];
-      for (const auto& [strength, derivative] :
-           probed(fixed, candidate, score.shapes, rate, base.residuals))
-        scorer.consider({&candidate, candidate.neutral, score.shapes}, derivative, score);
-    });
-  };
-  std::vector<Score*> first, rest;
-  for (std::size_t c = 0, at = 0; c < test.candidates.size(); ++c) {
-    const Candidate& candidate = test.candidates[c];
-    for (std::size_t k = 0; k < candidate.settings.size(); ++k, ++at)
-      if (!candidate.probes.empty())
-        (is_tried_first(candidate, k) ? first : rest).push_back(&test.scores[at]);
-  }
-  probe(first);
+  probe(first, fixed, gain, base.residuals, scorer, context.run);
   double best = 0.0;
-  for (const Score& score : test.scores) best = std::max(best, score.gain);
-  std::erase_if(rest,
-                [&](const Score* score) { return !gains_part_of(best, score->candidate, first); });
-  probe(rest);
-  refine_shapes(fixed, columns, scorer, test);
-  std::ranges::stable_sort(test.scores, std::greater{}, &Score::gain);
+  for (const Scored& score : scores) best = std::max(best, score.gain);
+  std::erase_if(rest, [&](const Scored* other) {
+    return std::ranges::none_of(first, [&](const Scored* tried) {
+      return tried->hypothesis == other->hypothesis &&
+             tried->gain >= options.worth_other_settings * best;
+    });
+  });
+  probe(rest, fixed, gain, base.residuals, scorer, context.run);
+  refine_shapes(fixed, columns, scorer, options, scores);
+  for (Scored& score : scores) score.fraction = score.gain / test.sum_of_squares;
+  std::ranges::stable_sort(scores, std::greater{}, &Scored::gain);
   return test;
 }
 
 }  // namespace
 
-ScoreTest score_test(const Job& job, const std::vector<double>& values, double rate, bool curves,
-                     const RunContext& context) {
+ScoreTest score_test(const Job& job, const std::vector<double>& values, double gain, bool curves,
+                     const SearchContext& context) {
   const ThreadPool pool(job.options.threads);
-  ScoreTest test = scored(with_coarse_steps(job), values, rate, curves, context);
-  return test.usable ? test : scored(job, values, rate, curves, context);
+  ScoreTest test = scored(with_coarse_steps(job), values, gain, curves, context);
+  return test.usable ? test : scored(job, values, gain, curves, context);
 }
 
 std::optional<double> close_gain(const Job& job, const std::vector<double>& values,
-                                 const RunContext& context) {
-  constexpr double kLeastChiSquare = 100.0;  // per sample: ten times the noise
+                                 const SearchContext& context) {
+  const SearchOptions::Scoring& options = context.options.scoring;
   if (!has_choice_of_gains(job)) return std::nullopt;
   const Job coarse = with_coarse_steps(job);
   const ParameterSpace space(coarse);
-  for (const double part : {1.0, 1.0 / 3.0, 1.0 / 10.0}) {
+  for (const double part : options.close_gains) {
     const double gain = part * highest_gain(job);
     const SolveResult fit = tracking_fit(coarse, space, values, gain, context);
-    if (fit.usable && fit.reduced_cost >= kLeastChiSquare) return gain;
+    if (fit.usable && fit.reduced_cost >= options.large_mean_square) return gain;
   }
   return std::nullopt;
 }

@@ -1,9 +1,9 @@
-// The score test of every candidate at strength zero: which effect would explain the residual.
+// The score test of every hypothesis at strength zero: which effect would explain the residual.
 //
 // The simulation tracks the data at a moderate observer gain, so that it stays on the measured path
 // although the model lacks something, and the free parameters are fitted there. With r the whitened
-// residuals, J their Jacobian, D the derivatives with respect to a candidate's strengths and P the
-// projection off the columns of J, the candidate would lower the sum of squares by
+// residuals, J their Jacobian, D the derivatives with respect to a hypothesis's strengths and P the
+// projection off the columns of J, the hypothesis would lower the sum of squares by
 //
 //   gain = | projection of P r on the columns of P D |^2
 //
@@ -15,19 +15,11 @@
 #include <optional>
 #include <vector>
 
-#include "fit/search/catalogue.h"
+#include "fit/search/options.h"
+#include "fit/search/scored.h"
 #include "fit/solve/solve.h"
 
 namespace axisfit {
-
-struct Score {
-  std::size_t candidate = 0;   ///< in the list of candidates
-  std::vector<double> shapes;  ///< the setting tried
-  /// Where one step of least squares would put them, and the job's free parameters with them.
-  std::vector<double> strengths, values;
-  double gain = 0.0;       ///< fall of the sum of squares that this step promises
-  Eigen::VectorXd change;  ///< of ScoreTest::residuals by it
-};
 
 struct ScoreTest {
   bool usable = false;  ///< false: the tracking simulation has no finite residuals
@@ -35,14 +27,13 @@ struct ScoreTest {
   double mean_square = 0.0;   ///< of the tracking simulation's residuals, which noise drives, too
   Eigen::VectorXd residuals;  ///< without what the free parameters can still do
   std::vector<SeriesRows> series;  ///< theirs
-  std::vector<Candidate> candidates;
-  std::vector<Score> scores;  ///< of every candidate and setting, the largest gain first
+  std::vector<Scored> scores;      ///< of every hypothesis and setting, the largest gain first
 };
 
-/// Scores all named effects of the catalogue, or all curves, from a fit with the given values of
+/// Scores all named hypotheses of the catalogue, or all curves, from a fit with the given values of
 /// the free parameters. `observer_gain` as in observer_for().
 ScoreTest score_test(const Job& job, const std::vector<double>& values, double observer_gain,
-                     bool curves = false, const RunContext& context = {});
+                     bool curves = false, const SearchContext& context = {});
 
 /// A further rung of the ladder of gains (fit/criterion/gains.h) for what is large: the highest of
 /// three at which the residual still is many times the noise. What is missing shows there where it
@@ -50,6 +41,6 @@ ScoreTest score_test(const Job& job, const std::vector<double>& values, double o
 /// data, and what depends on the place or the speed is read off the wrong one. None where nothing
 /// is that large.
 std::optional<double> close_gain(const Job& job, const std::vector<double>& values,
-                                 const RunContext& context = {});
+                                 const SearchContext& context = {});
 
 }  // namespace axisfit

@@ -4,17 +4,23 @@
 
 namespace axisfit {
 
-void SearchState::strike_off(std::size_t place) {
-  for (const Candidate& part : chain.erase(place)) trials.reject(part, Reason::not_needed);
+void SearchState::restart(FittedModel declared) {
+  chain.restart(std::move(declared));
+  outcomes = {};
+  degenerate.clear();
 }
 
-void SearchState::take_out(std::size_t place, SelectionStep reduced) {
+void SearchState::strike_off(std::size_t place) {
+  for (const Hypothesis& part : chain.erase(place)) outcomes.reject(part, Reason::not_needed);
+}
+
+void SearchState::take_out(std::size_t place, FittedModel reduced) {
   strike_off(place);
   chain.set_last(std::move(reduced));
 }
 
 void SearchState::take_out_all(const Rejection& rejection) {
-  for (const AcceptedEffect& a : chain.accepted()) trials.fail(a.candidate, rejection);
+  for (const Accepted& a : chain.accepted()) outcomes.fail(a.hypothesis, rejection);
   chain.restart(chain.declared());
 }
 

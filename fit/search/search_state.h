@@ -3,26 +3,32 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "fit/search/model_chain.h"
-#include "fit/search/trials.h"
+#include "fit/search/outcomes.h"
 
 namespace axisfit {
 
-/// The models of a search, and what became of the effects it tried. A value that may be put aside
-/// and taken up again.
+/// The models of a search, and what became of the hypotheses it tried. A value that may be put
+/// aside and taken up again.
 struct SearchState {
   ModelChain chain;
-  Trials trials{};
+  Outcomes outcomes{};
+  std::vector<Hypothesis> degenerate{};  ///< became simpler ones, and are not tried again
+  bool interrupted = false;              ///< the search was stopped here
 
-  const SelectionStep& current() const { return chain.current(); }
-  const std::vector<AcceptedEffect>& accepted() const { return chain.accepted(); }
+  const FittedModel& current() const { return chain.current(); }
+  const std::vector<Accepted>& accepted() const { return chain.accepted(); }
+  bool explained() { return chain.explained(); }
 
-  /// Strikes an accepted effect off, for what its trial says already, and what is part of it. The
+  /// Begins anew with a declared model.
+  void restart(FittedModel declared);
+  /// Strikes an accepted effect off, for what its outcome says already, and what is part of it. The
   /// models are as before, until ModelChain::set_last().
   void strike_off(std::size_t place);
   /// Takes it out of the models; that without it is given.
-  void take_out(std::size_t place, SelectionStep reduced);
+  void take_out(std::size_t place, FittedModel reduced);
   /// Takes out all that was accepted.
   void take_out_all(const Rejection& rejection);
 

@@ -1,9 +1,9 @@
 // Effect selection: from the residual of a fit to the effects that the model lacks.
 //
-// Round by round: score every absent effect (score.h), refit with each of the few most likely ones,
-// apply the acceptance test (acceptance.h), keep the best (round.h). Then accepted effects are
-// swapped on trial for their rivals (rivals.h), and removed one by one on trial (backward
-// elimination, pruning.h). What no effect of the catalogue explains is fitted by a force curve.
+// Round by round: score every hypothesis of the catalogue (score.h), refit with each of the few
+// most likely ones, apply the acceptance test (acceptance.h), keep the best (round.h). What the
+// rounds are used for is in strategies.h. Then accepted effects are exchanged on trial for their
+// rivals (rivals.h), and removed one by one on trial (backward elimination, pruning.h).
 #pragma once
 
 #include <optional>
@@ -12,21 +12,14 @@
 
 #include "fit/estimate/horizon.h"
 #include "fit/search/model_chain.h"
-#include "fit/search/trials.h"
+#include "fit/search/options.h"
+#include "fit/search/outcomes.h"
 
 namespace axisfit {
 
-struct SelectionOptions {
-  int shortlist = 6;  ///< effects that are refitted in each round
-  int max_effects = 6;
-  /// Per cent of the error beyond the noise that must go where a search ends far from it, for an
-  /// effect to be named that other recordings do not show alike.
-  double least_share = 50.0;
-};
-
-/// Two effects that explain the recordings equally well, of which the chosen one is in the model:
-/// both undecided, or of two clocks that may be off the chosen one accepted.
-struct UndecidedPair {
+/// A rival in the place of an effect of the model that explains the recordings equally well: both
+/// undecided, or of two clocks that may be off the chosen one accepted.
+struct Substitution {
   std::string chosen, rival;
   Model<double> with_chosen, with_rival;  ///< fitted
 };
@@ -66,22 +59,21 @@ struct SelectionVerdict {
 };
 
 struct EffectSelection {
-  std::vector<SelectionStep> models;  ///< the declared one first, then one for each accepted effect
-  SelectionStep result;               ///< the last of them, fitted to all samples
-  std::vector<EffectTrial> effects;   ///< every effect that was refitted, its last trial
-  bool held_out_blocks = false;       ///< no recording to validate: blocks of the fitted were kept
-  bool explained = false;             ///< nothing but noise is left, and no small effect
-  bool interrupted = false;           ///< the search was not finished
+  std::vector<FittedModel> models;  ///< the declared one first, then one for each accepted effect
+  FittedModel result;               ///< the last of them, fitted to all samples
+  std::vector<Outcome> effects;     ///< what became of every hypothesis that was refitted
+  bool held_out_blocks = false;     ///< no recording to validate: blocks of the fitted were kept
+  bool explained = false;           ///< nothing but noise is left, and no small effect
+  bool interrupted = false;         ///< the search was not finished
   /// Where the job lets it be chosen and effects were accepted: by the model with them.
   std::optional<HorizonChoice> horizon;
   SelectionVerdict verdict;
-  std::vector<UndecidedPair> rivals;
+  std::vector<Substitution> substitutions;
 };
 
 /// `first` is the fit of the job as declared. When the stop flag is set, the effects accepted
 /// so far are the result.
 EffectSelection select_effects(const Job& job, const FitResult& first,
-                               const SelectionOptions& options = {},
-                               const RunContext& context = {});
+                               const SearchOptions& options = {}, const RunContext& context = {});
 
 }  // namespace axisfit

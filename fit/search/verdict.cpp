@@ -21,31 +21,31 @@ bool is_stuck(const Job& job, const FreeParameter& free, const ParameterResult& 
 
 bool is_misfit(const SearchState& state, SelectionVerdict& verdict) {
   const Job& declared = state.chain.declared().job;
-  const SelectionStep& last = state.current();
+  const FittedModel& last = state.current();
   for (std::size_t i = 0; i < declared.free.size() && !verdict.at_bound; ++i)
     if (is_stuck(declared, last.job.free[i], last.fit.parameters[i]))
       verdict.at_bound = last.fit.parameters[i].id;
   for (std::size_t r = 0; r < last.job.recordings.size(); ++r) {
     const double percent = percent_of_drive(missing_force(last.job, last.fit, r));
-    if (percent <= std::max(kLargestForcePercent, verdict.force_percent)) continue;
+    if (percent <= std::max(GradeOptions().largest_force, verdict.force_percent)) continue;
     verdict.force_percent = percent;
     verdict.recording = r;
   }
   return verdict.at_bound || verdict.recording;
 }
 
-void enter_effects(const SearchState& state, const SelectionStep& result,
-                   SelectionVerdict& verdict) {
+void enter_effects(const SearchState& state, const FittedModel& result, SelectionVerdict& verdict) {
   Model<double> model = fitted_model(result.job, result.fit);
-  for (const EffectTrial& t : state.trials.list())
-    if (t.decision == Decision::undecided) verdict.undecided.push_back(t.candidate.name);
-  for (const AcceptedEffect& a : state.accepted()) {
-    if (std::ranges::find(verdict.undecided, a.candidate.name) != verdict.undecided.end()) continue;
-    verdict.accepted.push_back(a.candidate.name);
-    if (a.candidate.is_constant)
-      verdict.corrections.push_back({{a.candidate.strengths.front()},
-                                     a.candidate.neutral.front(),
-                                     *members(model)[a.candidate.strengths.front()]});
+  for (const Outcome& o : state.outcomes.list())
+    if (o.decision() == Decision::undecided) verdict.undecided.push_back(o.hypothesis.name);
+  for (const Accepted& a : state.accepted()) {
+    if (std::ranges::find(verdict.undecided, a.hypothesis.name) != verdict.undecided.end())
+      continue;
+    verdict.accepted.push_back(a.hypothesis.name);
+    if (a.hypothesis.kind == HypothesisKind::constant)
+      verdict.corrections.push_back({{a.hypothesis.strengths.front()},
+                                     a.hypothesis.neutral.front(),
+                                     *members(model)[a.hypothesis.strengths.front()]});
   }
   if (!state.accepted().empty())
     verdict.validate_percent =

@@ -12,10 +12,10 @@ namespace axisfit {
 bool is_misfit(const SearchState& state, SelectionVerdict& verdict);
 
 /// Enters what was accepted, and what remained undecided.
-void enter_effects(const SearchState& state, const SelectionStep& result,
-                   SelectionVerdict& verdict);
+void enter_effects(const SearchState& state, const FittedModel& result, SelectionVerdict& verdict);
 
-/// Of a selection of which all else is known. `is_noise`: nothing else is left of the residual.
+/// The kind of a selection of which all else is known. `is_noise`: nothing else is left of the
+/// residual.
 SelectionVerdict::Kind kind_of(const EffectSelection& selection, bool is_noise);
 
 }  // namespace axisfit

@@ -32,10 +32,10 @@ Model<Jet> with_derivatives(const Model<double>& model, const ParameterSpace& sp
   return differentiated;
 }
 
-/// Calls evaluate.operator()<Jet>(columns, is_first) for all columns: of up to eight in one pass,
-/// with the narrowest dual number that holds them, of more in several, side by side. (Two passes of
-/// eight take no longer than one of sixteen, one after the other.) Whether all passes returned
-/// true. With no columns at all there is one pass.
+/// Calls evaluate.operator()<Jet>(columns, is_first) for all columns: up to eight in one pass, with
+/// the narrowest dual number that holds them, more in several passes, side by side. (Two passes of
+/// eight take no longer than one of sixteen, one after the other.) Returns whether all passes
+/// returned true. Without columns there is one pass.
 template <class Evaluate>
 bool evaluate_columns(std::span<const std::size_t> all, Evaluate&& evaluate) {
   constexpr std::size_t kMost = 8;

@@ -10,7 +10,7 @@
 namespace axisfit {
 namespace {
 
-/// What is hashed by its bytes.
+/// A value that is hashed by its bytes.
 template <class T>
 concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 

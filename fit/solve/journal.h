@@ -18,7 +18,7 @@ namespace axisfit {
 /// Tells problems apart: a hash of all that their solution follows from, bit by bit.
 using ProblemKey = std::array<std::uint64_t, 2>;
 
-/// Of what solve() is given.
+/// The key of the problem that solve() is given.
 ProblemKey problem_key(const Job& job, const Eigen::VectorXd& u, double observer_gain,
                        const SolveOptions& options);
 

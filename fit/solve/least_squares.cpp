@@ -181,7 +181,7 @@ Linearization evaluated(const ParameterSpace& space, CostPointers costs, const E
 }
 
 /// The point of a solution between its bounds. Knows which parameters are at one, and which of
-/// these are held there.
+/// these are fixed there.
 class BoundConstraints {
  public:
   BoundConstraints(const ParameterSpace& space, const std::vector<std::size_t>& fixed, double* u,
@@ -208,7 +208,7 @@ class BoundConstraints {
     return false;
   }
 
-  /// Holds or lets go what the gradient says; whether anything changed.
+  /// Fixes or frees parameters as the gradient says; returns whether anything changed.
   bool review() {
     problem_.SetManifold(u_, nullptr);
     std::vector<double> gradient;
@@ -226,7 +226,7 @@ class BoundConstraints {
     return changed;
   }
 
-  /// Makes constant what is held; false when nothing is left to vary.
+  /// Makes the fixed ones constant; false when nothing is left to vary.
   bool apply() {
     std::vector<int> constant;
     for (std::size_t i = 0; i < pinned_.size(); ++i)

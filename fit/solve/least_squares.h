@@ -21,8 +21,8 @@ struct SolveOptions {
   int max_iterations = 50;
   double function_tolerance = 1e-8;   ///< relative change of the cost at which to stop
   double parameter_tolerance = 1e-9;  ///< relative change of the parameters at which to stop
-  /// Whether to keep to the start, with the weight of one residual per e-fold of a parameter: what
-  /// the data do not show then stays where it is instead of running off to a bound.
+  /// Penalizes the distance from the start, by one residual per e-fold of a parameter: a parameter
+  /// that the data do not show then stays where it is instead of running off to a bound.
   bool penalize_distance_from_start = false;
   std::vector<std::size_t> fixed;  ///< parameters that stay as they are
   const StopFlag* stop = nullptr;  ///< ends the solution, which is not usable then
@@ -36,7 +36,7 @@ struct SolveResult {
   double reduced_cost = 0.0;  ///< 2 cost / number of residuals
   int iterations = 0;
   std::string message;  ///< the solver's own reason to stop
-  /// Where the solver came by it: null also where the result is from a journal.
+  /// Null where the solver did not evaluate it, and where the result is from a journal.
   std::shared_ptr<const Linearization> at_solution{};
 };
 
@@ -45,11 +45,11 @@ struct SolveResult {
 SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::VectorXd& u,
                      const SolveOptions& options);
 
-/// Of the costs, which the thread pool evaluates side by side, and the space's priors. All rows are
-/// one series.
+/// Residuals and Jacobian of the costs, which the thread pool evaluates side by side, and of the
+/// space's priors. All rows are one series.
 Linearization linearize(const ParameterSpace& space, const Costs& costs, const Eigen::VectorXd& u);
 
-/// Its residuals alone; none where they are not finite.
+/// The residuals alone; none where they are not finite.
 Eigen::VectorXd residuals_at(const ParameterSpace& space, const Costs& costs,
                              const Eigen::VectorXd& u);
 

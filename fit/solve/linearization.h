@@ -14,11 +14,11 @@ struct SeriesRows {
   Eigen::Index first = 0, count = 0;
 };
 
-/// What noise of the recorded inputs does to the residuals: they change by d when a draw of it is
-/// added to the inputs.
+/// The effect of noise of the recorded inputs on the residuals: they change by d when a draw of the
+/// noise is added to the inputs.
 struct InputNoise {
   Eigen::MatrixXd gradients;     ///< J'd, a column for each draw
-  Eigen::MatrixXd mean_squares;  ///< of what no change of u makes of d, per series (rows) and draw
+  Eigen::MatrixXd mean_squares;  ///< of the part of d that no u makes, per series (rows) and draw
 };
 
 /// Residuals at u, those of the priors last, and their Jacobian with respect to u.

@@ -15,7 +15,7 @@ class ParameterSpace {
  public:
   /// The parameters must outlive the space.
   explicit ParameterSpace(std::span<const FreeParameter> free);
-  /// Of a job, which must outlive the space.
+  /// The parameters of a job, which must outlive the space.
   explicit ParameterSpace(const Job& job) : ParameterSpace(job.free) {}
 
   std::size_t size() const { return free_.size(); }
@@ -39,9 +39,10 @@ class ParameterSpace {
   std::vector<double> magnitude_;
 };
 
-/// Where a job's fit begins, in the quantities' units.
+/// The initial values of a job's free parameters, in the quantities' units.
 std::vector<double> initial_values(const Job& job);
-/// Lets it begin there, or at the bound that is nearest: of the first so many parameters.
+/// Sets the initial values of the first so many parameters, each moved to its nearest bound if it
+/// lies outside.
 void set_initial_values(Job& job, std::span<const double> values);
 
 /// The job with its free parameters fixed at these values.

@@ -396,7 +396,7 @@ Eigen::MatrixXd RecordingCost::disturbance_response(const double* u,
   if (!found) return {};
   const Eigen::Index n = found->states, all = disturbances.arm.cols(),
                      signals = static_cast<Eigen::Index>(signals_.size());
-  // What lags, filters and sigma make of the readings, in as many dual parts as there are.
+  // The readings after lags, filters and division by sigma, in as many dual parts as there are.
   using T = ceres::Jet<double, kWidestJet>;
   const Model<T> model = convert<T>(values);
   Eigen::MatrixXd response(num_residuals(), all);

@@ -21,13 +21,13 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
                                       std::size_t recording, const double* u,
                                       const Observer& observer);
 
-/// The same of a model, with the job's options.
+/// The same for a given model, with the job's options.
 SimulatedRecording simulate_recording(const Job& job, const Recording& recording,
                                       const Model<double>& model, const Observer& observer);
 
-/// The same without an observer, in the windows of the job's criterion, from the states that suit
-/// the recording best: all of it, or this share at the beginning of each window, 20 samples at
-/// least. None where it has no windows.
+/// The same without an observer, in the windows of the job's criterion. They begin with the states
+/// that suit the recording best: all of it, or this share at the beginning of each window, at least
+/// 20 samples. None where it has no windows.
 std::optional<SimulatedRecording> simulate_in_windows(const Job& job, const ParameterSpace& space,
                                                       std::size_t recording, const double* u,
                                                       double share = 1.0);
@@ -70,7 +70,7 @@ class RecordingCost : public ceres::CostFunction {
   /// none where it does not finish.
   std::vector<AxisInstant> trajectory(const double* u) const;
 
-  /// With what states the windows begin at u.
+  /// The states with which the windows begin at u.
   std::vector<WindowStart> starts(const double* u) const;
 
   /// The derivatives of the residuals with respect to disturbances at those instants, residuals by

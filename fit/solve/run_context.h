@@ -1,5 +1,4 @@
-// What surrounds long work and changes no result: how it is stopped, what it keeps, whom it
-// informs.
+// The surroundings of long work, which change no result: stop flag, journal and progress.
 #pragma once
 
 #include "base/interrupt.h"
@@ -9,7 +8,7 @@ namespace axisfit {
 
 class Journal;
 
-/// Passed down through all that takes long. What it points to must outlive the call.
+/// Passed down to everything that takes long. The objects it points to must outlive the call.
 struct RunContext {
   const StopFlag* stop = nullptr;  ///< ends the work early; null: never
   Journal* journal = nullptr;      ///< of solved problems (journal.h); null: none
@@ -17,7 +16,7 @@ struct RunContext {
 
   /// The same without reports, for work within work.
   RunContext quiet() const { return {stop, journal, {}}; }
-  /// Informs whoever wants to know.
+  /// Reports progress, if there is somebody to report to.
   void report(const Progress& now) const {
     if (progress) progress(now);
   }

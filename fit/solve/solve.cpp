@@ -45,7 +45,7 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
   const ProblemKey key =
       journal != nullptr ? problem_key(job, u, observer_gain, options) : ProblemKey{};
   if (journal != nullptr) {
-    // Files can be forged, and what is read beyond a vector's end is anything.
+    // A file may be forged, and nothing is defined beyond a vector's end.
     std::optional<SolveResult> known = journal->find(key);
     if (known && known->u.size() == u.size()) return *std::move(known);
   }

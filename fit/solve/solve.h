@@ -7,8 +7,8 @@
 namespace axisfit {
 
 /// Minimises over all `fit` recordings, from u, within the bounds, with the observer gain
-/// (observer_for each recording). The same for any number of threads, so that a solution which the
-/// journal knows is taken from there, and others are put into it. Throws Interrupted when the stop
+/// (observer_for each recording). The solution is the same for any number of threads. One that the
+/// journal knows is taken from there; others are stored in it. Throws Interrupted when the stop
 /// flag is set.
 SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
                   double observer_gain, SolveOptions options, const RunContext& context = {});
@@ -17,7 +17,7 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
 /// u.
 Linearization linearize(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
                         double observer_gain);
-/// At what solve() found with this gain, which may know it.
+/// The same at the solution that solve() found with this gain; it may be known from there.
 Linearization linearize(const Job& job, const ParameterSpace& space, const SolveResult& solved,
                         double observer_gain);
 

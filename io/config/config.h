@@ -76,7 +76,7 @@ class ConfigNode {
   std::optional<double> as_number(double lower, double upper) const;
 
   /// A decimal number with its unit, such as "146 kg" or "2 mm/s", converted to `si_unit`, in which
-  /// the limits are given too. The unit is compulsory unless `si_unit` is dimensionless ("1",
+  /// the limits are given too. The unit is required unless `si_unit` is dimensionless ("1",
   /// "V/V"). Units are those of unit_factor() in base/units.h, which also tells what it throws.
   std::optional<double> as_quantity(std::string_view si_unit, double lower, double upper) const;
 

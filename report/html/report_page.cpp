@@ -126,8 +126,8 @@ class Page {
   Html verdict() {
     Html summary = paragraph_of(overall_verdict(run_result_));
     if (!run_result_.selection && run_result_.diagnosis)
-      summary += paragraph_of(
-          residual_verdict(job_, *run_result_.diagnosis, run_result_.options.select_effects));
+      summary += paragraph_of(residual_verdict(job_, *run_result_.diagnosis, run_result_.suspects,
+                                               run_result_.options.select_effects));
     Html all = html(R"(<div class="verdict {}">{}</div>)", verdict_class(), summary);
     for (const Discrimination& s : run_result_.discriminations)
       all += paragraph_of(discrimination_text(s, job_.vocabulary()));
@@ -146,7 +146,7 @@ class Page {
         fact("Parameters determined", html("{} of {}", determined, fit_.parameters.size()));
     if (closed) {
       std::string added;
-      for (const SelectionStep& model : run_result_.selection->models)
+      for (const FittedModel& model : run_result_.selection->models)
         if (!model.added.empty()) added += (added.empty() ? "" : ", ") + model.added;
       facts += fact("Added", html("{}", added));
     }
@@ -331,10 +331,10 @@ class Page {
   Html residual() {
     if (!run_result_.diagnosis) return {};
     const Diagnosis& diagnosis = *run_result_.diagnosis;
-    Html all =
-        run_result_.selection
-            ? Html()
-            : paragraph_of(residual_verdict(job_, diagnosis, run_result_.options.select_effects));
+    Html all = run_result_.selection
+                   ? Html()
+                   : paragraph_of(residual_verdict(job_, diagnosis, run_result_.suspects,
+                                                   run_result_.options.select_effects));
     all += tests(diagnosis);
     if (const std::string faults = instruments_text(job_, diagnosis); !faults.empty())
       all += html("<h3>Instruments</h3>{}", paragraph_of(faults));
@@ -373,10 +373,10 @@ class Page {
                  cell(on.empty() ? "nothing" : on));
     });
     Html all = table({"Series", "#reduced chi-square", "#unexplained", "Depends on"}, rows);
-    if (run_result_.selection || diagnosis.suspected_effects.empty()) return all;
-    rows = each(diagnosis.suspected_effects, [](const SuspectedEffect& s) {
-      return row(head_cell(s.candidate.name) + cell(s.candidate.meaning) +
-                 cell(s.candidate.acts_on) +
+    if (run_result_.selection || run_result_.suspects.empty()) return all;
+    rows = each(run_result_.suspects, [](const Scored& s) {
+      return row(head_cell(s.hypothesis->name) + cell(s.hypothesis->meaning) +
+                 cell(s.hypothesis->acts_on) +
                  number_cell(fmt::format("{:.2g} %", 100.0 * s.fraction)));
     });
     return all + html("<h3>Suspected effects</h3>{}",
@@ -388,18 +388,17 @@ class Page {
     const EffectSelection& selection = *run_result_.selection;
     Html rounds;
     int last = 0;
-    for (const EffectTrial& t : selection.effects) last = std::max(last, t.round);
+    for (const Outcome& t : selection.effects) last = std::max(last, t.round);
     for (int round = 1; round <= last; ++round) {
-      std::vector<const EffectTrial*> trials;
-      for (const EffectTrial& t : selection.effects)
+      std::vector<const Outcome*> trials;
+      for (const Outcome& t : selection.effects)
         if (t.round == round) trials.push_back(&t);
       if (trials.empty()) continue;
-      std::ranges::stable_sort(trials, std::greater{},
-                               [](const EffectTrial* t) { return t->score; });
+      std::ranges::stable_sort(trials, std::greater{}, [](const Outcome* t) { return t->score; });
       rounds +=
           html(R"(<li class="round"><h3>Round {}</h3>{}{}</li>)", round,
                table({"Effect", "#score", "Decision", "Reason", "#validation error", "#p-value"},
-                     each(trials, [&](const EffectTrial* t) { return trial(*t); })),
+                     each(trials, [&](const Outcome* t) { return trial(*t); })),
                after_round(trials));
     }
     Html all = paragraph_of(verdict_text(selection));
@@ -408,12 +407,12 @@ class Page {
     return all + html(R"(<ol class="rounds">{}</ol>)", rounds);
   }
 
-  Html trial(const EffectTrial& t) const {
-    const char* decision = decision_name(t.decision);
+  Html trial(const Outcome& t) const {
+    const char* decision = decision_name(t.decision());
     const bool judged = t.improvement.comparable;
     return row(
-        html(R"(<th scope="row">{} <small>{}</small></th>)", t.candidate.name,
-             t.candidate.meaning) +
+        html(R"(<th scope="row">{} <small>{}</small></th>)", t.hypothesis.name,
+             t.hypothesis.meaning) +
         number_cell(number(t.score)) +
         cell(html(R"(<span class="badge {0}">{0}</span>)", decision)) + cell(reason_text(job_, t)) +
         number_cell(judged ? fmt::format("{:+.3g} %", -t.improvement.validate_percent) : "-") +
@@ -421,11 +420,11 @@ class Page {
   }
 
   /// What became of the error when the round's effect was added.
-  Html after_round(const std::vector<const EffectTrial*>& trials) const {
+  Html after_round(const std::vector<const Outcome*>& trials) const {
     const auto& models = run_result_.selection->models;
     for (std::size_t i = 1; i < models.size(); ++i)
-      for (const EffectTrial* t : trials)
-        if (t->candidate.name == models[i].added)
+      for (const Outcome* t : trials)
+        if (t->hypothesis.name == models[i].added)
           return html("<p>With {}: reduced chi-square {} instead of {}.</p>", models[i].added,
                       number(models[i].fit.reduced_chi_square),
                       number(models[i - 1].fit.reduced_chi_square));

@@ -9,6 +9,7 @@
 
 #include "base/terminal.h"
 #include "base/text_table.h"
+#include "fit/data/standstill.h"
 #include "io/recording/csv.h"
 #include "report/text/names.h"
 #include "report/text/words.h"
@@ -191,7 +192,9 @@ std::string report_text(const RunResult& run_result, bool colour) {
     text += residual_text(job, *run_result.diagnosis) + "\n";
     // A loop has told of the force, and has put the suspects to the test.
     const std::string suspected_effects =
-        run_result.selection ? "" : suspected_effects_text(job, *run_result.diagnosis);
+        run_result.selection
+            ? ""
+            : suspected_effects_text(job, *run_result.diagnosis, run_result.suspects);
     if (!suspected_effects.empty()) text += suspected_effects + "\n";
   }
   if (run_result.diagnosis)
@@ -201,7 +204,8 @@ std::string report_text(const RunResult& run_result, bool colour) {
   for (const Discrimination& s : run_result.discriminations)
     text += paragraph(discrimination_text(s, job.vocabulary()));
   if (!run_result.selection && run_result.diagnosis)
-    text += residual_verdict(job, *run_result.diagnosis, run_result.options.select_effects, colour);
+    text += residual_verdict(job, *run_result.diagnosis, run_result.suspects,
+                             run_result.options.select_effects, colour);
   if (run_result.interrupted) {
     const int starts = std::max(1, job.options.starts);
     return text + "\n" +

@@ -26,11 +26,13 @@ std::string residual_text(const Job& job, const Diagnosis& diagnosis);
 std::string instruments_text(const Job& job, const Diagnosis& diagnosis);
 
 /// What the residual may come from: the missing force and the suspects.
-std::string suspected_effects_text(const Job& job, const Diagnosis& diagnosis);
+std::string suspected_effects_text(const Job& job, const Diagnosis& diagnosis,
+                                   const std::vector<Scored>& suspects);
 
 /// The verdict on the residual, one paragraph.
 std::string residual_verdict(const Job& job, const Diagnosis& diagnosis,
-                             bool loop_was_asked_for = false, bool colour = false);
+                             const std::vector<Scored>& suspects, bool loop_was_asked_for = false,
+                             bool colour = false);
 
 /// Its part on the closed loop: effects that were tried, and the errors before and after.
 std::string selection_text(const RunResult& run_result, bool colour = false);

@@ -22,7 +22,7 @@ std::string name_of(const Job& job, const ResidualSeries& series) {
 }
 
 /// "F_s1 -3.2 N, F_c1 10.2 N, period 0.036 m"
-std::string estimate_of(const Job& job, const SuspectedEffect& suspected) {
+std::string estimate_of(const Job& job, const Scored& suspect) {
   std::vector<std::string> parts;
   const auto add = [&](const std::vector<std::size_t>& quantities,
                        const std::vector<double>& values) {
@@ -32,8 +32,8 @@ std::string estimate_of(const Job& job, const SuspectedEffect& suspected) {
           fmt::format("{} {}", q.symbol, with_unit(fmt::format("{:.3g}", values[i]), q.unit)));
     }
   };
-  add(suspected.candidate.strengths, suspected.strengths);
-  add(suspected.candidate.shapes, suspected.shapes);
+  add(suspect.hypothesis->strengths, suspect.own.strengths);
+  add(suspect.hypothesis->shapes, suspect.own.shapes);
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -115,21 +115,23 @@ std::string instruments_text(const Job& job, const Diagnosis& diagnosis) {
   return text;
 }
 
-std::string suspected_effects_text(const Job& job, const Diagnosis& diagnosis) {
+std::string suspected_effects_text(const Job& job, const Diagnosis& diagnosis,
+                                   const std::vector<Scored>& suspects) {
   const bool found = std::ranges::any_of(diagnosis.forces, &MissingForce::found);
   std::string text = found ? forces_text(job, diagnosis) : "";
-  if (diagnosis.suspected_effects.empty()) return text;
+  if (suspects.empty()) return text;
   if (found) text += "\n";
   std::vector<std::vector<std::string>> rows{{"", "acts on", "explains", "estimate"}};
-  for (const SuspectedEffect& s : diagnosis.suspected_effects)
-    rows.push_back({s.candidate.name, s.candidate.acts_on,
+  for (const Scored& s : suspects)
+    rows.push_back({s.hypothesis->name, s.hypothesis->acts_on,
                     fmt::format("{:.2g} %", 100.0 * s.fraction), estimate_of(job, s)});
   return text + "Suspected effects, from the residual of the tracking simulation\n" +
          format_table(rows,
                       {Alignment::left, Alignment::left, Alignment::right, Alignment::wrapped});
 }
 
-std::string residual_verdict(const Job& job, const Diagnosis& diagnosis, bool loop_was_asked_for,
+std::string residual_verdict(const Job& job, const Diagnosis& diagnosis,
+                             const std::vector<Scored>& suspects, bool loop_was_asked_for,
                              bool colour) {
   const auto& tests = diagnosis.tests;
   if (tests.empty()) return "";
@@ -145,14 +147,13 @@ std::string residual_verdict(const Job& job, const Diagnosis& diagnosis, bool lo
       text += fmt::format(
           "As much is left by {}: if the axis never received this noise, give it as sigma. ",
           input_noise_text(job));
-    if (diagnosis.suspected_effects.empty())
+    if (suspects.empty())
       text += "No effect that axisfit knows explains it. ";
     else
-      text += fmt::format("Most likely cause: {}. ",
-                          diagnosis.suspected_effects.front().candidate.name);
+      text += fmt::format("Most likely cause: {}. ", suspects.front().hypothesis->name);
     if (loop_was_asked_for)
       text += "The declared model does not fit: nothing can be said about effects yet.";
-    else if (!diagnosis.suspected_effects.empty())
+    else if (!suspects.empty())
       text += "To test the suspected effects, use --close-loop.";
     return paragraph(text);
   }

@@ -43,8 +43,8 @@ Tone tone_of(Decision decision) {
 }
 
 /// What other recordings say of an accepted effect.
-std::string elsewhere_text(const Job& job, const EffectTrial& t) {
-  if (!t.replication || t.candidate.is_curve) return "";
+std::string elsewhere_text(const Job& job, const Outcome& t) {
+  if (!t.replication || t.hypothesis.kind == HypothesisKind::curve) return "";
   const Replication& found = *t.replication;
   return fmt::format("; the recordings to validate, fitted by themselves, {}: {}",
                      found.is_alike  ? "tell alike"
@@ -58,10 +58,11 @@ std::string effects_text(const EffectSelection& selection, bool colour) {
   const Job& job = selection.result.job;
   std::vector<std::vector<std::string>> rows;
   for (const Decision decision : {Decision::accepted, Decision::undecided, Decision::rejected})
-    for (const EffectTrial& t : selection.effects) {
-      if (t.decision != decision) continue;
-      const std::string estimate = estimates_text(job, t.parameters, t.candidate.is_curve);
-      rows.push_back({toned(decision_name(decision), tone_of(decision), colour), t.candidate.name,
+    for (const Outcome& t : selection.effects) {
+      if (t.decision() != decision) continue;
+      const std::string estimate =
+          estimates_text(job, t.parameters, t.hypothesis.kind == HypothesisKind::curve);
+      rows.push_back({toned(decision_name(decision), tone_of(decision), colour), t.hypothesis.name,
                       estimate + (estimate.empty() ? "" : ": ") + reason_text(job, t) +
                           elsewhere_text(job, t)});
     }
@@ -69,7 +70,7 @@ std::string effects_text(const EffectSelection& selection, bool colour) {
          format_table(rows, {Alignment::left, Alignment::left, Alignment::wrapped}) + "\n";
 }
 
-std::string model_name(const SelectionStep& model) {
+std::string model_name(const FittedModel& model) {
   return model.added.empty() ? "  baseline" : "  + " + model.added;
 }
 

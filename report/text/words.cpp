@@ -61,10 +61,10 @@ std::string rejection_text(const Job& job, const Rejection& rejection) {
 }
 
 /// What to record where an effect cannot be judged.
-std::string advice_text(const EffectTrial& trial, Vocabulary vocabulary) {
-  if (trial.rejection->test != Rejection::Test::power || trial.candidate.strengths.empty())
+std::string advice_text(const Outcome& trial, Vocabulary vocabulary) {
+  if (trial.rejection->test != Rejection::Test::power || trial.hypothesis.strengths.empty())
     return "";
-  const auto effect = quantity_list()[trial.candidate.strengths.front()].effect;
+  const auto effect = quantity_list()[trial.hypothesis.strengths.front()].effect;
   if (!effect) return "";
   return fmt::format("; record {}", words_on(vocabulary, kEffectTable[*effect].excitation));
 }
@@ -157,7 +157,7 @@ bool is_accepted(const SelectionVerdict& verdict, const std::string& effect) {
 std::vector<std::string> undecided_list(const EffectSelection& selection) {
   std::vector<std::string> list;
   std::string chosen;
-  for (const UndecidedPair& pair : selection.rivals) {
+  for (const Substitution& pair : selection.substitutions) {
     if (is_accepted(selection.verdict, pair.chosen)) continue;
     if (list.empty() || chosen != pair.chosen) list.push_back(chosen = pair.chosen);
     list.back() += " or " + pair.rival;
@@ -169,7 +169,7 @@ std::vector<std::string> undecided_list(const EffectSelection& selection) {
 std::string gain_text(const EffectSelection& selection) {
   const SelectionVerdict& verdict = selection.verdict;
   std::vector<std::string> added;
-  for (const SelectionStep& model : selection.models)
+  for (const FittedModel& model : selection.models)
     if (!model.added.empty()) added.push_back(model.added);
   const std::string with = !verdict.undecided.empty()    ? fmt::format("{}", fmt::join(added, ", "))
                            : verdict.accepted.size() > 1 ? "them"
@@ -293,11 +293,11 @@ std::string verdict_text(const EffectSelection& selection) {
         text += fmt::format("Undecided: {}; these recordings do not tell which. ",
                             fmt::join(equals, ", "));
       text += gain_text(selection);
-      for (const EffectTrial& t : selection.effects)
+      for (const Outcome& t : selection.effects)
         if (t.closed_form)
-          text += fmt::format(" {} is explained as well by {}.", t.candidate.name,
+          text += fmt::format(" {} is explained as well by {}.", t.hypothesis.name,
                               closed_form_text(*t.closed_form));
-      for (const UndecidedPair& pair : selection.rivals)
+      for (const Substitution& pair : selection.substitutions)
         if (is_accepted(verdict, pair.chosen))
           text += fmt::format(" These recordings do not tell {} from {}.", pair.chosen, pair.rival);
       break;
@@ -347,7 +347,7 @@ std::string overall_verdict(const RunResult& run_result, bool colour) {
          (run_result.roles_exchanged ? " Found with the roles of the recordings exchanged." : "");
 }
 
-std::string reason_text(const Job& job, const EffectTrial& trial) {
+std::string reason_text(const Job& job, const Outcome& trial) {
   switch (trial.reason) {
     case Reason::failed_test:
       return rejection_text(job, trial.rejection.value()) + advice_text(trial, job.vocabulary());
@@ -369,6 +369,7 @@ std::string reason_text(const Job& job, const EffectTrial& trial) {
     case Reason::replaced:
       return fmt::format("explains less than {}, which replaced it", trial.other);
     case Reason::explains_equally:
+    case Reason::is_equal_delay:
       return fmt::format("explains these recordings as well as {}{}", trial.other,
                          trial.in_model ? "; this one stays in the model" : "");
     case Reason::not_needed:

@@ -26,7 +26,7 @@ std::string judges_text(const RunResult& run_result);
 std::string overall_verdict(const RunResult& run_result, bool colour = false);
 
 /// What the decision on an effect rests on; no sentence, to follow its estimate.
-std::string reason_text(const Job& job, const EffectTrial& trial);
+std::string reason_text(const Job& job, const Outcome& trial);
 
 /// What the recordings leave open in that direction, one sentence.
 std::string weak_direction_text(const Job& job, const WeakDirection& weak);

@@ -536,7 +536,7 @@ TEST_F(CommandLineTest, TheLoopIsClosedOnDemand) {
   EXPECT_EQ(folder_.read("results/result.json"), outcome.out);
   EXPECT_EQ(json.at("after").at("added"), "coulomb_friction");
   EXPECT_EQ(json.at("residual").at("explained"), true);
-  // The axis that was found rubs.
+  // The axis that was found has dry friction.
   EXPECT_NE(folder_.read("results/fitted.yaml").find("coulomb_friction:\n    F_c: "),
             std::string::npos);
   EXPECT_EQ(simulate({results + "/fitted.yaml", motion()}).exit_code, 0);

@@ -34,7 +34,7 @@ TEST(EmpsTest, FitAgreesWithThePublishedEstimates) {
 
   const JobFile file = read_job_file(AXISFIT_CONFIGS "/jobs/emps.yaml", folder);
   const FitResult result = estimate(file.job);
-  EXPECT_EQ(result.status, Status::converged);
+  EXPECT_TRUE(result.verdict.has_minimum());
   EXPECT_TRUE(result.usable) << result.message;
 
   std::map<std::string, double> value;

@@ -26,13 +26,13 @@ TEST(FitArguments, AreNoneButTheJob) {
   const FitArguments plain = parsed({"job.yaml"});
   EXPECT_EQ(plain.files, std::vector<std::string>{"job.yaml"});
   EXPECT_FALSE(plain.options.predict || plain.options.compare || plain.options.select_effects);
-  EXPECT_TRUE(plain.options.profiles.empty());
+  EXPECT_TRUE(plain.profiled.empty());
   EXPECT_FALSE(plain.threads || plain.starts || plain.seed || plain.time_limit);
 }
 
 TEST(FitArguments, FlagsMayHaveNames) {
-  EXPECT_EQ(parsed({"job.yaml", "--profile"}).options.profiles, std::vector<std::string>{"all"});
-  EXPECT_EQ(parsed({"job.yaml", "--profile=M,B_a"}).options.profiles,
+  EXPECT_EQ(parsed({"job.yaml", "--profile"}).profiled, std::vector<std::string>{"all"});
+  EXPECT_EQ(parsed({"job.yaml", "--profile=M,B_a"}).profiled,
             (std::vector<std::string>{"M", "B_a"}));
   const FitArguments alone = parsed({"job.yaml", "--compare", "--predict"});
   EXPECT_TRUE(alone.options.compare && alone.options.predict);

@@ -69,7 +69,8 @@ fit: )" + fit +
          "\n";
 }
 
-/// Writes plain.yaml, a mass that a force drives, and two recordings of one that rubs besides.
+/// Writes plain.yaml, a mass that a force drives, and two recordings of one that has dry friction,
+/// too.
 inline void write_rubbing_mass(const TempFolder& folder) {
   const std::string plain =
       "drive: force_source\ntransmission: rigid\n"

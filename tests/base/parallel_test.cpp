@@ -56,7 +56,7 @@ TEST(Parallel, ACrewWithinAnotherSharesItsThreads) {
   EXPECT_EQ(most, 2);
 }
 
-// Each of the two pieces of the inner loop waits until the other has begun.
+// Each of the two pieces of the inner loop waits until the other has started.
 TEST(Parallel, WhoHasNothingLeftHelpsWithinTheLastPiece) {
   for (const std::size_t pieces : {1u, 2u, 5u}) {
     const ThreadPool pool(2);
@@ -72,17 +72,17 @@ TEST(Parallel, WhoHasNothingLeftHelpsWithinTheLastPiece) {
 TEST(Parallel, AnExceptionEndsItsLoopAndIsThrownOnce) {
   for (const int threads : {1, 2, 4}) {
     const ThreadPool pool(threads);
-    std::atomic<int> begun = 0;
+    std::atomic<int> started = 0;
     EXPECT_THROW(parallel_for(100'000,
                               [&](std::size_t i) {
-                                ++begun;
+                                ++started;
                                 parallel_for(3, [&](std::size_t k) {
                                   if (i == 5 && k == 1) throw std::runtime_error("five");
                                 });
                                 std::this_thread::sleep_for(100us);
                               }),
                  std::runtime_error);
-    EXPECT_LT(begun, 50'000) << threads;
+    EXPECT_LT(started, 50'000) << threads;
     // The pool goes on.
     std::atomic<int> sum = 0;
     parallel_for(10, [&](std::size_t i) { sum += static_cast<int>(i); });

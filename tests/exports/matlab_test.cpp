@@ -15,8 +15,8 @@ TEST(Matlab, HasTheCovariance) {
   Rig rig = rubbing_slide();
   rig.name = "the arm's";
   AxisUncertainty& known = rig.uncertainty.emplace();
-  known.quantities = {{find_quantity("M")->index, true, 0.0125, 0.025, 3.0},
-                      {find_quantity("B_a")->index, false, 2.0, 0.0, 1.0}};
+  known.quantities = {{quantity_index("M"), true, 0.0125, 0.025, 3.0},
+                      {quantity_index("B_a"), false, 2.0, 0.0, 1.0}};
   known.correlation = {1.0, 0.5, 0.5, 1.0};
   const Export made = export_axis(rig, ExportTarget::matlab, "arm", "Exported by a test");
   ASSERT_EQ(made.files.size(), 2u);

@@ -27,7 +27,7 @@ TEST(Run, TellsOfEveryModelWhatRestsOnGuesses) {
   };
   expect_known(result.first);
   expect_known(result.fit());
-  for (const SelectionStep& model : result.selection->models) expect_known(model.fit);
+  for (const FittedModel& model : result.selection->models) expect_known(model.fit);
 }
 
 TEST(Run, GivesTheEffectsOfTheModelTheirLastEstimates) {
@@ -41,7 +41,7 @@ TEST(Run, GivesTheEffectsOfTheModelTheirLastEstimates) {
   ASSERT_TRUE(result.selection);
   ASSERT_EQ(accepted(*result.selection),
             (std::set<std::string>{"coulomb_friction", "stroke_spring"}));
-  for (const EffectTrial& trial : result.selection->effects) {
+  for (const Outcome& trial : result.selection->effects) {
     if (!trial.in_model) continue;
     for (const ParameterResult& own : trial.parameters) {
       const auto& last = result.fit().parameters;

@@ -54,8 +54,9 @@ RunResult run_of_machine() {
   run.baseline = scattering_machine(2, 0.0, 1, 0.1);
   run.baseline.recordings[1].role = Role::validate;
   run.first.usable = true;
-  run.first.parameters = {{"M", 12.0, {.determined = true, .standard_error = 0.5}},
-                          {"B_a", 40.0, {}}};
+  run.first.parameters = {
+      {{quantity_index("M")}, 12.0, {.determined = true, .standard_error = 0.5}},
+      {{quantity_index("B_a")}, 40.0, {}}};
   run.first.recordings.resize(2);
   for (std::size_t r = 0; r < 2; ++r) {
     run.first.recordings[r].signals.resize(1);
@@ -118,12 +119,12 @@ TEST(NightResult, ASearchAddsWhatItAccepted) {
   EXPECT_TRUE(found.effects.empty());
   EffectSelection& selection = search.selection.emplace();
   selection.result.job = search.baseline;
-  EffectTrial ripple, drag;
-  ripple.candidate.name = "periodic_force";
-  ripple.decision = Decision::accepted;
-  ripple.parameters = {{"periodic_force.period", 0.0361, {}}};
-  drag.candidate.name = "quadratic_drag";
-  drag.decision = Decision::undecided;
+  Outcome ripple, drag;
+  ripple.hypothesis.name = "periodic_force";
+  ripple.reason = Reason::explains_best;
+  ripple.parameters = {{{quantity_index("periodic_force.period")}, 0.0361, {}}};
+  drag.hypothesis.name = "quadratic_drag";
+  drag.reason = Reason::explains_equally;
   selection.effects = {ripple, drag};
   search.grade.grade = Grade::explained;
   add_search(found, search);

@@ -143,7 +143,8 @@ TEST_F(InitJobTest, TheUsersGainIsAllThatABentScrewNeeds) {
   ASSERT_TRUE(result.usable) << result.message;
   EXPECT_NEAR(result.parameters[0].value, 85.687, 0.01 * 85.687);  // bent by what is missing
   EXPECT_NEAR(result.parameters[1].value, 258.96, 0.05 * 258.96);
-  // Held as firmly as the samples allow, the simulation follows 6 N that the model lacks.
+  // With the observer gain as high as the samples allow, the simulation follows 6 N that the model
+  // lacks.
   EXPECT_GT(result.reduced_chi_square, 10.0);
 }
 

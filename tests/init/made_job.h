@@ -37,8 +37,9 @@ class InitJobTest : public ::testing::Test {
     EXPECT_TRUE(result.usable) << result.message;
     std::map<std::string, double> values;
     for (const ParameterResult& p : result.parameters) {
-      EXPECT_TRUE(p.uncertainty.determined) << p.name;
-      values[p.name] = p.value;
+      const std::string& name = file.job.entry(p.id.quantity).name;
+      EXPECT_TRUE(p.uncertainty.determined) << name;
+      values[name] = p.value;
     }
     return values;
   }

@@ -78,7 +78,7 @@ TEST_F(StarterAxisTest, APartOfARatingNeedsTheGain) {
       << folder_.read("job.yaml");
   const JobFile file = read();
   EXPECT_EQ(file.job.model.structure.drive, Drive::rated_force);
-  EXPECT_EQ(file.job.guessed, std::vector{find_quantity("K_f")->index});
+  EXPECT_EQ(file.job.guessed, std::vector{quantity_index("K_f")});
   expect_the_driven_mass(fitted(file), 1.0 / 60.0);
 }
 

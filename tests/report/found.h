@@ -103,7 +103,7 @@ inline ParameterResult estimated(const char* name, double value, double error) {
          .standard_error = error,
          .lower = value - 2.0 * error,
          .upper = value + 2.0 * error};
-  return {name, value, u};
+  return {{quantity_index(name)}, value, u};
 }
 
 }  // namespace axisfit

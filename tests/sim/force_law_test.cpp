@@ -314,7 +314,7 @@ TEST(ForceLaw, MovesAMassAsAPlainIntegrationDoes) {
   }
 }
 
-/// A mass that rubs, besides what the test adds.
+/// A mass with dry friction, besides what the test adds.
 Model<double> rubbing_mass(double F_c) {
   Model<double> model = driven_mass(kMass);
   add_effect<CoulombFriction>(model).F_c = F_c;

@@ -16,7 +16,7 @@ Rig rig() {
   rig.model = driven_mass(10.0);
   rig.model.axis.K_f = 1.0;
   AxisUncertainty& known = rig.uncertainty.emplace();
-  known.quantities = {{find_quantity("M")->index, true, 0.02, 0.0, 1.0}};
+  known.quantities = {{quantity_index("M"), true, 0.02, 0.0, 1.0}};
   known.correlation = {1.0};
   return rig;
 }

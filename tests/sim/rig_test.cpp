@@ -32,9 +32,9 @@ RecordingOptions options(std::vector<Signal> signals) {
 constexpr StepMotion kStep{20.0, 0.305};
 
 TEST(ColumnName, IsInPlainLetters) {
-  EXPECT_EQ(column_name(Signal::velocity), "velocity_mps");
-  EXPECT_EQ(column_name(Signal::acceleration), "acceleration_mps2");
-  EXPECT_EQ(column_name(Signal::motor_voltage), "V_m_v");
+  EXPECT_EQ(column_name(Signal::velocity, {}), "velocity_mps");
+  EXPECT_EQ(column_name(Signal::acceleration, {}), "acceleration_mps2");
+  EXPECT_EQ(column_name(Signal::motor_voltage, {}), "V_m_v");
   EXPECT_EQ(column_name(Signal::velocity, {Joint::revolute}), "velocity_radps");
   EXPECT_EQ(column_name("torque", "N m"), "torque_nm");
 }

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kPosition = kStateVariables, kVelocity = kStateVariables + 1;
 
 std::uint32_t reference_of(const char* quantity) {
-  return kQuantityVariables + static_cast<std::uint32_t>(find_quantity(quantity)->index);
+  return kQuantityVariables + static_cast<std::uint32_t>(quantity_index(quantity));
 }
 
 /// A mass of 2 kg that the command pushes, 1 N per volt.

@@ -341,7 +341,7 @@ TEST_P(FmuOfVersion, StatesCanBeTakenAndGoneBackTo) {
   const std::vector<double> first = readings(instance, 0.3, 0.6);
   instance.restore(state);
   expect_near(readings(instance, 0.3, 0.6), first);
-  // In another instance, which has not even begun.
+  // In another instance, which has not even started.
   const std::string bytes = instance.bytes_of(state);
   void* read = nullptr;
   ASSERT_EQ(other.try_read(bytes, read), 0) << other.said;

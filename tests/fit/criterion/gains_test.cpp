@@ -20,6 +20,18 @@ Job sampled(std::initializer_list<double> intervals, Signal signal) {
   return job;
 }
 
+TEST(ObserverForRecording, TakesVelocityThenPosition) {
+  Recording recording;
+  EXPECT_FALSE(observer_for(recording, 100.0).active());
+  const auto add = [&](Signal signal) { recording.measurements.emplace_back().signal = signal; };
+  add(Signal::position);
+  EXPECT_EQ(observer_for(recording, 100.0).acceleration, 1e4);
+  add(Signal::velocity);
+  EXPECT_EQ(observer_for(recording, 100.0).velocity, 100.0);
+  EXPECT_EQ(observer_for(recording, 100.0).position, 100.0);
+  EXPECT_FALSE(observer_for(recording, 0.0).active());
+}
+
 TEST(Gains, BeginAsHighAsTheSamplingAllows) {
   Job job = sampled({2e-3}, Signal::velocity);
   EXPECT_NEAR(highest_gain(job), 500.0, 1e-9);
@@ -83,7 +95,7 @@ TEST(Gains, NeedAPositionOrAVelocityToBeFitted) {
 
 TEST(Gains, TakeWhatIsTrackedToBeInTime) {
   const auto ignored = [](const char* name, const Criterion& criterion) {
-    return is_ignored(*find_quantity(name), criterion);
+    return is_ignored(quantity_list()[quantity_index(name)], criterion);
   };
   for (const char* late : {"velocity.delay", "velocity.lag", "position.delay"}) {
     EXPECT_TRUE(ignored(late, Tracking{}));

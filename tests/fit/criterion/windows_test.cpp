@@ -127,7 +127,7 @@ TEST(Windows, FindWhatAWholeRunLosesWhereAForceWanders) {
   const FitResult whole = estimate(job);
   job.options.criterion = Windows{0.8};
   const FitResult windows = estimate(job);
-  ASSERT_EQ(windows.status, Status::converged);
+  ASSERT_TRUE(windows.verdict.has_minimum());
   std::cout << "farthest parameter, by a factor of: " << std::exp(farthest(whole)) << " whole, "
             << std::exp(farthest(windows)) << " in windows\n";
   EXPECT_LT(farthest(windows), 0.15);

@@ -98,7 +98,7 @@ Recording recording() {
 
 std::optional<double> initial(const Recording& r, const char* name) {
   for (const auto& [quantity, value] : r.overrides)
-    if (quantity == find_quantity(name)->index) return value;
+    if (quantity == quantity_index(name)) return value;
   return std::nullopt;
 }
 
@@ -129,7 +129,7 @@ TEST(InitialStateFromData, LeavesOpenWhatWasNotRecorded) {
 
 TEST(InitialStateFromData, LeavesAloneWhatIsGiven) {
   Recording r = recording();
-  r.overrides = {{find_quantity("initial.y0")->index, -1.0}};
+  r.overrides = {{quantity_index("initial.y0"), -1.0}};
   initial_state_from_data(r);
   EXPECT_EQ(initial(r, "initial.y0"), -1.0);
   EXPECT_EQ(r.overrides.size(), 2u);

@@ -189,5 +189,19 @@ TEST(NoiseAtRest, IsTheSampleStandardDeviation) {
   EXPECT_NEAR(noise_at_standstill(recording, acceleration), std::sqrt(60.0 / 59.0), 1e-12);
 }
 
+TEST(ExcludedSamples, TellWhatWasMeasuredThere) {
+  Measurement biased;
+  biased.values = {1.0, 0.2, 0.2};
+  biased.sigma = 0.05;
+  EXPECT_FALSE(excluded_samples(biased).has_value());
+  biased.excluded = {false, true, true};
+  ASSERT_TRUE(excluded_samples(biased).has_value());
+  EXPECT_EQ(excluded_samples(biased)->samples, 2u);
+  EXPECT_DOUBLE_EQ(excluded_samples(biased)->mean, 0.2);
+  EXPECT_FALSE(excluded_samples(biased)->is_within_noise);
+  biased.sigma = 0.1;
+  EXPECT_TRUE(excluded_samples(biased)->is_within_noise);
+}
+
 }  // namespace
 }  // namespace axisfit

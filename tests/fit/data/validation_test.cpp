@@ -48,7 +48,7 @@ Job good_job() {
   return job;
 }
 
-std::size_t index(const char* name) { return find_quantity(name)->index; }
+std::size_t index(const char* name) { return quantity_index(name); }
 
 struct Broken {
   Rule rule;

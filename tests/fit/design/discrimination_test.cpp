@@ -23,7 +23,7 @@ class DiscriminationTest : public testing::Test {
     selection_.result.fit = result_at_start(job);
   }
   Discrimination advice(Signal signal, double bias, const MachineLimits& limits) {
-    UndecidedPair rivals{"this", "that", model_, model_};
+    Substitution rivals{"this", "that", model_, model_};
     rivals.with_rival.instruments[index_of(signal)].bias = bias;
     selection_.result.job.limits = limits;
     return discriminate(selection_, rivals, true);

@@ -4,38 +4,10 @@
 
 #include <cmath>
 
-#include "fit/design/forecast.h"
 #include "tests/fit/example.h"
 
 namespace axisfit {
 namespace {
-
-TEST(Forecast, IsWhatTheFitFinds) {
-  Job job = two_recordings(slide(), slide(), {"M", "B_a"});
-  const Forecast expected = forecast(job, draw_start(job, 0));
-  const FitResult fit = estimate(job);
-  ASSERT_TRUE(expected.finite && fit.usable);
-  for (std::size_t i = 0; i < job.free.size(); ++i) {
-    const double error = fit.parameters[i].uncertainty.standard_error;
-    EXPECT_NEAR(expected.uncertainty.parameters[i].standard_error, error, 0.05 * error);
-  }
-  // What is to be validated shows nothing to a fit.
-  EXPECT_EQ(expected.series.size(), 2u);
-}
-
-TEST(Forecast, KnowsWhatIsNotSeenAndWhatThatNeeds) {
-  const Model<double> truth = motor_axis();
-  Job job = two_recordings(truth, truth, {"V_L", "T_p"});
-  job.recordings = {recorded(truth, SineMotion{0.4, 2.0, 2.0}, 1.0, 3)};
-  const Forecast expected = forecast(job, draw_start(job, 0));
-  EXPECT_FALSE(expected.uncertainty.parameters[0].determined);
-  EXPECT_TRUE(expected.uncertainty.parameters[1].determined);
-  EXPECT_EQ(expected.identifiability.without_influence, std::vector<std::size_t>{0});
-  EXPECT_TRUE(expected.sensitivity.row(0).isZero());
-  EXPECT_NE(excitation_needed(quantity_list()[quantity_index("V_L")], Joint::prismatic)
-                .find("larger step"),
-            std::string_view::npos);
-}
 
 /// Somebody has recorded only a slow motion of a slide, which hardly shows its mass.
 Job slow_job(std::uint64_t seed) {

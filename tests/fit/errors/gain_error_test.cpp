@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/fit/parameter_ids.h"
+
 namespace axisfit {
 namespace {
 
 ParameterResult estimate_of(double value, double error) {
-  ParameterResult p{"B_a", value, {}};
+  ParameterResult p{id_of("B_a"), value, {}};
   p.uncertainty.determined = true;
   p.uncertainty.standard_error = error;
   return p;

@@ -109,7 +109,7 @@ TEST_F(InputNoiseTest, ExplainsAResidualWhereItsSizeIsGiven) {
       EXPECT_GT(mean_square(s.values), 1.3) << s.fitted;
       EXPECT_TRUE(s.fitted || !s.input_noise_given || s.input_noise > 0.0);
     }
-    return std::ranges::all_of(list, is_explained);
+    return std::ranges::all_of(list, [](const ResidualSeries& s) { return is_explained(s); });
   };
   EXPECT_TRUE(all_explained(noisy));
   for (Recording& r : noisy.recordings) r.command_noise = NoiseSource::differences;

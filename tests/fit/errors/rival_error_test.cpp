@@ -29,9 +29,9 @@ class RivalErrorsTest : public ::testing::Test {
     }
     const auto with = [](double friction, double mass, double added) {
       Model<double> model = slide();
-      *members(model)[find_quantity("B_a")->index] = friction;
-      *members(model)[find_quantity("M")->index] = mass;
-      *members(model)[find_quantity("added_mass.dM")->index] = added;
+      *members(model)[quantity_index("B_a")] = friction;
+      *members(model)[quantity_index("M")] = mass;
+      *members(model)[quantity_index("added_mass.dM")] = added;
       return model;
     };
     for (const auto& [rival, friction] :

@@ -138,6 +138,7 @@ TEST(Scatter, OfOneRecordingIsThatOfItsStretches) {
   EXPECT_TRUE(scatter->of_stretches);
   EXPECT_EQ(scatter->fitted_groups(), 6u);
   // What happens in a stretch of a free-running simulation depends on those before.
+  job.options.criterion = FreeRun{};
   job.options.continuation.reset();
   EXPECT_FALSE(scatter_in(job, estimate(job)));
 }

@@ -50,9 +50,6 @@ class UncertaintyTest : public ::testing::Test {
   Uncertainty found(const Eigen::Vector3d& u = {1, 1, 1}) const {
     return uncertainty(ParameterSpace(job_), u, linear_);
   }
-  Identifiability known(const Eigen::Vector3d& u = {0, 0, 0}) const {
-    return identifiability(ParameterSpace(job_), u, linear_, 1.0);
-  }
 
   Job job_;
   Linearization linear_;
@@ -166,70 +163,6 @@ TEST_F(UncertaintyTest, AnIntervalAsWideAsItsBoundsIsNoKnowledge) {
     EXPECT_EQ(p.weak, part < 1.0);
     EXPECT_EQ(p.has_interval(), part < 1.0);
   }
-}
-
-// The standard error along a direction is `scale` over its singular value.
-TEST_F(UncertaintyTest, ADirectionIsWeakFromAnErrorOfOne) {
-  const Eigen::MatrixXd jacobian = linear_.jacobian;
-  const ParameterSpace space(job_);
-  for (const double scale : {1.0, 2.0})
-    for (const double error : {0.9, 1.1}) {
-      linear_.jacobian = jacobian;
-      linear_.jacobian.col(2) *= kWhite * scale / error;
-      const Identifiability seen = identifiability(space, Eigen::Vector3d::Zero(), linear_, scale);
-      ASSERT_EQ(seen.weak.size(), error > 1.0 ? 1u : 0u) << scale << " " << error;
-      if (error < 1.0) continue;
-      EXPECT_NEAR(seen.weak[0].singular_value, scale / error, 1e-9);
-      ASSERT_EQ(seen.weak[0].parts.size(), 1u);
-      EXPECT_EQ(seen.weak[0].parts[0].parameter, 2u);
-    }
-}
-
-TEST_F(UncertaintyTest, NamesWhatIsSeenOfTwoParameters) {
-  for (const std::size_t i : {0u, 1u}) job_.free[i].logarithmic = true;
-  for (const std::size_t i : {0u, 1u}) job_.free[i].lower = 1e-6;
-  linear_.jacobian.col(1) = -linear_.jacobian.col(0);
-  const Identifiability seen = known({std::log(6.0), std::log(2.0), 0.0});
-  ASSERT_EQ(seen.weak.size(), 1u);
-  ASSERT_EQ(seen.weak[0].parts.size(), 2u);
-  ASSERT_EQ(seen.combinations.size(), 1u);
-  const Combination& ratio = seen.combinations[0];
-  EXPECT_EQ(ratio.first, seen.weak[0].parts[0].parameter);
-  EXPECT_EQ(ratio.second, seen.weak[0].parts[1].parameter);
-  EXPECT_EQ(ratio.first + ratio.second, 1u);
-  EXPECT_NEAR(ratio.exponent, -1.0, 1e-12);
-  EXPECT_NEAR(ratio.value, ratio.first == 0 ? 3.0 : 1.0 / 3.0, 1e-12);
-  EXPECT_NEAR(ratio.standard_error / ratio.value, kWhite, 1e-6 * kWhite);
-  ASSERT_TRUE(seen.weak[0].combination);
-  EXPECT_EQ(seen.weak[0].combination->value, ratio.value);
-  EXPECT_EQ(seen.singular_values.size(), 3u);
-}
-
-// Where neither the ratio nor the product is seen, none is claimed.
-TEST_F(UncertaintyTest, ClaimsNoCombinationThatAnotherWeakDirectionHides) {
-  for (const std::size_t i : {0u, 1u}) job_.free[i].logarithmic = true;
-  for (const std::size_t i : {0u, 1u}) job_.free[i].lower = 1e-6;
-  linear_.jacobian.col(1) = -linear_.jacobian.col(0);
-  linear_.jacobian.leftCols(2) *= 1e-6 * kWhite;
-  const Identifiability seen = known({std::log(6.0), std::log(2.0), 0.0});
-  ASSERT_EQ(seen.weak.size(), 2u);
-  EXPECT_TRUE(seen.combinations.empty());
-  for (const WeakDirection& weak : seen.weak) {
-    ASSERT_EQ(weak.parts.size(), 2u);
-    EXPECT_FALSE(weak.combination);
-    for (const WeakDirection::Part& part : weak.parts) {
-      EXPECT_TRUE(part.relative);
-      EXPECT_NEAR(part.tenth, std::expm1(0.1 * part.change), 1e-12);
-    }
-  }
-}
-
-TEST_F(UncertaintyTest, NamesWhatNoSignalShows) {
-  linear_.jacobian.col(2).setZero();
-  const Identifiability seen = known();
-  EXPECT_EQ(seen.without_influence, std::vector<std::size_t>{2});
-  EXPECT_TRUE(seen.weak.empty());
-  EXPECT_EQ(seen.singular_values.size(), 2u);
 }
 
 TEST(ColouredResiduals, OfWhiteNoiseIsNone) {

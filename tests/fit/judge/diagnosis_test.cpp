@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "tests/fit/example.h"
 
 namespace axisfit {
@@ -27,7 +25,6 @@ TEST(Diagnosis, OfATrueModelIsExplained) {
   EXPECT_EQ(diagnosis.tests.size(), 2u);
   EXPECT_EQ(diagnosis.forces.size(), 1u);
   EXPECT_TRUE(diagnosis.explained);
-  EXPECT_TRUE(diagnosis.suspected_effects.empty());
 }
 
 TEST(Diagnosis, OneSeriesBeyondItsNoiseIsEnough) {
@@ -46,32 +43,6 @@ TEST(Diagnosis, OfNothingThatWasFittedExplainsNothing) {
   const Diagnosis diagnosis = diagnose(job, result);
   EXPECT_TRUE(diagnosis.tests.empty());
   EXPECT_FALSE(diagnosis.explained);
-}
-
-TEST(SuspectedEffects, BeginWithTheOneThatIsMissing) {
-  const Job job = slide_with(25.0);
-  const auto suspects = suspected_effects(job, result_at_start(job));
-  ASSERT_FALSE(suspects.empty());
-  EXPECT_EQ(suspects[0].candidate.name, "coulomb_friction");
-  ASSERT_EQ(suspects[0].strengths.size(), 1u);
-  EXPECT_NEAR(suspects[0].strengths[0], 25.0, 5.0);
-  EXPECT_GT(suspects[0].fraction, 0.8);
-}
-
-TEST(SuspectedEffects, AreAFewDifferentOnesTheStrongestFirst) {
-  const Job job = slide_with(25.0);
-  const auto suspects = suspected_effects(job, result_at_start(job));
-  EXPECT_LE(suspects.size(), 5u);
-  EXPECT_TRUE(std::ranges::is_sorted(suspects, std::ranges::greater{}, &SuspectedEffect::fraction));
-  EXPECT_GE(suspects.back().fraction, 0.02);
-  for (std::size_t i = 0; i < suspects.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k)
-      EXPECT_FALSE(same_effect(suspects[i].candidate, suspects[k].candidate)) << i << ' ' << k;
-}
-
-TEST(SuspectedEffects, AreNoneInNoise) {
-  const Job job = slide_with(0.0);
-  EXPECT_TRUE(suspected_effects(job, result_at_start(job)).empty());
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ std::vector<ResidualSeries> pair(std::vector<double> fitted, std::vector<double>
   return {series(true, std::move(fitted)), series(false, std::move(judged))};
 }
 
-Candidate candidate(std::size_t strengths = 1, std::size_t shapes = 0) {
-  Candidate c;
+Hypothesis hypothesis(std::size_t strengths = 1, std::size_t shapes = 0) {
+  Hypothesis c;
   c.name = "effect";
   c.strengths.assign(strengths, quantity_index("coulomb_friction.F_c"));
   c.neutral.assign(strengths, 0.0);
@@ -52,7 +52,7 @@ Candidate candidate(std::size_t strengths = 1, std::size_t shapes = 0) {
 }
 
 /// One whose strength stands far from zero and that nothing else imitates.
-Determination determined() { return {400.0, 11.0, 0.5, "", ""}; }
+Determination determined() { return {400.0, 11.0, 0.5, {}, {}}; }
 
 TEST(ImprovementTest, CountsInUnitsOfTheNoiseThatIsLeft) {
   // The noise along a wave is known from a band of frequencies only, and scatters.
@@ -125,7 +125,7 @@ TEST(ImprovementTest, ADriftHidesNoRipple) {
   for (int seed = 1; seed <= 20; ++seed) {
     const auto fitted = coloured(2 * seed), judged = coloured(2 * seed + 1);
     const Improvement gain = improvement(pair(wave(fitted), wave(judged)), pair(fitted, judged));
-    EXPECT_LT(gain.p_value, kChance) << seed;
+    EXPECT_LT(gain.p_value, SearchOptions().acceptance.chance) << seed;
     const double slow =
         2.0 * std::sqrt(0.5 * kSamples * 0.49 * mean_square(judged) * autocorrelation_time(judged));
     EXPECT_LT(0.5 * kSamples * 0.49 / slow, 2.5);
@@ -153,7 +153,8 @@ TEST(ImprovementTest, ChanceHardlyEverPasses) {
         after[i] -= product / square * shape(i);
       }
       ++trials;
-      passed += improvement(pair(fitted, judged), pair(after_fit, after)).p_value < kChance;
+      passed += improvement(pair(fitted, judged), pair(after_fit, after)).p_value <
+                SearchOptions().acceptance.chance;
     }
   }
   std::cout << passed << " of " << trials << " effects by chance pass on the validation\n";
@@ -189,10 +190,10 @@ TEST(AcceptanceTest, AnEffectIsNeededForMoreThanThePriceOfItsParameters) {
   gain.samples = 1000.0;  // ln 1000 = 6.9
   gain.p_value = 1e-9;
   gain.fit_gain = 13.0;
-  EXPECT_TRUE(is_needed(gain, 1));
-  EXPECT_FALSE(is_needed(gain, 2));
+  EXPECT_TRUE(is_needed(gain, 1, false));
+  EXPECT_FALSE(is_needed(gain, 2, false));
   gain.fit_gain = 14.5;
-  EXPECT_TRUE(is_needed(gain, 2));
+  EXPECT_TRUE(is_needed(gain, 2, false));
 }
 
 TEST(AcceptanceTest, AnEffectIsNotNeededWhereChanceExplainsWhatItPredicts) {
@@ -200,13 +201,13 @@ TEST(AcceptanceTest, AnEffectIsNotNeededWhereChanceExplainsWhatItPredicts) {
   gain.comparable = true;
   gain.samples = 1000.0;
   gain.fit_gain = 100.0;
-  gain.p_value = 0.5 * kChance;
-  EXPECT_TRUE(is_needed(gain, 1));
-  gain.p_value = 2.0 * kChance;
-  EXPECT_FALSE(is_needed(gain, 1));
+  gain.p_value = 0.5 * SearchOptions().acceptance.chance;
+  EXPECT_TRUE(is_needed(gain, 1, false));
+  gain.p_value = 2.0 * SearchOptions().acceptance.chance;
+  EXPECT_FALSE(is_needed(gain, 1, false));
   gain.p_value = 0.0;
   gain.comparable = false;
-  EXPECT_FALSE(is_needed(gain, 1));
+  EXPECT_FALSE(is_needed(gain, 1, false));
 }
 
 // An effect that a fit to other noise has found changes the prediction without knowledge of this
@@ -270,8 +271,8 @@ TEST(BicDifferenceTest, CorrelatedResidualsCountLess) {
 TEST(RefusalTest, OfAnImprovementThatIsRealIsNone) {
   const Improvement gain = improvement(pair(with_wave(noise(1), 1.0), with_wave(noise(2), 1.0)),
                                        pair(noise(1), noise(2)));
-  EXPECT_FALSE(rejection_of(candidate(), gain, determined(), 100));
-  EXPECT_FALSE(rejection_of(candidate(2, 1), gain, determined(), 100));
+  EXPECT_FALSE(rejection_of(hypothesis(), gain, determined(), {100}));
+  EXPECT_FALSE(rejection_of(hypothesis(2, 1), gain, determined(), {100}));
 }
 
 // A parameter that was fitted to the noise gains about one of the sum of squares, and the best of a
@@ -301,7 +302,7 @@ TEST(RefusalTest, OfChance) {
       }
     }
     const Improvement gain = improvement(pair(fitted, judged), pair(after_fitted, after_judged));
-    refused += rejection_of(candidate(), gain, determined(), 100) ? 1 : 0;
+    refused += rejection_of(hypothesis(), gain, determined(), {100}) ? 1 : 0;
   }
   EXPECT_EQ(refused, kTrials);
 }
@@ -312,7 +313,7 @@ TEST(RefusalTest, OfWhatOnlyFits) {
   EXPECT_GT(gain.fit_gain, 500.0);
   EXPECT_LT(gain.validate_percent, 0.0);
   EXPECT_GT(gain.p_value, 0.9);
-  const auto rejection = rejection_of(candidate(), gain, determined(), 100);
+  const auto rejection = rejection_of(hypothesis(), gain, determined(), {100});
   EXPECT_EQ(rejection, (Rejection{.test = Rejection::Test::validation, .found = gain.p_value}));
 }
 
@@ -321,7 +322,7 @@ TEST(RefusalTest, OfWhatTheOtherRecordingCouldNotHaveShownSaysSo) {
   const Improvement gain = improvement(pair(with_wave(noise(1), 1.0), noise(2)),
                                        pair(noise(1), with_wave(noise(2), 0.03)));
   EXPECT_LT(gain.expected_z, 4.4);
-  const auto rejection = rejection_of(candidate(), gain, determined(), 100);
+  const auto rejection = rejection_of(hypothesis(), gain, determined(), {100});
   EXPECT_EQ(rejection, (Rejection{.test = Rejection::Test::power, .found = gain.p_value}));
 }
 
@@ -341,10 +342,10 @@ TEST(RefusalTest, OfWhatHardlyHelps) {
   gain.z = 6.0;
   gain.p_value = 1e-9;
   gain.validate_percent = 0.3;
-  EXPECT_EQ(rejection_of(candidate(), gain, determined(), 100),
+  EXPECT_EQ(rejection_of(hypothesis(), gain, determined(), {100}),
             (Rejection{.test = Rejection::Test::validation_size, .found = 0.3}));
   gain.validate_percent = 0.6;
-  EXPECT_FALSE(rejection_of(candidate(), gain, determined(), 100));
+  EXPECT_FALSE(rejection_of(hypothesis(), gain, determined(), {100}));
 }
 
 TEST(RefusalTest, OfWhatHelpsByChanceMoreOftenThanOnceInAThousand) {
@@ -355,11 +356,11 @@ TEST(RefusalTest, OfWhatHelpsByChanceMoreOftenThanOnceInAThousand) {
   gain.validate_percent = 5.0;
   gain.expected_z = 10.0;
   gain.p_value = 1.1e-3;
-  EXPECT_EQ(rejection_of(candidate(), gain, determined(), 100),
+  EXPECT_EQ(rejection_of(hypothesis(), gain, determined(), {100}),
             (Rejection{.test = Rejection::Test::validation, .found = 1.1e-3}));
-  EXPECT_FALSE(rejection_of(candidate(), gain, determined(), 100, 1.2e-3));
+  EXPECT_FALSE(rejection_of(hypothesis(), gain, determined(), {100, 1.2e-3}));
   gain.p_value = 0.9e-3;
-  EXPECT_FALSE(rejection_of(candidate(), gain, determined(), 100));
+  EXPECT_FALSE(rejection_of(hypothesis(), gain, determined(), {100}));
 }
 
 TEST(RefusalTest, PricesParametersAndTheChoice) {
@@ -367,23 +368,23 @@ TEST(RefusalTest, PricesParametersAndTheChoice) {
                                  pair(noise(1), noise(2)));
   gain.samples = 2000.0;  // log 7.6
   gain.fit_gain = 8.0;
-  EXPECT_FALSE(rejection_of(candidate(), gain, determined(), 1));
+  EXPECT_FALSE(rejection_of(hypothesis(), gain, determined(), {1}));
   const double log_n = std::log(2000.0);
   const auto chosen = [](double required, std::size_t tried) {
     return Rejection{Rejection::Test::significance, 8.0, required, tried};
   };
-  EXPECT_EQ(rejection_of(candidate(), gain, determined(), 100),
+  EXPECT_EQ(rejection_of(hypothesis(), gain, determined(), {100}),
             chosen(log_n + 2.0 * std::log(100.0), 100));
-  EXPECT_EQ(rejection_of(candidate(1, 1), gain, determined(), 1), chosen(2.0 * log_n, 1));
+  EXPECT_EQ(rejection_of(hypothesis(1, 1), gain, determined(), {1}), chosen(2.0 * log_n, 1));
   gain.fit_gain = 17.0;
-  EXPECT_FALSE(rejection_of(candidate(), gain, determined(), 100));
+  EXPECT_FALSE(rejection_of(hypothesis(), gain, determined(), {100}));
 }
 
 TEST(RefusalTest, OfWhatIsNotDetermined) {
   const Improvement gain = improvement(pair(with_wave(noise(1), 1.0), with_wave(noise(2), 1.0)),
                                        pair(noise(1), noise(2)));
   const auto rejection = [&](const Determination& d) {
-    return rejection_of(candidate(), gain, d, 100);
+    return rejection_of(hypothesis(), gain, d, {100});
   };
   using enum Rejection::Test;
   Determination d = determined();
@@ -401,7 +402,8 @@ TEST(RefusalTest, OfWhatIsNotDetermined) {
 }
 
 TEST(RefusalTest, OfWhatCannotBeSimulated) {
-  EXPECT_EQ(rejection_of(candidate(), {}, {}, 1), Rejection{.test = Rejection::Test::simulation});
+  EXPECT_EQ(rejection_of(hypothesis(), {}, {}, {1}),
+            Rejection{.test = Rejection::Test::simulation});
 }
 
 /// The slide with dry friction, fitted with it.
@@ -411,21 +413,21 @@ class DeterminationTest : public testing::Test {
     Model<double> truth = slide();
     add_effect<CoulombFriction>(truth).F_c = friction;
     job_ = two_recordings(truth, slide(), free);
-    candidate_.name = "coulomb_friction";
-    candidate_.strengths = {quantity_index("coulomb_friction.F_c")};
-    candidate_.neutral = {0.0};
+    hypothesis_.name = "coulomb_friction";
+    hypothesis_.strengths = {quantity_index("coulomb_friction.F_c")};
+    hypothesis_.neutral = {0.0};
     std::vector<double> values;
     for (const FreeParameter& p : job_.free) values.push_back(p.initial);
     const std::vector<double> strengths{friction};
-    job_ = with_candidate(job_, candidate_, values, strengths, {});
+    job_ = with_hypothesis(job_, hypothesis_, values, {strengths, {}});
     job_.options.continuation.reset();
     result_ = estimate(job_);
   }
   Determination determination_now() {
-    return determination(job_, result_, candidate_, residual_series(job_, result_));
+    return determination(job_, result_, hypothesis_, residual_series(job_, result_));
   }
   Job job_;
-  Candidate candidate_;
+  Hypothesis hypothesis_;
   FitResult result_;
 };
 
@@ -450,7 +452,7 @@ TEST_F(DeterminationTest, CorrelatedResidualsCountLess) {
   auto residuals = residual_series(job_, result_);
   const auto wald_with = [&](const std::vector<double>& values) {
     for (ResidualSeries& s : residuals) s.values = values;
-    return determination(job_, result_, candidate_, residuals).wald;
+    return determination(job_, result_, hypothesis_, residuals).wald;
   };
   const auto white = noise(1), held = held_for_five(white);
   // To a fifth where the effect is slow against five samples, to no less where it is not.
@@ -475,10 +477,10 @@ TEST_F(DeterminationTest, SeesThatAnotherParameterDoesTheSame) {
   Model<double> truth = slide();
   add_effect<CommandOffset>(truth).U_0 = 0.2;
   Job job = two_recordings(truth, truth, {"B_a", "command_offset.U_0"});
-  candidate_.strengths = {quantity_index("constant_force.F_0")};
-  candidate_.neutral = {0.0};
+  hypothesis_.strengths = {quantity_index("constant_force.F_0")};
+  hypothesis_.neutral = {0.0};
   const std::vector<double> values{30.0, 0.1}, strengths{4.0};
-  job_ = with_candidate(job, candidate_, values, strengths, {});
+  job_ = with_hypothesis(job, hypothesis_, values, {strengths, {}});
   result_ = result_at_start(job_);
   EXPECT_LT(determination_now().distinct, 1e-9);
 }
@@ -487,17 +489,17 @@ TEST_F(DeterminationTest, SeesThatAnotherParameterDoesTheSame) {
 TEST_F(DeterminationTest, CountsAGainFromOne) {
   Model<double> truth = slide();
   Job job = two_recordings(truth, truth, {"B_a"});
-  candidate_.strengths = {quantity_index("velocity.gain")};
-  candidate_.neutral = {1.0};
+  hypothesis_.strengths = {quantity_index("velocity.gain")};
+  hypothesis_.neutral = {1.0};
   const std::vector<double> values{30.0};
   const auto wald = [&](double gain) {
     const std::vector<double> strengths{gain};
-    job_ = with_candidate(job, candidate_, values, strengths, {});
+    job_ = with_hypothesis(job, hypothesis_, values, {strengths, {}});
     result_ = result_at_start(job_);
     // What is left of a fit: at the truth nothing but noise.
     const std::vector<double> neutral{1.0};
-    const Job at_truth = with_candidate(job, candidate_, values, neutral, {});
-    return determination(job_, result_, candidate_,
+    const Job at_truth = with_hypothesis(job, hypothesis_, values, {neutral, {}});
+    return determination(job_, result_, hypothesis_,
                          residual_series(at_truth, result_at_start(at_truth)))
         .wald;
   };

@@ -8,23 +8,10 @@
 #include <set>
 
 #include "tests/fit/example.h"
+#include "tests/fit/search/hypotheses.h"
 
 namespace axisfit {
 namespace {
-
-SearchScales scales() {
-  SearchScales s;
-  s.position_low = -0.1;
-  s.position_high = 0.5;
-  s.speed = 1.2;
-  s.velocity_low = -1.2;
-  s.velocity_high = 1.0;
-  s.start = 0.0;
-  s.end = 1.2;
-  s.interval = 1e-3;
-  s.periods = {0.05, 0.02};
-  return s;
-}
 
 /// The paper's axis, of which these signals were recorded; nothing was simulated.
 Job job_with(const std::vector<Signal>& signals) {
@@ -39,22 +26,17 @@ Job job_with(const std::vector<Signal>& signals) {
   return job;
 }
 
-const Candidate* find(const std::vector<Candidate>& list, std::string_view name) {
-  const auto found = std::ranges::find(list, name, &Candidate::name);
-  return found == list.end() ? nullptr : &*found;
-}
-
 /// Whether a quantity is among the strengths of any effect.
-bool offers(const std::vector<Candidate>& list, const char* quantity) {
-  return std::ranges::any_of(list, [&](const Candidate& c) {
-    return !c.is_constant &&
+bool offers(const std::vector<Hypothesis>& list, const char* quantity) {
+  return std::ranges::any_of(list, [&](const Hypothesis& c) {
+    return c.kind != HypothesisKind::constant &&
            std::ranges::find(c.strengths, quantity_index(quantity)) != c.strengths.end();
   });
 }
 
-bool offers_constant(const std::vector<Candidate>& list, const char* quantity) {
-  const Candidate* c = find(list, quantity);
-  return c != nullptr && c->is_constant;
+bool offers_constant(const std::vector<Hypothesis>& list, const char* quantity) {
+  const Hypothesis* c = find(list, quantity);
+  return c != nullptr && c->kind == HypothesisKind::constant;
 }
 
 TEST(Catalogue, HasEveryEffectOfTheList) {
@@ -82,7 +64,7 @@ TEST(Catalogue, HasOneEffectForEachChannel) {
   job.model.structure.channels = kept({{"oil", "degC", 20.0}, {"y", "m", 0.0}});
   const auto list = catalogue(job, scales());
   for (const char* name : {"channel_force.oil", "channel_force.y", "channel_mass.y"}) {
-    const Candidate* found = find(list, name);
+    const Hypothesis* found = find(list, name);
     ASSERT_NE(found, nullptr) << name;
     EXPECT_EQ(found->strengths.size(), 1u);
   }
@@ -93,17 +75,17 @@ TEST(Catalogue, HasOneEffectForEachChannel) {
   EXPECT_TRUE(offers_constant(rest, "channel_force.oil"));
   EXPECT_NE(find(rest, "channel_force.y"), nullptr);
   job.model.structure.channels = nullptr;
-  for (const Candidate& c : catalogue(job, scales())) EXPECT_FALSE(c.name.starts_with("channel_"));
+  for (const Hypothesis& c : catalogue(job, scales())) EXPECT_FALSE(c.name.starts_with("channel_"));
 }
 
 TEST(Catalogue, HasChangesOfDryFrictionWhereThereIsSome) {
   Job job = job_with({Signal::velocity});
   job.model = slide();
-  for (const bool rubs : {false, true}) {
-    if (rubs) add_effect<CoulombFriction>(job.model).F_c = 12.0;
+  for (const bool has_dry_friction : {false, true}) {
+    if (has_dry_friction) add_effect<CoulombFriction>(job.model).F_c = 12.0;
     const auto list = catalogue(job, scales());
-    EXPECT_EQ(find(list, "warming_friction") != nullptr, rubs);
-    EXPECT_EQ(find(list, "running_in_friction") != nullptr, rubs);
+    EXPECT_EQ(find(list, "warming_friction") != nullptr, has_dry_friction);
+    EXPECT_EQ(find(list, "running_in_friction") != nullptr, has_dry_friction);
   }
 }
 
@@ -120,7 +102,7 @@ TEST(Catalogue, EntriesAreComplete) {
   const auto list = catalogue(job_with({Signal::velocity, Signal::position}), scales());
   const auto& quantities = quantity_list();
   std::set<std::vector<std::size_t>> seen;
-  for (const Candidate& c : list) {
+  for (const Hypothesis& c : list) {
     SCOPED_TRACE(c.name);
     EXPECT_FALSE(c.meaning.empty());
     EXPECT_FALSE(c.acts_on.empty());
@@ -142,7 +124,7 @@ TEST(Catalogue, EntriesAreComplete) {
       if (!entry.quantity.shape || entry.group != quantities[c.strengths[0]].group) continue;
       EXPECT_NE(std::ranges::find(c.shapes, entry.index), c.shapes.end()) << entry.name;
     }
-    EXPECT_EQ(c.is_curve, c.name.find("_over_") != std::string::npos);
+    EXPECT_EQ(c.kind == HypothesisKind::curve, c.name.find("_over_") != std::string::npos);
   }
 }
 
@@ -256,13 +238,14 @@ void expect_exponent(double neutral, const Effect<double>& effect, double declar
   const std::string name = std::string(Effect<double>::name) + ".n";
   const auto exponent_in = [&] {
     const auto list = catalogue(job, scales());
-    const auto found = std::ranges::find_if(
-        list, [&](const Candidate& c) { return c.strengths == std::vector{quantity_index(name)}; });
-    return found == list.end() ? std::optional<Candidate>() : *found;
+    const auto found = std::ranges::find_if(list, [&](const Hypothesis& c) {
+      return c.strengths == std::vector{quantity_index(name)};
+    });
+    return found == list.end() ? std::optional<Hypothesis>() : *found;
   };
   EXPECT_FALSE(exponent_in());
   add_effect<Effect>(job.model) = effect;
-  const std::optional<Candidate> exponent = exponent_in();
+  const std::optional<Hypothesis> exponent = exponent_in();
   ASSERT_TRUE(exponent);
   EXPECT_EQ(exponent->neutral, std::vector{neutral});
   EXPECT_EQ(exponent->parameters(), 1u);
@@ -322,7 +305,7 @@ TEST(Catalogue, OffersNothingThatTheStructureDoesNotUse) {
     EXPECT_EQ(find(list, name), nullptr) << name;
   for (const char* name : {"torque_fade", "force_droop", "drive_lag", "dead_time"})
     EXPECT_NE(find(list, name), nullptr) << name;
-  for (const Candidate& c : list) {
+  for (const Hypothesis& c : list) {
     Structure structure = job.model.structure;
     structure.effects.set();
     for (const std::size_t q : c.strengths)
@@ -343,155 +326,6 @@ TEST(Catalogue, OffersOnlyInstrumentsThatTheFitReads) {
     for (const char* signal : {"motor_current", "tachometer", "acceleration", "position"})
       EXPECT_EQ(find(list, of(signal)), nullptr) << of(signal);
   }
-}
-
-class WithCandidate : public testing::Test {
- protected:
-  WithCandidate() {
-    job_ = two_recordings(paper_axis(), paper_axis(), {"B_a", "V_L"}, 8.0,
-                          {Signal::velocity, Signal::acceleration});
-    candidates_ = catalogue(job_, scales());
-  }
-  /// That a job with any of the candidates at neutral strength predicts what it does without.
-  void expect_the_same(const std::vector<Candidate>& candidates) const {
-    const std::vector<double> values{200.0, 2.7};
-    const FitResult without = result_at_start(job_);
-    for (const Candidate& c : candidates) {
-      SCOPED_TRACE(c.name);
-      for (const auto& setting : c.settings) {
-        const FitResult with = result_at_start(with_candidate(job_, c, values, c.neutral, setting));
-        for (std::size_t r = 0; r < 2; ++r) {
-          const auto& simulated = with.recordings[r].free_running.simulated;
-          const auto& expected = without.recordings[r].free_running.simulated;
-          if (!c.is_constant) {
-            ASSERT_EQ(simulated, expected);
-            continue;
-          }
-          // A constant is fitted by its logarithm, which does not give back every bit.
-          ASSERT_EQ(simulated.size(), expected.size());
-          for (std::size_t m = 0; m < simulated.size(); ++m)
-            for (std::size_t n = 0; n < simulated[m].size(); ++n)
-              ASSERT_NEAR(simulated[m][n], expected[m][n], 1e-9);
-        }
-      }
-    }
-  }
-
-  Job job_;
-  std::vector<Candidate> candidates_;
-};
-
-TEST_F(WithCandidate, AddsItsStrengthsAndShapesAndNothingElse) {
-  const std::vector<double> values{150.0, 3.0};
-  for (const Candidate& c : candidates_) {
-    SCOPED_TRACE(c.name);
-    std::vector<double> strengths;
-    for (std::size_t i = 0; i < c.strengths.size(); ++i)
-      strengths.push_back(c.is_constant ? 1.1 * c.neutral[i] : 1e-3 * static_cast<double>(i + 1));
-    const Job job = with_candidate(job_, c, values, strengths, c.settings.back());
-    ASSERT_EQ(job.free.size(), 2 + c.parameters());
-    EXPECT_EQ(job.free[0].initial, 150.0);
-    EXPECT_EQ(job.free[1].initial, 3.0);
-    EXPECT_EQ(job.free[0].lower, job_.free[0].lower);
-    for (std::size_t i = 0; i < strengths.size(); ++i) {
-      const FreeParameter& p = job.free[2 + i];
-      EXPECT_EQ(p.quantity, c.strengths[i]);
-      EXPECT_EQ(p.initial, strengths[i]);
-      EXPECT_EQ(p.logarithmic,
-                c.is_constant && free_parameter(quantity_list()[p.quantity].name, 1.0).logarithmic);
-      EXPECT_FALSE(p.recording.has_value());
-      EXPECT_LE(p.lower, p.initial);
-      EXPECT_GE(p.upper, p.initial);
-    }
-    Model<double> before = job_.model, after = job.model;
-    for (std::size_t i = 0; i < c.shapes.size(); ++i) {
-      EXPECT_EQ(*members(after)[c.shapes[i]], c.settings.back()[i]);
-      if (!c.shapes_are_free) continue;
-      const FreeParameter& p = job.free[2 + strengths.size() + i];
-      EXPECT_EQ(p.quantity, c.shapes[i]);
-      EXPECT_EQ(p.initial, c.settings.back()[i]);
-      EXPECT_EQ(p.logarithmic, quantity_list()[c.shapes[i]].quantity.lower > 0.0);
-      EXPECT_LE(p.lower, p.initial);
-      EXPECT_GE(p.upper, p.initial);
-    }
-    // The rest of the model is as it was.
-    const std::string& group = quantity_list()[c.strengths[0]].group;
-    const bool is_effect = after.structure.effects != before.structure.effects;
-    for (const QuantityEntry& entry : quantity_list()) {
-      if (is_effect && entry.group == group) continue;
-      EXPECT_EQ(*members(after)[entry.index], *members(before)[entry.index]) << entry.name;
-    }
-    EXPECT_LE((after.structure.effects ^ before.structure.effects).count(), 1u);
-    EXPECT_EQ(job.recordings.size(), job_.recordings.size());
-    EXPECT_EQ(model_error(job.model), "");
-  }
-}
-
-TEST_F(WithCandidate, SeeksAPlaceWhereItsSettingsLie) {
-  Candidate c = *find(candidates_, "force_over_position");
-  c.shapes_are_free = true;
-  c.settings = {{-0.1, 0.5}, {0.4, 0.5}};
-  const std::vector<double> values{200.0, 2.7}, strengths(c.strengths.size(), 1.0);
-  const Job job = with_candidate(job_, c, values, strengths, c.settings[0]);
-  const FreeParameter& from = job.free[job.free.size() - 2];
-  const FreeParameter& to = job.free.back();
-  EXPECT_FALSE(from.logarithmic);
-  EXPECT_NEAR(from.lower, -0.15, 1e-15);
-  EXPECT_NEAR(from.upper, 0.45, 1e-15);
-  EXPECT_EQ(from.initial, -0.1);
-  EXPECT_EQ(to.lower, -1e6);  // one setting is no range
-  EXPECT_EQ(to.upper, 1e6);
-}
-
-// What other values an absent effect had is forgotten: nothing but the candidate acts.
-TEST_F(WithCandidate, BringsInNothingElseOfItsEffect) {
-  std::get<DirectionalFriction<double>>(job_.model.effects).dF_c = 7.0;
-  const Candidate& c = *find(candidates_, "directional_friction");
-  const std::vector<double> values{200.0, 2.7}, strengths{1.0};
-  Job job = with_candidate(job_, c, values, strengths, {});
-  EXPECT_EQ(*members(job.model)[quantity_index("directional_friction.dF_c")], 0.0);
-}
-
-// But the values of an effect that is there already stay.
-TEST_F(WithCandidate, KeepsTheOtherPartsOfAnEffect) {
-  add_effect<PositionFriction>(job_.model).G_c = 7.0;
-  const auto list = catalogue(job_, scales());
-  const auto viscous = std::ranges::find_if(list, [](const Candidate& c) {
-    return c.strengths == std::vector{quantity_index("position_friction.G_b")};
-  });
-  ASSERT_NE(viscous, list.end());
-  const std::vector<double> values{200.0, 2.7}, strengths{1.0};
-  Job job = with_candidate(job_, *viscous, values, strengths, {});
-  EXPECT_EQ(*members(job.model)[quantity_index("position_friction.G_c")], 7.0);
-}
-
-TEST_F(WithCandidate, KeepsWithinTheBounds) {
-  const Candidate& c = *find(candidates_, "coulomb_friction");
-  const std::vector<double> values{1e9, 1e-9}, strengths{-5.0};
-  const Job job = with_candidate(job_, c, values, strengths, {});
-  EXPECT_EQ(job.free[0].initial, job_.free[0].upper);
-  EXPECT_EQ(job.free[1].initial, job_.free[1].lower);
-  EXPECT_EQ(job.free[2].initial, 0.0);
-}
-
-TEST_F(WithCandidate, OfNeutralStrengthPredictsTheSameBitForBit) { expect_the_same(candidates_); }
-
-TEST_F(WithCandidate, ThatExtendsAnEffectPredictsTheSameAtNeutralStrength) {
-  add_effect<StribeckFriction>(job_.model) = {12.0, 0.05};
-  add_effect<DahlFriction>(job_.model) = {5.0, 1e-3};
-  add_effect<QuadraticDrag>(job_.model).c = 60.0;
-  auto& force = add_effect<PeriodicForce>(job_.model);
-  force.F_s1 = 5.0;
-  force.period = 0.05;
-  std::vector<Candidate> extensions = catalogue(job_, scales());
-  std::erase_if(extensions, [&](const Candidate& c) {
-    return c.is_constant || std::ranges::any_of(candidates_, [&](const Candidate& old) {
-             return old.strengths == c.strengths;
-           });
-  });
-  // Two exponents, damping, second element, two harmonics; and two changes of dry friction.
-  EXPECT_EQ(extensions.size(), 8u);
-  expect_the_same(extensions);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "base/linear_algebra.h"
 #include "base/random.h"
+#include "fit/search/catalogue.h"
 #include "tests/fit/example.h"
 
 namespace axisfit {
@@ -65,7 +66,7 @@ class FoundCurve {
 
   Job job;
   FitResult fit;
-  Candidate curve;
+  Hypothesis curve;
 };
 
 TEST(ClosedForm, OfQuadraticDragIsOneTerm) {
@@ -119,10 +120,11 @@ TEST(ClosedForm, IsNoneWhereNothingButAConstantIsSeen) {
 /// A slide with a drag that is not declared, and a curve in its place.
 class OfASlide : public testing::Test {
  protected:
-  static SelectionStep with_curve(const SelectionStep& declared, const Candidate& curve) {
-    ExtendedModel e =
-        fit_extended_model(declared.job, curve, values_of(declared.fit),
-                           std::vector<double>(curve.strengths.size(), 0.0), curve.settings[0]);
+  static FittedModel with_curve(const FittedModel& declared, const Hypothesis& curve) {
+    Tried e = try_hypothesis(declared.job,
+                             {std::make_shared<const Hypothesis>(curve),
+                              {std::vector<double>(curve.strengths.size(), 0.0), curve.settings[0]},
+                              values_of(declared.fit)});
     return {curve.name, e.job, e.fit};
   }
 
@@ -134,14 +136,14 @@ class OfASlide : public testing::Test {
     double speed = 0.0;
     for (const double v : declared_.job.recordings[0].measurements[0].values)
       speed = std::max(speed, std::abs(v));
-    const auto candidates = catalogue(declared_.job, {.speed = speed});
-    curve_ = *std::ranges::find(candidates, "friction_over_velocity", &Candidate::name);
+    const auto hypotheses = catalogue(declared_.job, {.speed = speed});
+    curve_ = *std::ranges::find(hypotheses, "friction_over_velocity", &Hypothesis::name);
     fitted_ = with_curve(declared_, curve_);
     form_ = closed_form(fitted_.job, fitted_.fit, curve_);
   }
 
-  SelectionStep declared_, fitted_;
-  Candidate curve_;
+  FittedModel declared_, fitted_;
+  Hypothesis curve_;
   std::optional<ClosedForm> form_;
 };
 

@@ -4,7 +4,7 @@
 
 #include <iostream>
 
-#include "fit/search/score.h"
+#include "fit/search/catalogue.h"
 #include "tests/fit/example.h"
 
 namespace axisfit {
@@ -12,9 +12,7 @@ namespace {
 
 /// The derivatives with respect to everything that a setting frees, by a simulation of its own.
 Eigen::MatrixXd by_itself(const Job& job, const EffectSetting& setting, double rate) {
-  Candidate candidate = *setting.candidate;
-  candidate.shapes_are_free = setting.with_shapes;
-  const Job with = with_candidate(job, candidate, {}, setting.strengths, setting.shapes);
+  const Job with = with_hypothesis(job, *setting.hypothesis, {}, setting.own, !setting.with_shapes);
   const ParameterSpace space(with);
   std::vector<double> values;
   for (const FreeParameter& p : with.free) values.push_back(p.initial);
@@ -35,7 +33,7 @@ class EffectColumnsOf : public testing::TestWithParam<const char*> {
     job_ = two_recordings(model, model, {});
     SearchScales scales{-0.05, 0.2, 1.0, -1.0, 1.0, 0.0, 1.2, 1e-3};
     scales.periods = scales.drive_periods = {0.05};
-    candidates_ = catalogue(job_, scales);
+    hypotheses_ = catalogue(job_, scales);
   }
 
   /// Every column within `tolerance` of its length, or of what a newton does to three samples: the
@@ -43,17 +41,17 @@ class EffectColumnsOf : public testing::TestWithParam<const char*> {
   void expect_alike(const EffectSetting& setting, const Eigen::MatrixXd& found, double rate,
                     double tolerance) const {
     const Eigen::MatrixXd expected = by_itself(job_, setting, rate);
-    ASSERT_EQ(found.rows(), expected.rows()) << setting.candidate->name;
-    ASSERT_EQ(found.cols(), expected.cols()) << setting.candidate->name;
+    ASSERT_EQ(found.rows(), expected.rows()) << setting.hypothesis->name;
+    ASSERT_EQ(found.cols(), expected.cols()) << setting.hypothesis->name;
     const double samples = 3.0 / (job_.model.axis.M * usual_noise(Signal::acceleration));
     for (Eigen::Index k = 0; k < expected.cols(); ++k)
       EXPECT_LE((found.col(k) - expected.col(k)).norm(),
                 tolerance * expected.col(k).norm() + samples)
-          << setting.candidate->name << ", column " << k;
+          << setting.hypothesis->name << ", column " << k;
   }
 
   Job job_;
-  std::vector<Candidate> candidates_;
+  std::vector<Hypothesis> hypotheses_;
 };
 
 // Between two samples a force is taken as its mean: where it jumps, as friction does at a reversal,
@@ -62,9 +60,9 @@ TEST_P(EffectColumnsOf, AreThoseOfASimulationWithEachEffect) {
   for (const double rate : {0.0, 30.0}) {
     const EffectColumns columns(job_, rate, {});
     std::vector<EffectSetting> settings;
-    for (const Candidate& c : candidates_)
+    for (const Hypothesis& c : hypotheses_)
       if (c.probes.empty())
-        for (const auto& shapes : c.settings) settings.push_back({&c, c.neutral, shapes});
+        for (const auto& shapes : c.settings) settings.push_back({&c, {c.neutral, shapes}});
     ASSERT_GT(settings.size(), 40u);
     const std::vector<Eigen::MatrixXd> found = columns.derivatives(settings);
     for (std::size_t i = 0; i < settings.size(); ++i)
@@ -77,8 +75,8 @@ TEST_P(EffectColumnsOf, LackWhatTheStatesOfWindowsCouldMake) {
   for (Recording& r : job_.recordings) r.initial_state = InitialState::data;
   const EffectColumns columns(job_, 0.0, {});
   std::vector<EffectSetting> settings;
-  for (const Candidate& c : candidates_)
-    if (c.probes.empty()) settings.push_back({&c, c.neutral, c.settings.front()});
+  for (const Hypothesis& c : hypotheses_)
+    if (c.probes.empty()) settings.push_back({&c, {c.neutral, c.settings.front()}});
   const std::vector<Eigen::MatrixXd> found = columns.derivatives(settings);
   for (std::size_t i = 0; i < settings.size(); ++i) expect_alike(settings[i], found[i], 0.0, 0.1);
 }
@@ -86,10 +84,12 @@ TEST_P(EffectColumnsOf, LackWhatTheStatesOfWindowsCouldMake) {
 TEST_P(EffectColumnsOf, TellWhatTheShapesDo) {
   const EffectColumns columns(job_, 30.0, {});
   std::vector<EffectSetting> settings;
-  for (const Candidate& c : candidates_)
-    if (c.probes.empty() && !c.shapes.empty() && c.shapes_are_free)
-      settings.push_back({&c, std::vector<double>(c.strengths.size(), 1e-3),
-                          c.settings[1 % c.settings.size()], true});
+  for (const Hypothesis& c : hypotheses_)
+    if (c.probes.empty() && !c.shapes.empty() && c.estimates_shapes())
+      settings.push_back(
+          {&c,
+           {std::vector<double>(c.strengths.size(), 1e-3), c.settings[1 % c.settings.size()]},
+           true});
   ASSERT_GT(settings.size(), 3u);
   const std::vector<Eigen::MatrixXd> found = columns.derivatives(settings);
   for (std::size_t i = 0; i < settings.size(); ++i) expect_alike(settings[i], found[i], 30.0, 0.2);

@@ -31,9 +31,9 @@ Job job_with(const std::vector<Estimate>& estimates) {
   return job;
 }
 
-Candidate candidate(std::vector<std::string_view> strengths,
-                    std::vector<std::string_view> shapes = {}) {
-  Candidate c;
+Hypothesis hypothesis(std::vector<std::string_view> strengths,
+                      std::vector<std::string_view> shapes = {}) {
+  Hypothesis c;
   for (const auto name : strengths) c.strengths.push_back(quantity_index(name));
   for (const auto name : shapes) c.shapes.push_back(quantity_index(name));
   c.neutral.assign(strengths.size(), 0.0);
@@ -43,7 +43,7 @@ Candidate candidate(std::vector<std::string_view> strengths,
 Replication of_friction(double here, double there, double error) {
   const std::vector<Estimate> a{{"M", 10.0, 0.1}, {"coulomb_friction.F_c", here, error}},
       b{{"M", 12.0, 0.1}, {"coulomb_friction.F_c", there, error}};
-  return replication(job_with(a), fit_of(a), fit_of(b), candidate({"coulomb_friction.F_c"}));
+  return replication(job_with(a), fit_of(a), fit_of(b), hypothesis({"coulomb_friction.F_c"}));
 }
 
 TEST(ReplicationTest, IsOfTheEffectAndNotOfTheOtherParameters) {
@@ -81,7 +81,7 @@ TEST(ReplicationTest, AShapeMustBeAlikeToo) {
                                   {"stribeck_friction.v_st", 0.010, 0.0005}},
         b{{"stribeck_friction.F_st", 9.1, 0.1}, {"stribeck_friction.v_st", period, 0.0005}};
     return replication(job_with(a), fit_of(a), fit_of(b),
-                       candidate({"stribeck_friction.F_st"}, {"stribeck_friction.v_st"}))
+                       hypothesis({"stribeck_friction.F_st"}, {"stribeck_friction.v_st"}))
         .is_alike;
   };
   EXPECT_TRUE(found(0.011));
@@ -94,7 +94,7 @@ TEST(ReplicationTest, OfAPhaseOnlyTheAmplitudeCounts) {
     const std::vector<Estimate> a{{"periodic_force.F_s1", 3.0, 0.1},
                                   {"periodic_force.F_c1", 4.0, 0.1}},
         b{{"periodic_force.F_s1", sine, 0.1}, {"periodic_force.F_c1", cosine, 0.1}};
-    Candidate ripple = candidate({"periodic_force.F_s1", "periodic_force.F_c1"});
+    Hypothesis ripple = hypothesis({"periodic_force.F_s1", "periodic_force.F_c1"});
     ripple.has_phase = has_phase;
     return replication(job_with(a), fit_of(a), fit_of(b), ripple).is_alike;
   };
@@ -111,8 +111,8 @@ TEST(ReplicationTest, APeriodMustNotBeAnother) {
         b{{"periodic_force.F_s1", strength, 0.1},
           {"periodic_force.F_c1", 0.1, 0.1},
           {"periodic_force.period", period, error}};
-    Candidate ripple =
-        candidate({"periodic_force.F_s1", "periodic_force.F_c1"}, {"periodic_force.period"});
+    Hypothesis ripple =
+        hypothesis({"periodic_force.F_s1", "periodic_force.F_c1"}, {"periodic_force.period"});
     ripple.has_phase = true;
     return replication(job_with(a), fit_of(a), fit_of(b), ripple);
   };
@@ -128,8 +128,8 @@ TEST(ReplicationTest, APeriodMustNotBeAnother) {
 
 TEST(ReplicationTest, ACurveIsNoEvidence) {
   const std::vector<Estimate> a{{"coulomb_friction.F_c", 20.0, 0.1}};
-  Candidate curve = candidate({"coulomb_friction.F_c"});
-  curve.is_curve = true;
+  Hypothesis curve = hypothesis({"coulomb_friction.F_c"});
+  curve.kind = HypothesisKind::curve;
   EXPECT_FALSE(replication(job_with(a), fit_of(a), fit_of(a), curve).is_alike);
 }
 

@@ -9,22 +9,23 @@ namespace {
 
 TEST(RivalModels, HaveTheParametersOfTheChosenEffect) {
   EffectSelection selection;
-  for (const char* name : {"velocity.gain", "added_mass"}) {
-    EffectTrial& trial = selection.effects.emplace_back();
-    trial.candidate.name = name;
-    trial.parameters = {{std::string(name) + ".strength", 1.0, {}}};
+  for (const auto& [name, parameter] :
+       {std::pair("velocity.gain", "velocity.gain"), std::pair("added_mass", "added_mass.dM")}) {
+    Outcome& outcome = selection.effects.emplace_back();
+    outcome.hypothesis.name = name;
+    outcome.parameters.push_back({id_of(parameter), 1.0, {}});
   }
   Model<double> heavier = slide();
   heavier.axis.M *= 2.0;
-  selection.rivals = {{"added_mass", "velocity.gain", heavier, slide()},
-                      {"dead_time", "velocity.gain", slide(), heavier}};
+  selection.substitutions = {{"added_mass", "velocity.gain", heavier, slide()},
+                             {"dead_time", "velocity.gain", slide(), heavier}};
   const std::vector<RivalModels> models = rival_models(selection);
   ASSERT_EQ(models.size(), 2u);
   EXPECT_EQ(models[0].chosen, "added_mass");
   EXPECT_EQ(models[0].rival, "velocity.gain");
   EXPECT_EQ(models[0].with_chosen.axis.M, heavier.axis.M);
   EXPECT_EQ(models[0].with_rival.axis.M, slide().axis.M);
-  EXPECT_EQ(models[0].own, std::vector<std::string>{"added_mass.strength"});
+  EXPECT_EQ(models[0].own, std::vector{id_of("added_mass.dM")});
   EXPECT_TRUE(models[1].own.empty());  // it had no trial
 }
 

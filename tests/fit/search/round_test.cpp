@@ -12,14 +12,14 @@
 namespace axisfit {
 namespace {
 
-SelectionStep declared_model(const Job& job) { return {"", job, estimate(job)}; }
+FittedModel declared_model(const Job& job) { return {"", job, estimate(job)}; }
 
 void expect_same(const RoundResult& a, const RoundResult& b) {
   EXPECT_EQ(a.best, b.best);
   EXPECT_EQ(a.tried, b.tried);
   ASSERT_EQ(a.models.size(), b.models.size());
   for (std::size_t i = 0; i < a.models.size(); ++i) {
-    EXPECT_EQ(a.models[i].candidate.name, b.models[i].candidate.name);
+    EXPECT_EQ(a.models[i].hypothesis.name, b.models[i].hypothesis.name);
     EXPECT_EQ(values_of(a.models[i].fit), values_of(b.models[i].fit));
     EXPECT_EQ(a.models[i].gain.p_value, b.models[i].gain.p_value);
   }
@@ -29,12 +29,13 @@ class RoundOfAModel : public testing::Test {
  protected:
   RoundResult round(const RoundOptions& options, RoundMemory& memory) {
     phases_.clear();
-    const RunContext context{nullptr, nullptr, [&](const Progress& p) { phases_.insert(p.phase); }};
+    const SearchContext context{
+        {}, {nullptr, nullptr, [&](const Progress& p) { phases_.insert(p.phase); }}};
     return try_round(model_, options, memory, context);
   }
   bool has_scored() const { return phases_.contains("scoring effects"); }
 
-  SelectionStep model_ = declared_model(hidden_effect_named("coulomb_friction").job());
+  FittedModel model_ = declared_model(hidden_effect_named("coulomb_friction").job());
   std::set<std::string> phases_;
 };
 
@@ -43,7 +44,7 @@ TEST_F(RoundOfAModel, IsTheSameFromMemory) {
   const RoundResult first = round({}, memory);
   EXPECT_TRUE(has_scored());
   ASSERT_TRUE(first.best);
-  EXPECT_EQ(first.models[*first.best].candidate.name, "coulomb_friction");
+  EXPECT_EQ(first.models[*first.best].hypothesis.name, "coulomb_friction");
   const RoundResult again = round({}, memory);
   EXPECT_FALSE(has_scored());
   expect_same(first, again);
@@ -53,7 +54,7 @@ TEST_F(RoundOfAModel, ComputesWhatAnotherDidNotNeed) {
   RoundMemory memory;
   const RoundResult all = round({}, memory);
   RoundOptions options;
-  options.excluded = {all.models[*all.best].candidate};
+  options.excluded = {all.models[*all.best].hypothesis};
   const RoundResult rest = round(options, memory);
   EXPECT_FALSE(has_scored());
   RoundMemory none;
@@ -72,17 +73,17 @@ TEST(RoundTest, RefitsNothingThatIsHopeless) {
       m.values = values;
     }
   RoundMemory memory;
-  const SelectionStep model = declared_model(job);
+  const FittedModel model = declared_model(job);
   const RoundResult found = try_round(model, {}, memory, {});
   EXPECT_FALSE(found.best);
   ASSERT_TRUE(memory.list);
   const double samples = samples_of(residual_series(model.job, model.fit));
   std::size_t hopeless = 0;
   for (std::size_t i = 0; i < memory.refits.size(); ++i) {
-    const ShortlistEntry& entry = memory.list->entries[i];
-    const double least = least_gain(entry.candidate, samples, found.tried);
-    const bool may_pass = entry.promise >= 0.4 * least || entry.gain >= 10.0 * least;
-    EXPECT_EQ(memory.refits[i].has_value(), may_pass) << entry.candidate.name;
+    const Scored& entry = memory.list->entries[i];
+    const double least = least_gain(*entry.hypothesis, samples, found.tried);
+    const bool may_pass = entry.promise >= 0.4 * least || entry.scaled_gain >= 10.0 * least;
+    EXPECT_EQ(memory.refits[i].has_value(), may_pass) << entry.hypothesis->name;
     hopeless += may_pass ? 0 : 1;
   }
   EXPECT_GT(hopeless, 0u);

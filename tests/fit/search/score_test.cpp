@@ -13,11 +13,11 @@
 namespace axisfit {
 namespace {
 
-/// Of every candidate the best setting.
-std::vector<Score> best_settings(const ScoreTest& test) {
-  std::vector<Score> list;
-  for (const Score& score : test.scores) {
-    if (std::ranges::find(list, score.candidate, &Score::candidate) == list.end())
+/// Of every hypothesis the best setting.
+std::vector<Scored> best_settings(const ScoreTest& test) {
+  std::vector<Scored> list;
+  for (const Scored& score : test.scores) {
+    if (std::ranges::find(list, score.hypothesis, &Scored::hypothesis) == list.end())
       list.push_back(score);
   }
   return list;
@@ -38,15 +38,15 @@ TEST_P(ScoreOf, TheTrueEffectIsAmongTheTwoBest) {
   const auto list = best_settings(test);
   ASSERT_GE(list.size(), 2u);
   std::size_t place = 0;
-  while (place < list.size() && test.candidates[list[place].candidate].name != secret.name) ++place;
-  ASSERT_LT(place, 2u) << secret.name << " behind " << test.candidates[list[0].candidate].name;
-  const Score& score = list[place];
+  while (place < list.size() && list[place].hypothesis->name != secret.name) ++place;
+  ASSERT_LT(place, 2u) << secret.name << " behind " << list[0].hypothesis->name;
+  const Scored& score = list[place];
   std::cout << "explains " << score.gain << " of " << test.sum_of_squares;
   double wanted = 0.0, found = 0.0;
   for (std::size_t k = 0; k < secret.strengths.size(); ++k) {
     const double neutral = secret.neutral(k);
     wanted = std::hypot(wanted, secret.strengths[k].second - neutral);
-    found = std::hypot(found, score.strengths[k] - neutral);
+    found = std::hypot(found, score.own.strengths[k] - neutral);
   }
   std::cout << ", strength " << found << " of " << wanted << "\n";
   if (!secret.linear) return;
@@ -86,8 +86,8 @@ TEST(ScoreTestOf, ACleanRecordingIsChance) {
     const ScoreTest test = score(job);
     ASSERT_TRUE(test.usable);
     const auto list = best_settings(test);
-    std::cout << test.candidates[list[0].candidate].name << " " << list[0].gain << " of "
-              << test.scores.size() << "\n";
+    std::cout << list[0].hypothesis->name << " " << list[0].gain << " of " << test.scores.size()
+              << "\n";
     EXPECT_LT(list[0].gain, 25.0);
     const double n = static_cast<double>(2 * job.recordings[0].times.size());
     EXPECT_NEAR(test.sum_of_squares, n, 0.15 * n);
@@ -104,10 +104,10 @@ TEST(ScoreTestOf, APeriodicForceFindsItsPeriod) {
     const ScoreTest test = score(two_recordings(truth, slide(), {"M", "B_a"}));
     ASSERT_TRUE(test.usable);
     const auto list = best_settings(test);
-    ASSERT_EQ(test.candidates[list[0].candidate].name, "periodic_force") << period;
-    std::cout << "period " << period << " found " << list[0].shapes[0] << " amplitude "
-              << std::hypot(list[0].strengths[0], list[0].strengths[1]) << "\n";
-    EXPECT_NEAR(list[0].shapes[0], period, 0.02 * period);
+    ASSERT_EQ(list[0].hypothesis->name, "periodic_force") << period;
+    std::cout << "period " << period << " found " << list[0].own.shapes[0] << " amplitude "
+              << std::hypot(list[0].own.strengths[0], list[0].own.strengths[1]) << "\n";
+    EXPECT_NEAR(list[0].own.shapes[0], period, 0.02 * period);
   }
 }
 
@@ -120,9 +120,9 @@ TEST(ScoreTestOf, TheScoresDoNotDependOnTheNumberOfThreads) {
   const ScoreTest two = score_test(job, values, 30.0);
   ASSERT_EQ(one.scores.size(), two.scores.size());
   for (std::size_t i = 0; i < one.scores.size(); ++i) {
-    EXPECT_EQ(one.scores[i].candidate, two.scores[i].candidate);
+    EXPECT_EQ(one.scores[i].hypothesis->name, two.scores[i].hypothesis->name);
     EXPECT_EQ(one.scores[i].gain, two.scores[i].gain);
-    EXPECT_EQ(one.scores[i].strengths, two.scores[i].strengths);
+    EXPECT_EQ(one.scores[i].own.strengths, two.scores[i].own.strengths);
   }
 }
 
@@ -131,9 +131,8 @@ TEST(ScoreTestOf, ADuplicateOfAFreeParameterGainsNothing) {
   Model<double> truth = slide();
   add_effect<AddedMass>(truth).dM = 1.0;
   const ScoreTest test = score(two_recordings(truth, slide(), {"M", "B_a"}));
-  const auto added = std::ranges::find_if(test.scores, [&](const Score& one) {
-    return test.candidates[one.candidate].name == "added_mass";
-  });
+  const auto added = std::ranges::find_if(
+      test.scores, [&](const Scored& one) { return one.hypothesis->name == "added_mass"; });
   ASSERT_NE(added, test.scores.end());
   EXPECT_EQ(added->gain, 0.0);
 }

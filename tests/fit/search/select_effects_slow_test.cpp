@@ -39,7 +39,7 @@ TEST(SelectEffectsOnTheSlide, AddsNoMoreThanIsAllowed) {
   hidden_effect_named("coulomb_friction").put_into(truth);
   hidden_effect_named("added_mass").put_into(truth);
   const Job job = two_recordings(truth, slide(), {"B_a"});
-  SelectionOptions options;
+  SearchOptions options;
   options.max_effects = 1;
   EXPECT_LE(accepted(select_effects(job, estimate(job), options)).size(), 1u);
 }

@@ -50,18 +50,18 @@ TEST_P(SelectEffectsTwin, IsLeftUndecided) {
   EffectSelection selection = close(job);
   EXPECT_EQ(undecided(selection), (Names{secret.name, secret.twin}));
   EXPECT_EQ(selection.verdict.kind, SelectionVerdict::Kind::undecided);
-  for (const EffectTrial& trial : selection.effects)
-    if (trial.decision == Decision::undecided) {
+  for (const Outcome& trial : selection.effects)
+    if (trial.decision() == Decision::undecided) {
       EXPECT_EQ(trial.reason, Reason::explains_equally);
-      EXPECT_EQ(trial.other, trial.candidate.name == secret.name ? secret.twin : secret.name);
+      EXPECT_EQ(trial.other, trial.hypothesis.name == secret.name ? secret.twin : secret.name);
     }
   EXPECT_EQ(accepted(selection), Names{});
   EXPECT_TRUE(selection.verdict.accepted.empty());
   EXPECT_TRUE(selection.explained);
-  ASSERT_EQ(selection.rivals.size(), 1u);
-  EXPECT_EQ((Names{selection.rivals[0].chosen, selection.rivals[0].rival}),
+  ASSERT_EQ(selection.substitutions.size(), 1u);
+  EXPECT_EQ((Names{selection.substitutions[0].chosen, selection.substitutions[0].rival}),
             (Names{secret.name, secret.twin}));
-  const Discrimination advice = discriminate(selection, selection.rivals[0], true);
+  const Discrimination advice = discriminate(selection, selection.substitutions[0], true);
   EXPECT_EQ((Names{advice.chosen, advice.rival}), (Names{secret.name, secret.twin}));
   EXPECT_EQ(advice.signal.has_value(), advice.size >= 0.1);
   // One of them is in the model, for without either the other estimates would pay for it.
@@ -70,7 +70,7 @@ TEST_P(SelectEffectsTwin, IsLeftUndecided) {
   EXPECT_TRUE(trial_of(selection, advice.chosen)->in_model);
   EXPECT_FALSE(trial_of(selection, advice.rival)->in_model);
   // And they hold the truth, whichever it is.
-  const SelectionStep& last = selection.result;
+  const FittedModel& last = selection.result;
   const auto shifts = rival_errors(last.job, last.fit.parameters, rival_models(selection));
   Model<double> declared = secret.declared();
   for (std::size_t i = 0; i < shifts.size(); ++i)
@@ -97,14 +97,14 @@ TEST(SelectEffects, AddsOneOfTwoClocksThatMayBeOffAndNamesTheOther) {
   EXPECT_EQ(accepted(selection), Names{"dead_time"});
   EXPECT_EQ(undecided(selection), Names{});
   EXPECT_TRUE(selection.explained);
-  ASSERT_EQ(selection.rivals.size(), 1u);
-  EXPECT_EQ(selection.rivals[0].chosen, "dead_time");
-  EXPECT_EQ(selection.rivals[0].rival, "velocity.delay");
+  ASSERT_EQ(selection.substitutions.size(), 1u);
+  EXPECT_EQ(selection.substitutions[0].chosen, "dead_time");
+  EXPECT_EQ(selection.substitutions[0].rival, "velocity.delay");
   const auto rival = std::ranges::find(selection.effects, "velocity.delay",
-                                       [](const EffectTrial& t) { return t.candidate.name; });
+                                       [](const Outcome& t) { return t.hypothesis.name; });
   ASSERT_NE(rival, selection.effects.end());
-  EXPECT_EQ(rival->decision, Decision::rejected);
-  EXPECT_EQ(rival->reason, Reason::explains_equally);
+  EXPECT_EQ(rival->decision(), Decision::rejected);
+  EXPECT_EQ(rival->reason, Reason::is_equal_delay);
   EXPECT_EQ(rival->other, "dead_time");
   expect_found(selection, "T_d", 4e-3);
 }
@@ -132,7 +132,7 @@ TEST(SelectEffects, FindsEffectsForAFitInWindows) {
   EXPECT_TRUE(selection.explained);
   ASSERT_EQ(selection.models.size(), 2u);
   EXPECT_EQ(values_of(selection.models.front().fit), values_of(first));
-  for (const SelectionStep& model : selection.models) {
+  for (const FittedModel& model : selection.models) {
     EXPECT_EQ(model.job.options.criterion, job.options.criterion);
     EXPECT_TRUE(model.job.options.is_continued());
   }
@@ -158,7 +158,7 @@ TEST(SelectEffects, SeesWhatAHorizonThatWasChosenHides) {
   // With the effect another horizon may be best: all models are fitted by that.
   ASSERT_TRUE(selection.horizon);
   ASSERT_EQ(selection.models.size(), 2u);
-  for (const SelectionStep& model : selection.models) {
+  for (const FittedModel& model : selection.models) {
     EXPECT_EQ(model.job.options.criterion, selection.horizon->best().criterion);
     EXPECT_TRUE(model.job.choose_criterion);
   }
@@ -188,7 +188,7 @@ TEST(SelectEffects, FitsAllSamplesInWindowsWhereBlocksWereHeldOut) {
   const EffectSelection selection = select_effects(job, estimate(job));
   ASSERT_TRUE(selection.held_out_blocks);
   ASSERT_EQ(selection.models.size(), 2u);
-  for (const SelectionStep& model : selection.models)
+  for (const FittedModel& model : selection.models)
     EXPECT_FALSE(model.job.recordings[0].held_out.empty());
   EXPECT_TRUE(selection.result.job.recordings[0].held_out.empty());
   EXPECT_GT(selection.result.fit.degrees_of_freedom,
@@ -196,7 +196,7 @@ TEST(SelectEffects, FitsAllSamplesInWindowsWhereBlocksWereHeldOut) {
   EXPECT_GT(selection.verdict.validate_percent, 10.0);
 }
 
-// The gate, and not only the size of the residual, keeps effects out.
+// The acceptance test, and not only the size of the residual, keeps effects out.
 TEST(SelectEffects, AddsNothingForNoiseThatIsLargerThanStated) {
   Job job = two_recordings(slide(), slide(), {"M", "B_a"});
   for (Recording& r : job.recordings)
@@ -207,9 +207,9 @@ TEST(SelectEffects, AddsNothingForNoiseThatIsLargerThanStated) {
   EXPECT_EQ(undecided(selection), Names{});
   EXPECT_FALSE(selection.explained);
   EXPECT_FALSE(selection.effects.empty());
-  for (const EffectTrial& trial : selection.effects) {
-    EXPECT_EQ(trial.reason, Reason::failed_test) << trial.candidate.name;
-    EXPECT_TRUE(trial.rejection.has_value()) << trial.candidate.name;
+  for (const Outcome& trial : selection.effects) {
+    EXPECT_EQ(trial.reason, Reason::failed_test) << trial.hypothesis.name;
+    EXPECT_TRUE(trial.rejection.has_value()) << trial.hypothesis.name;
   }
 }
 
@@ -247,7 +247,7 @@ TEST(SelectEffects, HoldsOutBlocksWhereThereIsNothingToValidate) {
   ASSERT_EQ(selection.result.fit.parameters.size(), fit.parameters.size());
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     const ParameterResult &a = fit.parameters[i], &b = selection.result.fit.parameters[i];
-    EXPECT_NEAR(a.value, b.value, 0.05 * a.uncertainty.standard_error) << a.name;
+    EXPECT_NEAR(a.value, b.value, 0.05 * a.uncertainty.standard_error) << name_of(a.id);
     EXPECT_NEAR(a.uncertainty.standard_error, b.uncertainty.standard_error,
                 0.01 * a.uncertainty.standard_error);
   }
@@ -302,7 +302,7 @@ TEST(SelectEffects, NamesWhatMayBeBehindASimpleEffectThatLeavesMoreThanNoise) {
 
 TEST(SelectEffects, AddsNoMoreThanIsAllowed) {
   const Job job = hidden_effect_named("coulomb_friction").job();
-  SelectionOptions options;
+  SearchOptions options;
   options.max_effects = 0;
   const EffectSelection selection = select_effects(job, estimate(job), options);
   EXPECT_EQ(accepted(selection), Names{});
@@ -339,12 +339,12 @@ TEST(SelectEffects, IsTheSameForAnyNumberOfThreads) {
   job.options.threads = 2;
   const EffectSelection two = select_effects(job, fit);
   EXPECT_EQ(one.verdict, two.verdict);
-  EXPECT_EQ(one.rivals.size(), two.rivals.size());
+  EXPECT_EQ(one.substitutions.size(), two.substitutions.size());
   ASSERT_EQ(one.effects.size(), two.effects.size());
   for (std::size_t i = 0; i < one.effects.size(); ++i) {
-    const EffectTrial &a = one.effects[i], &b = two.effects[i];
-    EXPECT_EQ(a.candidate.name, b.candidate.name);
-    EXPECT_EQ(a.decision, b.decision);
+    const Outcome &a = one.effects[i], &b = two.effects[i];
+    EXPECT_EQ(a.hypothesis.name, b.hypothesis.name);
+    EXPECT_EQ(a.decision(), b.decision());
     EXPECT_EQ(a.reason, b.reason);
     EXPECT_EQ(a.rejection, b.rejection);
     EXPECT_EQ(a.other, b.other);
@@ -402,7 +402,7 @@ Job two_hidden_effects(double friction = 5.0, const std::string& of_instrument =
 }
 
 EffectSelection select_one_effect(const Job& job) {
-  SelectionOptions options;
+  SearchOptions options;
   options.max_effects = 1;
   return select_effects(job, estimate(job), options);
 }
@@ -413,7 +413,7 @@ TEST(SelectEffects, NamesNothingWhereMostRemains) {
   std::erase_if(job.recordings, [](const Recording& r) { return r.role == Role::validate; });
   const EffectSelection one = select_one_effect(job);
   EXPECT_TRUE(accepted(one).empty());
-  const EffectTrial* friction = trial_of(one, "coulomb_friction");
+  const Outcome* friction = trial_of(one, "coulomb_friction");
   ASSERT_NE(friction, nullptr);
   ASSERT_TRUE(friction->rejection);
   EXPECT_EQ(friction->rejection->test, Rejection::Test::share);
@@ -426,7 +426,7 @@ TEST(SelectEffects, NamesNothingWhereMostRemains) {
 TEST(SelectEffects, NamesNoInstrumentWhereMostRemains) {
   const EffectSelection one = select_one_effect(two_hidden_effects(1.6, "acceleration.bias"));
   EXPECT_TRUE(accepted(one).empty());
-  const EffectTrial* bias = trial_of(one, "acceleration.bias");
+  const Outcome* bias = trial_of(one, "acceleration.bias");
   ASSERT_NE(bias, nullptr);
   ASSERT_TRUE(bias->rejection);
   EXPECT_EQ(bias->rejection->test, Rejection::Test::share);

@@ -16,8 +16,8 @@ namespace axisfit {
 
 inline std::set<std::string> names(const EffectSelection& selection, Decision decision) {
   std::set<std::string> list;
-  for (const EffectTrial& trial : selection.effects)
-    if (trial.decision == decision) list.insert(trial.candidate.name);
+  for (const Outcome& trial : selection.effects)
+    if (trial.decision() == decision) list.insert(trial.hypothesis.name);
   return list;
 }
 inline std::set<std::string> accepted(const EffectSelection& selection) {
@@ -28,9 +28,9 @@ inline std::set<std::string> undecided(const EffectSelection& selection) {
 }
 
 /// Its last trial; null where it had none.
-inline const EffectTrial* trial_of(const EffectSelection& selection, std::string_view name) {
-  const auto found = std::ranges::find(selection.effects, name, [](const EffectTrial& t) {
-    return std::string_view(t.candidate.name);
+inline const Outcome* trial_of(const EffectSelection& selection, std::string_view name) {
+  const auto found = std::ranges::find(selection.effects, name, [](const Outcome& t) {
+    return std::string_view(t.hypothesis.name);
   });
   return found == selection.effects.end() ? nullptr : &*found;
 }
@@ -41,8 +41,8 @@ inline EffectSelection close(const Job& job) {
   EXPECT_TRUE(fit.usable) << fit.message;
   EffectSelection selection = select_effects(job, fit);
   std::cout << "reduced chi-square " << fit.reduced_chi_square << "\n";
-  for (const EffectTrial& t : selection.effects)
-    std::cout << "  " << t.candidate.name << ": decision " << static_cast<int>(t.decision)
+  for (const Outcome& t : selection.effects)
+    std::cout << "  " << t.hypothesis.name << ": decision " << static_cast<int>(t.decision())
               << ", reason " << static_cast<int>(t.reason) << " " << t.other
               << (t.rejection
                       ? ", failed test " + std::to_string(static_cast<int>(t.rejection->test))

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <set>
 
-#include "fit/search/extended_model.h"
+#include "fit/criterion/gains.h"
+#include "fit/search/tried.h"
 #include "tests/fit/example.h"
 
 namespace axisfit {
@@ -13,8 +14,8 @@ namespace {
 
 std::set<std::string> names_in(const Shortlist& list, bool with_second = true) {
   std::set<std::string> names;
-  for (const ShortlistEntry& entry : list.entries)
-    if (with_second || !entry.is_second) names.insert(entry.candidate.name);
+  for (const Scored& entry : list.entries)
+    if (with_second || !entry.is_second) names.insert(entry.hypothesis->name);
   return names;
 }
 
@@ -29,16 +30,16 @@ const std::vector<double> kValues{20.0, 30.0};
 TEST(Shortlist, HasTheBestOfEachGainAndNothingThatIsChance) {
   const Job job = with_friction(0.5);
   const auto gains = score_gains(job);
-  const Shortlist list = shortlist(job, kValues, gains, false, 6);
+  const Shortlist list = shortlist(job, kValues, gains, false);
   const std::set<std::string> names = names_in(list);
   EXPECT_TRUE(names.contains("coulomb_friction"));
-  for (const ShortlistEntry& entry : list.entries) EXPECT_GE(entry.score.gain, 6.0);
+  for (const Scored& entry : list.entries) EXPECT_GE(entry.gain, 6.0);
 }
 
 // Stribeck and Dahl friction have Coulomb friction as a limit, and a parameter more.
 TEST(Shortlist, HasWhatASimplerEffectGainsAsWellAsSecond) {
   const Job job = with_friction(3.0);
-  const Shortlist list = shortlist(job, kValues, score_gains(job), false, 6);
+  const Shortlist list = shortlist(job, kValues, score_gains(job), false);
   const std::set<std::string> first = names_in(list, false);
   EXPECT_TRUE(first.contains("coulomb_friction"));
   EXPECT_TRUE(names_in(list).contains("dahl_friction"));
@@ -52,12 +53,11 @@ TEST(Shortlist, PromisesWhatTheAcceptanceTestFinds) {
   job.options.criterion = Tracking{30.0};
   const FitResult fit = estimate(job);
   ASSERT_TRUE(fit.usable);
-  const Shortlist list = shortlist(job, values_of(fit), score_gains(job), false, 6);
+  const Shortlist list = shortlist(job, values_of(fit), score_gains(job), false);
   const auto entry = std::ranges::find_if(
-      list.entries, [](const ShortlistEntry& e) { return e.candidate.name == "coulomb_friction"; });
+      list.entries, [](const Scored& e) { return e.hypothesis->name == "coulomb_friction"; });
   ASSERT_NE(entry, list.entries.end());
-  const ExtendedModel refitted = fit_extended_model(
-      job, entry->candidate, entry->score.values, entry->score.strengths, entry->score.shapes, {});
+  const Tried refitted = try_hypothesis(job, *entry);
   const double found = improvement(residual_series(job, fit), refitted.residuals).fit_gain;
   EXPECT_NEAR(entry->promise, found, 0.1 * found);
 }
@@ -65,11 +65,15 @@ TEST(Shortlist, PromisesWhatTheAcceptanceTestFinds) {
 // Beyond the first three, and but for delays.
 TEST(Shortlist, LeavesOutWhatGainsLessThanHalfOfTheBest) {
   const Job job = with_friction(3.0);
-  const Shortlist list = shortlist(job, kValues, {score_gains(job).front()}, false, 1000);
-  const double best = list.entries.front().gain;
+  SearchOptions options;
+  options.shortlist.length = 1000;
+  const Shortlist list =
+      shortlist(job, kValues, {score_gains(job).front()}, false, {.options = options});
+  const double best = list.entries.front().scaled_gain;
   for (std::size_t i = 3; i < list.entries.size(); ++i)
-    EXPECT_TRUE(list.entries[i].gain >= 0.5 * best || list.entries[i].candidate.is_timing)
-        << list.entries[i].candidate.name;
+    EXPECT_TRUE(list.entries[i].scaled_gain >= 0.5 * best ||
+                list.entries[i].hypothesis->kind == HypothesisKind::clock)
+        << list.entries[i].hypothesis->name;
 }
 
 }  // namespace

@@ -307,17 +307,5 @@ TEST(StrongObserver, ToAnExactVelocityFindsTheTruth) {
   EXPECT_LT(std::abs(friction), 1e-2);
 }
 
-TEST(ObserverForRecording, TakesVelocityThenPosition) {
-  Recording recording;
-  EXPECT_FALSE(observer_for(recording, 100.0).active());
-  const auto add = [&](Signal signal) { recording.measurements.emplace_back().signal = signal; };
-  add(Signal::position);
-  EXPECT_EQ(observer_for(recording, 100.0).acceleration, 1e4);
-  add(Signal::velocity);
-  EXPECT_EQ(observer_for(recording, 100.0).velocity, 100.0);
-  EXPECT_EQ(observer_for(recording, 100.0).position, 100.0);
-  EXPECT_FALSE(observer_for(recording, 0.0).active());
-}
-
 }  // namespace
 }  // namespace axisfit

@@ -26,7 +26,7 @@ TEST(AxisUncertainty, HasDefaults) {
       "{name: B_a, scale: linear, error: 3}]}");
   ASSERT_TRUE(known);
   ASSERT_EQ(known->quantities.size(), 2u);
-  EXPECT_EQ(known->quantities[0].quantity, find_quantity("M")->index);
+  EXPECT_EQ(known->quantities[0].quantity, quantity_index("M"));
   EXPECT_TRUE(known->quantities[0].logarithmic);
   EXPECT_EQ(known->quantities[0].error, 0.02);
   EXPECT_EQ(known->quantities[0].scatter, 0.0);

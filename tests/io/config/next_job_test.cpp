@@ -69,7 +69,7 @@ TEST_F(NextJobTest, FreesWhatTheEffectsBrought) {
   reached.free.push_back(friction);
   Rig rig = file.rig;
   rig.model = reached.model;
-  *members(rig.model)[find_quantity("M")->index] = 4.5;
+  *members(rig.model)[quantity_index("M")] = 4.5;
   *members(rig.model)[friction.quantity] = 6.0;
   folder_.write("fitted.yaml", format_axis_file(rig, ""));
   const std::string text = next_job_text(file, reached, folder_.path("job.yaml"), "",

@@ -69,8 +69,7 @@ TEST_F(InputTest, AForceActsAsItIs) {
   EXPECT_EQ(input->values[3], 3000.0);
   EXPECT_EQ(recording_.command.hold, Hold::linear);
   ASSERT_EQ(recording_.overrides.size(), 1u);
-  EXPECT_EQ(recording_.overrides[0],
-            (std::pair<std::size_t, double>(find_quantity("K_f")->index, 1.0)));
+  EXPECT_EQ(recording_.overrides[0], (std::pair<std::size_t, double>(quantity_index("K_f"), 1.0)));
 }
 
 TEST_F(InputTest, ADutyIsOfASupply) {

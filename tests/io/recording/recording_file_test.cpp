@@ -2,114 +2,34 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <functional>
-#include <optional>
 #include <string>
-#include <vector>
+#include <variant>
 
 #include "tests/apps/files.h"
+#include "tests/io/recording/three_rows.h"
 
 namespace axisfit {
 namespace {
 
-/// A recording of three rows with two columns of one name, one of numbers as names, and one
-/// that cannot be used.
-RecordingFile recording() {
-  return RecordingFile(Table{"a.csv",
-                             {{"time", {0.0, 1.0, 2.0}},
-                              {"speed", {100.0, 200.0, -300.0}},
-                              {"twice", {1.0, 1.0, 1.0}},
-                              {"twice", {2.0, 2.0, 2.0}},
-                              {"", {3.0, 3.0, 3.0}},
-                              {"7", {4.0, 4.0, 4.0}},
-                              {"text", {}, {}, {}, "has 'abc' in line 2"},
-                              {"huge", {1.0, 1e31, 1.0}}},
-                             {2, 3, 4}});
+TEST(RecordingFile, FindsAColumnByItsNameOrElseItsNumber) {
+  const RecordingFile file = recording();
+  const auto first = [&](const char* name) {
+    const auto found = file.column(name);
+    return std::get<const Column*>(found)->values.front();
+  };
+  EXPECT_EQ(first("speed"), 100.0);
+  EXPECT_EQ(first("2"), 100.0);
+  EXPECT_EQ(first("7"), 4.0);
+  EXPECT_EQ(first("5"), 3.0);
 }
 
-/// What `read` makes of a YAML text, and what it says of it.
-struct Outcome {
-  std::optional<std::vector<double>> values;
-  std::string said;
-};
-
-Outcome outcome(const std::string& yaml,
-                const std::function<std::optional<std::vector<double>>(const ConfigNode&)>& read) {
-  Diagnostics diagnostics;
-  Outcome found;
-  found.values = read(*ConfigNode::parse(yaml, "job.yaml", diagnostics));
-  for (const Diagnostic& d : diagnostics.sorted())
-    found.said += (found.said.empty() ? "" : "\n") + d.message;
-  return found;
-}
-
-Outcome column(const std::string& yaml, std::string_view unit = "m/s") {
-  return outcome(yaml,
-                 [&](const ConfigNode& node) { return read_column(recording(), node, unit); });
-}
-
-TEST(RecordingFile, ConvertsAColumn) {
-  EXPECT_EQ(column("{column: speed, unit: mm/s}").values, (std::vector<double>{0.1, 0.2, -0.3}));
-  EXPECT_EQ(column("{column: speed, unit: mm/s, sign: -1, factor: 2}").values,
-            (std::vector<double>{-0.2, -0.4, 0.6}));
-  EXPECT_EQ(column("{column: 2, unit: m/s}").values, (std::vector<double>{100.0, 200.0, -300.0}));
-}
-
-TEST(RecordingFile, ANameComesBeforeANumber) {
-  EXPECT_EQ(column("{column: 7, unit: m/s}").values, (std::vector<double>{4.0, 4.0, 4.0}));
-  EXPECT_EQ(column("{column: 5, unit: m/s}").values, (std::vector<double>{3.0, 3.0, 3.0}));
-  EXPECT_FALSE(column("{column: 9, unit: m/s}").values);
-}
-
-TEST(RecordingFile, SaysWhyAColumnCannotBeUsed) {
-  EXPECT_EQ(column("{column: sped, unit: m/s}").said,
+TEST(RecordingFile, SaysWhatThereIsInsteadOfAColumn) {
+  const RecordingFile file = recording();
+  EXPECT_EQ(std::get<std::string>(file.column("sped")),
             "no column 'sped' in a.csv; did you mean 'speed'? It has time, speed, twice, twice, 7, "
             "text, huge");
-  EXPECT_EQ(column("{column: twice, unit: m/s}").said,
-            "columns 3 and 4 of a.csv are both named 'twice': give the number of the column "
-            "instead of its name");
-  EXPECT_EQ(column("{column: text, unit: m/s}").said, "'text' in a.csv has 'abc' in line 2");
-  EXPECT_EQ(column("{column: huge, unit: m/s}").said,
-            "a.csv:3: 'huge' has the impossible value 1e+31: remove the row");
-  EXPECT_EQ(column("{column: speed, unit: m/s, factor: 0}").said,
-            "factor must not be zero: it would erase the column");
-  EXPECT_NE(column("{column: speed, unit: kg}").said.find("'kg' cannot be converted"),
-            std::string::npos);
-}
-
-TEST(RecordingFile, ColumnsWithoutNamesHaveNumbers) {
-  const RecordingFile plain(Table{"b.csv", {{"", {1.0}}, {"", {2.0}}}, {}});
-  const Outcome none = outcome("{column: x, unit: m/s}", [&](const ConfigNode& node) {
-    return read_column(plain, node, "m/s");
-  });
-  EXPECT_EQ(none.said,
-            "no column 'x' in b.csv, whose columns have no names: give a number from 1 to 2");
-}
-
-TEST(RecordingFile, CountersAreMadeContinuousOnlyWhereTheyCanBe) {
-  EXPECT_EQ(column("{column: speed, unit: m/s, wraps_after: 600}").values,
-            (std::vector<double>{100.0, 200.0, 300.0}));
-  EXPECT_EQ(column("{column: speed, unit: m/s, wraps_after: 400}").said,
-            "a.csv:3: 200 is more than wraps_after beyond the least value: correct or remove it");
-  EXPECT_EQ(column("{column: speed, unit: m/s, signed_bits: 16}").said,
-            "a.csv:4: -300 is no integer of so many bits without a sign: correct or remove "
-            "signed_bits");
-}
-
-TEST(RecordingFile, TimesIncrease) {
-  const auto times = [](std::vector<double> values) {
-    const RecordingFile file(Table{"a.csv", {{"t", std::move(values)}}, {2, 3, 4}});
-    return outcome("{column: t, unit: s}",
-                   [&](const ConfigNode& node) { return read_times(file, node); });
-  };
-  EXPECT_TRUE(times({0.0, NAN, 1e-9 + 1e-15}).values);
-  EXPECT_EQ(times({0.0, 1.0, 1.0}).said,
-            "a.csv:4: time 1 s does not increase from 1 s: samples must be in order of time, "
-            "without repeats");
-  EXPECT_EQ(times({0.0, 1.0, 1.0 + 5e-10}).said,
-            "a.csv:4: 5e-10 s after the sample before, less than the 1e-09 s that a simulation can "
-            "step: check the unit of time");
+  EXPECT_TRUE(std::holds_alternative<std::string>(file.column("9")));
+  EXPECT_EQ(file.where(1), "a.csv:3");
 }
 
 TEST(RecordingFile, AColumnIsCalledByItsNameWhereThatIsItsOwn) {

@@ -9,16 +9,16 @@ namespace axisfit {
 namespace {
 
 TEST(HorizonText, NamesTheCriterion) {
-  EXPECT_EQ(horizon_name({100.0, 0.0, 0.0}), "one step ahead, observer gain 100 1/s");
-  EXPECT_EQ(horizon_name({0.0, 0.125, 0.0}), "windows of 0.125 s");
-  EXPECT_EQ(horizon_name({}), "whole recordings");
+  EXPECT_EQ(horizon_name(Tracking{100.0}), "one step ahead, observer gain 100 1/s");
+  EXPECT_EQ(horizon_name(Windows{0.125}), "windows of 0.125 s");
+  EXPECT_EQ(horizon_name(FreeRun{}), "whole recordings");
 }
 
 TEST(HorizonText, SetsWhatWasTriedSideBySide) {
   RunResult run_result;
   EXPECT_EQ(horizon_text(run_result), "");
-  run_result.horizon =
-      HorizonChoice{4, 1.25, {{100.0, 0.0, 0.5}, {0.0, 0.25, 0.04321}, {0.0, 0.0, INFINITY}}, 1};
+  run_result.horizon = HorizonChoice{
+      4, 1.25, {{Tracking{100.0}, 0.5}, {Windows{0.25}, 0.04321}, {FreeRun{}, INFINITY}}, 1};
   const std::string text = horizon_text(run_result);
   EXPECT_EQ(on_one_line(text),
             "Horizon of the fit, chosen on 4 stretches of up to 1.25 s error one step ahead, "

@@ -79,7 +79,7 @@ TEST(RecordingsTextTest, AnInputMayBeAReferenceOrAForce) {
             std::string::npos);
   job.recordings[0].command.meaning = Meaning::command;
   job.recordings[0].command_sigma = 0.05;
-  job.recordings[0].overrides = {{find_quantity("K_f")->index, 1.0}};
+  job.recordings[0].overrides = {{quantity_index("K_f"), 1.0}};
   EXPECT_NE(on_one_line(recordings_text(job, checks())).find("drive_force -4 3 N 0.05 4 switches"),
             std::string::npos)
       << recordings_text(job, checks());

@@ -19,7 +19,8 @@ TEST(ReportTextTest, ReportHasEveryFreeParameterAndTheVerdict) {
                            "judge", "validate", "compare", "motor_current", "151 samples",
                            "* estimated from differences of the samples"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
-  EXPECT_NE(text.find("\n" + paragraph(grade_text(fit.run_result.grade, fit.run_result.first))),
+  EXPECT_NE(text.find("\n" + paragraph(grade_text(fit.run_result.baseline, fit.run_result.grade,
+                                                  fit.run_result.first))),
             std::string::npos);
   EXPECT_EQ(text.find("nan"), std::string::npos);
   std::istringstream lines(text);
@@ -40,8 +41,8 @@ TEST(ReportTextTest, LongNamesAndNumbersFitInTheWidth) {
                   "s/m}, coulomb_friction: {F_c: 1 N}}\nfree:\n"
                   "  directional_friction.dB_a: {}\n  coulomb_friction.F_c: {}\n"
                   "  quadratic_drag.c: {initial: 1 N s^2/m^2}\n");
-  RunResult run_result =
-      run(read_job_file(folder.write("job.yaml", text)).job, {.profiles = {"V_L"}});
+  RunResult run_result = run(read_job_file(folder.write("job.yaml", text)).job,
+                             {.profiles = {{quantity_index("V_L")}}});
   expect_narrow(
       forecast_text(run_result.job(), forecast(run_result.job(), draw_start(run_result.job(), 0))));
   for (ParameterResult& p : run_result.first.parameters) {

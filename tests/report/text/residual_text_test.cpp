@@ -99,18 +99,20 @@ TEST(ResidualTextTest, SuspectsHaveTheirEstimates) {
   const Job job = rubbing_file().job;
   Diagnosis diagnosis;
   diagnosis.forces.resize(2);
-  EXPECT_EQ(suspected_effects_text(job, diagnosis), "");
-  SuspectedEffect& suspect = diagnosis.suspected_effects.emplace_back();
-  suspect.candidate.name = "coulomb_friction";
-  suspect.candidate.acts_on = "friction";
-  suspect.candidate.strengths = {find_quantity("coulomb_friction.F_c")->index};
-  suspect.strengths = {6.0412};
-  suspect.fraction = 0.875;
-  EXPECT_EQ(on_one_line(suspected_effects_text(job, diagnosis)),
+  EXPECT_EQ(suspected_effects_text(job, diagnosis, {}), "");
+  Hypothesis friction;
+  friction.name = "coulomb_friction";
+  friction.acts_on = "friction";
+  friction.strengths = {quantity_index("coulomb_friction.F_c")};
+  std::vector<Scored> suspects(1);
+  suspects[0].hypothesis = std::make_shared<const Hypothesis>(friction);
+  suspects[0].own.strengths = {6.0412};
+  suspects[0].fraction = 0.875;
+  EXPECT_EQ(on_one_line(suspected_effects_text(job, diagnosis, suspects)),
             "Suspected effects, from the residual of the tracking simulation acts on explains "
             "estimate coulomb_friction friction 88 % F_c 6.04 N");
   diagnosis.forces[1] = force_of(20.0);
-  const std::string text = on_one_line(suspected_effects_text(job, diagnosis));
+  const std::string text = on_one_line(suspected_effects_text(job, diagnosis, suspects));
   EXPECT_TRUE(text.starts_with(
       "Missing force on the arm rms from noise of drive force cutoff fitted - - - - judged 5 N "
       "0.25 N 25 % 40 Hz Suspected effects"))
@@ -124,11 +126,12 @@ TEST(ResidualTextTest, AMissingTorqueIsNoForce) {
 
 TEST(ResidualTextTest, TheVerdictNamesTheWorstSignalAndItsCause) {
   const Job job = rubbing_file().job;
+  std::vector<Scored> suspects;
   const auto verdict = [&](const Diagnosis& d, bool loop = false) {
-    return on_one_line(residual_verdict(job, d, loop));
+    return on_one_line(residual_verdict(job, d, suspects, loop));
   };
   Diagnosis diagnosis;
-  EXPECT_EQ(residual_verdict(job, diagnosis), "");
+  EXPECT_EQ(residual_verdict(job, diagnosis, suspects), "");
   diagnosis.tests = {test_of(0, 5.0), test_of(1, 12.34)};
   EXPECT_EQ(verdict(diagnosis),
             "Unexplained: up to 12.3 % of the residual, in the velocity of judged. No effect that "
@@ -137,8 +140,10 @@ TEST(ResidualTextTest, TheVerdictNamesTheWorstSignalAndItsCause) {
             "Unexplained: up to 12.3 % of the residual, in the velocity of judged. No effect that "
             "axisfit knows explains it. The declared model does not fit: nothing can be said about "
             "effects yet.");
-  diagnosis.suspected_effects.resize(2);
-  diagnosis.suspected_effects[0].candidate.name = "coulomb_friction";
+  Hypothesis friction;
+  friction.name = "coulomb_friction";
+  suspects.resize(2);
+  suspects[0].hypothesis = std::make_shared<const Hypothesis>(friction);
   EXPECT_EQ(verdict(diagnosis),
             "Unexplained: up to 12.3 % of the residual, in the velocity of judged. Most likely "
             "cause: coulomb_friction. To test the suspected effects, use --close-loop.");
@@ -153,10 +158,10 @@ TEST(ResidualTextTest, TheVerdictOnNoiseSaysOfWhichData) {
   Diagnosis diagnosis;
   diagnosis.explained = true;
   diagnosis.tests = {test_of(0, 0.0)};
-  EXPECT_EQ(on_one_line(residual_verdict(job, diagnosis)),
+  EXPECT_EQ(on_one_line(residual_verdict(job, diagnosis, {})),
             "The residual shows no dependence on motion, position, command or time.");
   diagnosis.tests.push_back(test_of(1, 0.0, {{"time", 0.0625, 0.0}}));
-  EXPECT_EQ(on_one_line(residual_verdict(job, diagnosis)),
+  EXPECT_EQ(on_one_line(residual_verdict(job, diagnosis, {})),
             "Data that were not fitted are also explained down to the noise. A small dependence on "
             "time remains: at most 6.2 % of the mean square.");
 }

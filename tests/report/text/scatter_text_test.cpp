@@ -21,8 +21,9 @@ TEST(ScatterTextTest, NamesTheRecordingWithTheStretches) {
 RunResult scattered() {
   RunResult run_result;
   run_result.baseline = scattering_machine(2, 0.0, 1, 0.1);
-  run_result.first.parameters = {{"M", 12.0, {.determined = true, .standard_error = 0.5}},
-                                 {"B_a", 40.0, {.determined = true, .standard_error = 2.0}}};
+  run_result.first.parameters = {
+      {{quantity_index("M")}, 12.0, {.determined = true, .standard_error = 0.5}},
+      {{quantity_index("B_a")}, 40.0, {.determined = true, .standard_error = 2.0}}};
   Scatter& scatter = run_result.scatter.emplace();
   scatter.groups = {{0, true, 0.0, 0.1}, {1, true, 0.0, 0.1}};
   ParameterScatter mass, damping;

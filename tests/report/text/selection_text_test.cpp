@@ -39,24 +39,24 @@ RunResult searched() {
   return run_result;
 }
 
-EffectTrial trial(const char* name, Decision decision) {
-  EffectTrial t;
-  t.candidate.name = name;
-  t.decision = decision;
-  t.reason = Reason::explains_less;
-  t.other = "another";
-  return t;
+Outcome outcome(const char* name, Reason reason) {
+  Outcome o;
+  o.hypothesis.name = name;
+  o.reason = reason;
+  o.other = "another";
+  return o;
 }
 
 TEST(SelectionTextTest, TellsAcceptedEffectsFirst) {
   RunResult run_result = searched();
-  run_result.selection->effects = {trial("drag", Decision::rejected),
-                                   trial("spring", Decision::undecided),
-                                   trial("friction", Decision::accepted)};
+  run_result.selection->effects = {outcome("drag", Reason::explains_less),
+                                   outcome("spring", Reason::explains_equally),
+                                   outcome("friction", Reason::replicates)};
   const std::string text = on_one_line(selection_text(run_result));
   EXPECT_TRUE(text.starts_with(
-      "Effects tried accepted friction explains less than another undecided spring explains less "
-      "than another rejected drag explains less than another Errors of the free-running "
+      "Effects tried accepted friction explains the residual best of what the recordings to "
+      "validate, fitted by themselves, tell alike undecided spring explains these recordings as "
+      "well as another rejected drag explains less than another Errors of the free-running "
       "simulation, before and after"))
       << text;
   run_result.selection->effects.clear();
@@ -65,7 +65,7 @@ TEST(SelectionTextTest, TellsAcceptedEffectsFirst) {
 
 TEST(SelectionTextTest, TellsWhatWasEstimatedAndWhatOtherRecordingsSayOfIt) {
   RunResult run_result = searched();
-  EffectTrial friction = trial("coulomb_friction", Decision::accepted);
+  Outcome friction = outcome("coulomb_friction", Reason::replicates);
   friction.parameters = {estimated("coulomb_friction.F_c", 6.0412, 0.12)};
   Replication& found = friction.replication.emplace();
   found.parameters = {estimated("coulomb_friction.F_c", 5.5, 0.0)};
@@ -75,7 +75,8 @@ TEST(SelectionTextTest, TellsWhatWasEstimatedAndWhatOtherRecordingsSayOfIt) {
     return text.substr(0, text.find(" Errors of"));
   };
   const std::string head =
-      "Effects tried accepted coulomb_friction F_c = 6.04 +- 0.12 N: explains less than another";
+      "Effects tried accepted coulomb_friction F_c = 6.04 +- 0.12 N: explains the residual best of "
+      "what the recordings to validate, fitted by themselves, tell alike";
   const std::string elsewhere = "; the recordings to validate, fitted by themselves, ";
   EXPECT_EQ(told(), head + elsewhere + "tell otherwise: F_c = 5.5 N");
   found.is_near = true;
@@ -87,15 +88,14 @@ TEST(SelectionTextTest, TellsWhatWasEstimatedAndWhatOtherRecordingsSayOfIt) {
 // Of its coefficients nobody reads a list.
 TEST(SelectionTextTest, ACurveHasTheRangeOfItsCoefficients) {
   RunResult run_result = searched();
-  EffectTrial curve = trial("curve", Decision::accepted);
-  curve.candidate.is_curve = true;
+  Outcome curve = outcome("curve", Reason::replicates);
+  curve.hypothesis.kind = HypothesisKind::curve;
   curve.parameters = {estimated("coulomb_friction.F_c", 2.5, 0.1),
                       estimated("constant_force.F_0", -7.0, 0.1), estimated("F_s", 1.0, 0.1)};
   curve.replication.emplace();
   run_result.selection->effects = {curve};
   EXPECT_NE(on_one_line(selection_text(run_result))
-                .find("accepted curve 3 coefficients from -7 to 2.5 N: explains less than another "
-                      "Errors of"),
+                .find("accepted curve 3 coefficients from -7 to 2.5 N: explains the residual best"),
             std::string::npos)
       << selection_text(run_result);
 }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <initializer_list>
 #include <string>
 #include <utility>
 
@@ -9,15 +10,22 @@
 namespace axisfit {
 namespace {
 
+/// A job with these free parameters, and nothing else.
+Job with_free(std::initializer_list<const char*> names) {
+  Job job;
+  for (const char* name : names) job.free.emplace_back().quantity = quantity_index(name);
+  return job;
+}
+
 TEST(UncertaintyTextTest, StrongCorrelationsOfEitherSignAreNamed) {
+  const Job job = with_free({"M", "B_a", "K_f"});
   FitResult fit;
-  for (const char* name : {"M", "B_a", "K_f"}) fit.parameters.push_back({name, 1.0, {}});
   fit.reduced_chi_square = 1.0;
   fit.correlation = Eigen::Matrix3d{{1.0, 0.96, -0.98}, {0.96, 1.0, 0.94}, {-0.98, 0.94, 1.0}};
-  EXPECT_NE(on_one_line(uncertainty_text({}, fit))
+  EXPECT_NE(on_one_line(uncertainty_text(job, fit))
                 .find("Strongly correlated: M and K_f (-0.98), M and B_a (0.96)."),
             std::string::npos)
-      << uncertainty_text({}, fit);
+      << uncertainty_text(job, fit);
 }
 
 TEST(UncertaintyTextTest, SaysWhatNoiseIsAssumed) {
@@ -39,22 +47,23 @@ TEST(UncertaintyTextTest, SaysWhatNoiseIsAssumed) {
 }
 
 TEST(UncertaintyTextTest, NamesThreeCorrelationsAndCountsTheOthers) {
+  const Job job = with_free({"M", "B_a", "K_f", "F_s"});
   FitResult fit;
-  for (const char* name : {"M", "B_a", "K_f", "F_s"}) fit.parameters.push_back({name, 1.0, {}});
   fit.reduced_chi_square = 1.0;
   fit.correlation = Eigen::MatrixXd::Constant(4, 4, 0.99);
   fit.correlation.diagonal().setOnes();
-  EXPECT_NE(on_one_line(uncertainty_text({}, fit)).find(" (0.99), and 3 more pairs."),
+  EXPECT_NE(on_one_line(uncertainty_text(job, fit)).find(" (0.99), and 3 more pairs."),
             std::string::npos)
-      << uncertainty_text({}, fit);
+      << uncertainty_text(job, fit);
 }
 
 TEST(UncertaintyTextTest, NamesWhatIsKnownOfParametersTogether) {
+  const Job job = with_free({"K_f", "k_g", "M"});
   Identifiability known;
-  EXPECT_EQ(identifiability_text(known), "");
-  known.weak = {{0.1, {{0, 1.0, "K_f", 0.1, true}}, {}}};
-  known.combinations = {{"k_g / M", 34246.0, 120.0}};
-  EXPECT_EQ(identifiability_text(known),
+  EXPECT_EQ(identifiability_text(job, known), "");
+  known.weak = {{0.1, {{0, 1.0, 0.1, true}}, {}}};
+  known.combinations = {{1, 2, -1.0, 34246.0, 120.0}};
+  EXPECT_EQ(identifiability_text(job, known),
             "  K_f hardly affects these recordings.\n  k_g / M = 34246 +- 1.2e+02\n");
 }
 

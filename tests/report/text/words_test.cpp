@@ -98,14 +98,14 @@ TEST(WordsTest, OfWhatASearchComesTo) {
                        .undecided = {"spring", "position.gain"},
                        .validate_percent = 99.96};
   selection.explained = true;
-  selection.rivals = {{"spring", "position.gain", {}, {}}};
+  selection.substitutions = {{"spring", "position.gain", {}, {}}};
   for (const char* added : {"", "added_mass", "spring", "drive_lag"})
     selection.models.push_back({added, {}, {}});
   EXPECT_EQ(verdict_text(selection),
             "The model lacked added_mass, drive_lag. Undecided: spring or position.gain; these "
             "recordings do not tell which. With added_mass, spring, drive_lag, the validation "
             "error falls by 100 %, and every signal is explained down to its noise.");
-  selection.rivals.clear();
+  selection.substitutions.clear();
   selection.verdict = {.kind = effects_accepted,
                        .accepted = {"T_z", "spring"},
                        .corrections = {{{quantity_index("T_z")}, 7.05e-3, 7.9989e-3}},
@@ -114,15 +114,15 @@ TEST(WordsTest, OfWhatASearchComesTo) {
             "T_z is 0.007999 s, not the 0.00705 s of the axis file. The model lacked spring. With "
             "them, the validation error falls by 71.4 %, and every signal is explained down to its "
             "noise.");
-  selection.rivals.push_back({"T_z", "velocity.delay", {}, {}});
+  selection.substitutions.push_back({"T_z", "velocity.delay", {}, {}});
   selection.verdict.corrections.clear();
   EXPECT_EQ(verdict_text(selection),
             "The model lacked T_z, spring. With them, the validation error falls by 71.4 %, and "
             "every signal is explained down to its noise. These recordings do not tell T_z from "
             "velocity.delay.");
-  selection.rivals.clear();
-  EffectTrial curve;
-  curve.candidate.name = "friction_over_velocity";
+  selection.substitutions.clear();
+  Outcome curve;
+  curve.hypothesis.name = "friction_over_velocity";
   curve.closed_form = ClosedForm{
       {{5.031, 0.18, "N", "exp(-|v| / 0.2 m/s)"}, {-8.2, 0.42, "N s^2/m^2", "|v|^2"}}, 7.0, 9.0};
   selection.effects.push_back(curve);
@@ -134,7 +134,8 @@ TEST(WordsTest, OfWhatASearchComesTo) {
   selection.verdict = {.kind = undecided,
                        .undecided = {"spring", "position.gain", "stroke_friction"},
                        .validate_percent = 50.0};
-  selection.rivals = {{"spring", "position.gain", {}, {}}, {"spring", "stroke_friction", {}, {}}};
+  selection.substitutions = {{"spring", "position.gain", {}, {}},
+                             {"spring", "stroke_friction", {}, {}}};
   selection.models = {{"", {}, {}}, {"spring", {}, {}}};
   selection.explained = false;
   EXPECT_EQ(verdict_text(selection),
@@ -190,7 +191,7 @@ TEST(WordsTest, OfARunNameTheFitOnce) {
 TEST(WordsTest, OfTheDecisionOnAnEffect) {
   using enum Rejection::Test;
   const ParameterId shape_id{quantity_index("stribeck_friction.v_st")};
-  EffectTrial trial;
+  Outcome trial;
   const auto rejected = [&](const Rejection& rejection) {
     trial.rejection = rejection;
     return reason_text(Job(), trial);

@@ -1,4 +1,4 @@
-// A transmission that was taken to be rigid gives way, or has backlash: as candidates.
+// A transmission that was taken to be rigid gives way, or has backlash: as hypotheses.
 //
 // Neither is a force that could be added to the equations: they are another variant of them, in
 // which motor and arm move each for itself. So there is no derivative at zero, and the score test
@@ -17,10 +17,10 @@ namespace axisfit {
 /// that of motor and arm together, J_m and, unless it is free, M. For a transmission with a gap of
 /// zero `backlash`, with the strength H alone. None for a soft_transmission, or where the scales
 /// tell no mass and no stroke.
-std::vector<Candidate> transmission_candidates(const Job& job, const SearchScales& scales);
+std::vector<Hypothesis> transmission_hypotheses(const Job& job, const SearchScales& scales);
 
-/// Changes the job's rigid transmission into one with backlash. Of a force source with the armature
-/// inertia J_m, kg m^2, the free M and the axis' own become that of the arm alone.
+/// Changes the job's rigid transmission into one with backlash. Where a force source has the
+/// armature inertia J_m, kg m^2, the free M and the axis' own become that of the arm alone.
 void give_backlash(Job& job, double J_m);
 
 /// What the arm's mass M of a fitted model lacks of the M of the declared job: the motor's part,

@@ -1,4 +1,4 @@
-#include "fit/search/alternatives.h"
+#include "fit/search/imitators.h"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -23,11 +23,8 @@ std::pair<double, Eigen::VectorXd> imitated(const Eigen::MatrixXd& columns,
 
 }  // namespace
 
-std::vector<Alternative> alternatives(const Job& job, const FitResult& fit,
-                                      const Candidate& accepted,
-                                      const std::vector<Candidate>& candidates) {
-  constexpr double kLeft = 0.1;
-  constexpr std::size_t kMost = 4;
+std::vector<Scored> imitators(const Job& job, const FitResult& fit, const Hypothesis& accepted,
+                              std::vector<Hypothesis> hypotheses, const SearchOptions& options) {
   const std::vector<double> values = values_of(fit);
   const auto own =
       std::ranges::find(job.free, accepted.strengths.front(), &FreeParameter::quantity);
@@ -42,20 +39,20 @@ std::vector<Alternative> alternatives(const Job& job, const FitResult& fit,
       space.internal(static_cast<std::size_t>(place), values[static_cast<std::size_t>(place)]);
   const double back =
       space.internal(static_cast<std::size_t>(place), accepted.neutral.front()) - from;
-  // What takes the correction back; the others have to do it again.
+  // The step back to the declared value; the others have to make up for it.
   const Eigen::VectorXd change = back * fit.at_solution->jacobian.col(place);
   const double alone = imitated(fit.at_solution->jacobian(Eigen::all, others), change).first;
 
   struct Found {
     double left = std::numeric_limits<double>::infinity();  ///< of the change
-    Alternative alternative{};
+    Scored start{};
   };
-  std::vector<Found> found(candidates.size());
-  parallel_for(candidates.size(), [&](std::size_t i) {
-    const Candidate& candidate = candidates[i];
-    if (candidate.parameters() != 1 || same_effect(candidate, accepted)) return;
+  std::vector<Found> found(hypotheses.size());
+  parallel_for(hypotheses.size(), [&](std::size_t i) {
+    const Hypothesis& hypothesis = hypotheses[i];
+    if (hypothesis.parameters() != 1 || is_same(hypothesis, accepted)) return;
     const Job extended =
-        with_candidate(job, candidate, values, candidate.neutral, candidate.settings.front());
+        with_hypothesis(job, hypothesis, values, {hypothesis.neutral, hypothesis.settings.front()});
     const ParameterSpace wider(extended);
     std::vector<double> at = values;
     at.push_back(extended.free.back().initial);
@@ -65,24 +62,26 @@ std::vector<Alternative> alternatives(const Job& job, const FitResult& fit,
     std::vector<Eigen::Index> columns = others;
     columns.push_back(u.size() - 1);
     const auto [left, step] = imitated(linear.jacobian(Eigen::all, columns), -change);
-    if (!(left < kLeft * alone)) return;
-    Alternative alternative{candidate, 0.0, {}};
+    if (!(left < options.rivals.imitated * alone)) return;
+    Scored start;
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const auto parameter = static_cast<std::size_t>(columns[k]);
       const FreeParameter& free = extended.free[parameter];
-      const double moved =
+      start.others.push_back(
           std::clamp(wider.value(parameter, u[columns[k]] + step[static_cast<Eigen::Index>(k)]),
-                     free.lower, free.upper);
-      alternative.values.push_back(moved);
+                     free.lower, free.upper));
     }
-    alternative.strength = alternative.values.back();
-    alternative.values.pop_back();
-    found[i] = {left, std::move(alternative)};
+    start.own.strengths = {start.others.back()};
+    start.others.pop_back();
+    found[i] = {left, std::move(start)};
   });
+  for (std::size_t i = 0; i < found.size(); ++i)
+    found[i].start.hypothesis = std::make_shared<const Hypothesis>(std::move(hypotheses[i]));
   std::ranges::stable_sort(found, {}, &Found::left);
-  std::vector<Alternative> list;
+  std::vector<Scored> list;
   for (Found& f : found)
-    if (std::isfinite(f.left) && list.size() < kMost) list.push_back(std::move(f.alternative));
+    if (std::isfinite(f.left) && list.size() < options.rivals.constants)
+      list.push_back(std::move(f.start));
   return list;
 }
 

@@ -1,4 +1,4 @@
-#include "fit/search/backlash.h"
+#include "fit/search/transmission.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,9 +16,9 @@ bool is_free(const Job& job, std::string_view quantity) {
          job.free.end();
 }
 
-Candidate candidate(std::string name, std::string meaning, std::string_view strength,
-                    double neutral) {
-  Candidate c;
+Hypothesis hypothesis(std::string name, std::string meaning, std::string_view strength,
+                      double neutral) {
+  Hypothesis c;
   c.name = std::move(name);
   c.acts_on = name_of(ActsOn::transmission);
   c.meaning = std::move(meaning);
@@ -40,14 +40,14 @@ Coupling coupling(double motor, double arm, double frequency) {
 
 }  // namespace
 
-std::vector<Candidate> transmission_candidates(const Job& job, const SearchScales& scales) {
+std::vector<Hypothesis> transmission_hypotheses(const Job& job, const SearchScales& scales) {
   const Structure& structure = job.model.structure;
   const Capabilities& has = capabilities(structure);
   const Axis<double>& axis = job.model.axis;
   const std::string kGap(words_on(job.vocabulary(), "gap between motor and arm"));
   if (has.has_backlash) {
     if (axis.H != 0.0 || is_free(job, "H")) return {};
-    Candidate gap = candidate("backlash", kGap, "H", 0.0);
+    Hypothesis gap = hypothesis("backlash", kGap, "H", 0.0);
     gap.settings = {{}};
     gap.extends = "compliance";
     return {std::move(gap)};
@@ -57,15 +57,15 @@ std::vector<Candidate> transmission_candidates(const Job& job, const SearchScale
       !(stroke > 0.0))
     return {};
 
-  Candidate soft = candidate("compliance", "transmission that gives way", "k_g",
-                             std::numeric_limits<double>::infinity());
-  Candidate gap = candidate("backlash", kGap, "H", 0.0);
+  Hypothesis soft = hypothesis("compliance", "transmission that gives way", "k_g",
+                               std::numeric_limits<double>::infinity());
+  Hypothesis gap = hypothesis("backlash", kGap, "H", 0.0);
   soft.shapes = {index_of("b_g")};
   gap.shapes = {index_of("k_g"), index_of("b_g")};
   const bool splits_mass = has.is_force_driven;
   const bool frees_mass = splits_mass && !is_free(job, "M");
-  for (Candidate* c : {&soft, &gap}) {
-    c->gives_backlash = true;
+  for (Hypothesis* c : {&soft, &gap}) {
+    c->kind = HypothesisKind::transmission;
     if (splits_mass) c->shapes.push_back(index_of("J_m"));
     if (frees_mass) c->shapes.push_back(index_of("M"));
   }

@@ -1,4 +1,4 @@
-#include "fit/search/extended_model.h"
+#include "fit/search/tried.h"
 
 #include <gtest/gtest.h>
 
@@ -15,14 +15,14 @@ class ShapeAtBoundTest : public testing::Test {
       job_.free.push_back(free_parameter(name, 1.0));
       fit_.parameters.emplace_back().id = id_of(name);
     }
-    candidate_.strengths = {quantity_index("dahl_friction.F_d")};
-    candidate_.shapes = {quantity_index("dahl_friction.l_d")};
+    hypothesis_.strengths = {quantity_index("dahl_friction.F_d")};
+    hypothesis_.shapes = {quantity_index("dahl_friction.l_d")};
   }
-  std::optional<ParameterId> found() const { return shape_at_bound(job_, fit_, candidate_); }
+  std::optional<ParameterId> found() const { return shape_at_bound(job_, fit_, hypothesis_); }
 
   Job job_;
   FitResult fit_;
-  Candidate candidate_;
+  Hypothesis hypothesis_;
 };
 
 TEST_F(ShapeAtBoundTest, IsThatOfTheEffect) {
@@ -36,20 +36,20 @@ TEST_F(ShapeAtBoundTest, IsThatOfTheEffect) {
 
 TEST_F(ShapeAtBoundTest, IsNoneWhereShapesAreNotEstimated) {
   fit_.parameters[2].uncertainty.at_bound = true;
-  candidate_.shapes_are_free = false;
+  hypothesis_.kind = HypothesisKind::curve;
   EXPECT_EQ(found(), std::nullopt);
 }
 
 TEST(Resume, GoesOnToTheMinimum) {
   const HiddenEffect secret = hidden_effect_named("drive_lag");
-  ExtendedModel e;
+  Tried e;
   e.job = two_recordings(secret.truth(), secret.truth(), {"M", "B_a", "drive_lag.T_l"});
   const FitResult whole = refit(e.job, {}, 100);
-  ASSERT_EQ(whole.status, Status::converged);
+  ASSERT_TRUE(whole.verdict.has_minimum());
   e.fit = refit(e.job, {}, 1);
   ASSERT_EQ(e.fit.verdict.kind, FitVerdict::Kind::no_minimum);
   resume(e);
-  EXPECT_EQ(e.fit.status, Status::converged);
+  EXPECT_TRUE(e.fit.verdict.has_minimum());
   EXPECT_NEAR(e.fit.reduced_chi_square, whole.reduced_chi_square, 1e-5);
   for (std::size_t i = 0; i < e.job.free.size(); ++i)
     EXPECT_NEAR(e.fit.parameters[i].value, whole.parameters[i].value,

@@ -1,4 +1,4 @@
-#include "fit/search/backlash.h"
+#include "fit/search/transmission.h"
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ using Set = std::set<std::string>;
 TEST(Backlash, IsOfferedToARigidTransmissionThatMoves) {
   Job job;
   job.model = motor_axis();
-  const auto list = transmission_candidates(job, scales(170.0));
+  const auto list = transmission_hypotheses(job, scales(170.0));
   ASSERT_EQ(list.size(), 2u);
   EXPECT_EQ(list[0].name, "compliance");
   EXPECT_EQ(names_of(list[0].strengths), Names{"k_g"});
@@ -55,47 +55,47 @@ TEST(Backlash, IsOfferedToARigidTransmissionThatMoves) {
   EXPECT_EQ(list[1].name, "backlash");
   EXPECT_EQ(names_of(list[1].strengths), Names{"H"});
   EXPECT_EQ(names_of(list[1].shapes), (Names{"k_g", "b_g"}));
-  for (const Candidate& c : list) EXPECT_FALSE(c.settings.empty() || c.probes.empty());
+  for (const Hypothesis& c : list) EXPECT_FALSE(c.settings.empty() || c.probes.empty());
 
   SearchScales at_rest = scales(170.0);
   at_rest.position_high = at_rest.position_low;
-  EXPECT_TRUE(transmission_candidates(job, at_rest).empty());
+  EXPECT_TRUE(transmission_hypotheses(job, at_rest).empty());
   job.model.structure.effects.set(*effect_named("soft_transmission"));
-  EXPECT_TRUE(transmission_candidates(job, scales(170.0)).empty());
+  EXPECT_TRUE(transmission_hypotheses(job, scales(170.0)).empty());
 }
 
 // A transmission that is known to give way may have a gap, too, and depends on what gives way.
 TEST(Backlash, IsOfferedBesideCompliance) {
   Job job;
   job.model = paper_axis();
-  EXPECT_TRUE(transmission_candidates(job, scales(170.0)).empty());
+  EXPECT_TRUE(transmission_hypotheses(job, scales(170.0)).empty());
   job.model.axis.H = 0.0;
-  const auto list = transmission_candidates(job, scales(170.0));
+  const auto list = transmission_hypotheses(job, scales(170.0));
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list[0].name, "backlash");
   EXPECT_EQ(list[0].parameters(), 1u);
   Job rigid;
   rigid.model = motor_axis();
-  EXPECT_TRUE(is_part_of(list[0], transmission_candidates(rigid, scales(170.0))[0]));
+  EXPECT_TRUE(is_part_of(list[0], transmission_hypotheses(rigid, scales(170.0))[0]));
 }
 
 // Of a force source nobody has said what of the mass is the motor's.
 TEST(Backlash, SplitsTheMassOfAForceSource) {
   Job job;
   job.model = rigid_slide();
-  ASSERT_EQ(transmission_candidates(job, scales(20.0)).size(), 2u);
-  for (const Candidate& c : transmission_candidates(job, scales(20.0)))
+  ASSERT_EQ(transmission_hypotheses(job, scales(20.0)).size(), 2u);
+  for (const Hypothesis& c : transmission_hypotheses(job, scales(20.0)))
     EXPECT_EQ(names_of(c.shapes).back(), "M");
   job.free = {free_parameter("M", 20.0)};
   job.free[0].prior = Prior{20.0, 0.1};
-  const auto list = transmission_candidates(job, scales(20.0));
+  const auto list = transmission_hypotheses(job, scales(20.0));
   ASSERT_EQ(list.size(), 2u);
-  for (const Candidate& c : list) {
+  for (const Hypothesis& c : list) {
     SCOPED_TRACE(c.name);
     EXPECT_EQ(names_of(c.shapes).back(), "J_m");
     for (const auto& setting : c.settings) {
       const Job loose =
-          with_candidate(job, c, std::vector{20.0}, std::vector{c.probes[0]}, setting);
+          with_hypothesis(job, c, std::vector{20.0}, {std::vector{c.probes[0]}, setting});
       ASSERT_EQ(loose.free.size(), 2 + c.shapes.size());
       EXPECT_EQ(loose.model.structure.transmission, Transmission::backlash);
       EXPECT_EQ(model_error(loose.model), "");

@@ -1,0 +1,87 @@
+// What a model may lack, as something that can be added to it and put to the test.
+//
+// The life of a hypothesis: the catalogue lists it (Hypothesis), the score test says what it would
+// gain (Scored), a refit with it is put to the acceptance test (Tried), and what passes becomes
+// part of the model (Accepted). An Outcome says what became of each that was refitted.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fit/data/job.h"
+
+namespace axisfit {
+
+enum class HypothesisKind {
+  effect,        ///< physics of the machine that has a name
+  curve,         ///< a force curve: it fits whatever no named effect explains
+  instrument,    ///< the gain, bias or lag of what reads the machine
+  clock,         ///< the input or an instrument is late, or ever later: no part of the machine
+  constant,      ///< a value of the axis file that is not free is another
+  transmission,  ///< another variant of the transmission, see transmission.h
+};
+
+struct Hypothesis {
+  std::string name;     ///< "coulomb_friction", "acceleration.bias"
+  std::string acts_on;  ///< "arm force", "friction", "inertia", "drive", "sensor" ...
+  std::string meaning;  ///< a few words
+  HypothesisKind kind = HypothesisKind::effect;
+  /// Quantities (indices in quantity_list()) that are estimated, and what they are while it is
+  /// absent: zero, one for a gain, infinite for a stiffness, and what the axis file declares for a
+  /// constant.
+  std::vector<std::size_t> strengths;
+  std::vector<double> neutral;
+  /// Quantities that give it its shape, and the settings of them to be tried, one value for each.
+  /// Without shapes there is one empty setting. The shapes are estimated too, but for a curve,
+  /// whose shapes are its ends. That the recordings leave a shape of a transmission open is no
+  /// ground to doubt it.
+  std::vector<std::size_t> shapes;
+  std::vector<std::vector<double>> settings;
+  std::vector<double> largest;  ///< of each shape; empty: what the quantity may be
+  bool has_phase = false;       ///< the strengths are sine and cosine of a phase
+  /// Strengths at which the score test looks instead of at zero, where the derivative there says
+  /// little: that of a lag or delay holds while it is shorter than anything else. Empty: none.
+  std::vector<double> probes = {};
+  std::string extends = {};  ///< the effect beside which alone it is offered; empty: any model
+
+  bool estimates_shapes() const { return kind != HypothesisKind::curve; }
+  /// Whether it is in what is read of the machine, not in the machine.
+  bool is_of_instrument() const;
+  std::size_t parameters() const {
+    return strengths.size() + (estimates_shapes() ? shapes.size() : 0);
+  }
+};
+
+/// What the quantities of a hypothesis are, in its order.
+struct HypothesisValues {
+  std::vector<double> strengths, shapes;
+};
+
+/// Whether they are the same hypothesis, whatever the shape.
+inline bool is_same(const Hypothesis& a, const Hypothesis& b) { return a.strengths == b.strengths; }
+
+/// Whether one is a part of another's effect that does nothing without it.
+bool is_part_of(const Hypothesis& part, const Hypothesis& whole);
+
+/// How far a strength is from what it is while the effect is absent; of a stiffness, which is
+/// infinite then, the compliance.
+double distance_from_neutral(double value, double neutral);
+
+/// What a quantity is where nobody says otherwise: its default, or else zero.
+double neutral_value(const Quantity& quantity);
+
+/// The structure with the effect of a quantity, if it belongs to one.
+Structure with_effect_of(Structure structure, std::size_t quantity);
+
+/// The job with the hypothesis added: its parameters become the last free ones and start from
+/// `own`, the other free parameters from `others` (the first so many). With `fixed_shapes` the
+/// shapes stay as they are given.
+Job with_hypothesis(const Job& job, const Hypothesis& hypothesis, std::span<const double> others,
+                    const HypothesisValues& own, bool fixed_shapes = false);
+
+/// What the quantities of a hypothesis are in a model that has it.
+HypothesisValues values_in(Model<double> model, const Hypothesis& hypothesis);
+
+}  // namespace axisfit

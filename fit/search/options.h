@@ -1,0 +1,119 @@
+// The numbers that decide in a search for effects: each has a name, a reason, and this one place.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "fit/solve/run_context.h"
+
+namespace axisfit {
+
+/// The figures of docs/effect-selection.md were measured with these values.
+struct SearchOptions {
+  int max_effects = 6;  ///< that a model may be given: more would be a description of the data
+
+  /// The score test, which looks at all hypotheses without a refit.
+  struct Scoring {
+    /// Part of a hypothesis' effect on the residuals that the free parameters cannot imitate: less
+    /// is rounding.
+    double least_own_part = 1e-4;
+    /// A linear step is trusted no further: e-folds of a logarithmic parameter (a factor of two),
+    /// and part of the range of a linear one.
+    double largest_log_step = 0.7, largest_linear_step = 0.1;
+    std::size_t refined = 8;     ///< hypotheses whose shapes go on from the settings tried
+    int refinements = 2;         ///< steps that they take: the third changes no order
+    double beyond_tried = 0.05;  ///< of a shape: a period is not on a grid
+    /// Other settings of a transmission take simulations of their own. They are tried where the
+    /// first gain this part of what the best hypothesis does.
+    double worth_other_settings = 0.1;
+    std::size_t first_settings = 9;  ///< fewer settings of a transmission are tried all at once
+    std::size_t periods = 3;         ///< of a force along the stroke, from each recording
+    double coarse_step =
+        4.0;  ///< of the integrator: smooth effects are 1e-4 off, and four times as quick
+    int tracking_iterations = 15;      ///< of the fit that a score starts from
+    double tracking_tolerance = 1e-6;  ///< of that
+    /// Parts of the highest observer gain that are tried for what is large, the highest first, and
+    /// the mean square above which something is: ten times the noise.
+    std::array<double, 3> close_gains{1.0, 1.0 / 3.0, 1.0 / 10.0};
+    double large_mean_square = 100.0;
+    std::size_t suspects = 5;      ///< that a fit without a search names
+    double least_fraction = 0.02;  ///< of the sum of squares, that a suspect would explain
+  } scoring;
+
+  /// Which of the scored hypotheses are worth a refit.
+  struct Shortlist {
+    int length = 6;            ///< about as many, at each observer gain
+    double least_gain = 6.0;   ///< of a sum of squares of unit variance: below is chance
+    std::size_t first = 3;     ///< that are taken whatever the best gains
+    double worth = 0.5;        ///< part of the best gain that is taken beyond the first
+    double nearly_best = 0.9;  ///< part of the best gain that is taken beyond the length
+    double same_shape = 0.05;  ///< relative difference of shapes whose refits end in one place
+  } shortlist;
+
+  /// A refit in a search, content with less than a final one.
+  struct Refit {
+    int iterations = 25;
+    int many_iterations = 100;  ///< of another transmission, whose settings are far apart
+  } refit;
+
+  /// The acceptance test.
+  struct Acceptance {
+    double chance = 1e-3;  ///< how probable a lower validation error may be by chance
+    /// The same while effects are collected that mask each other; backward elimination is strict.
+    double provisional_chance = 0.05;
+    double strength_chance = 3e-4;  ///< the same of a strength that is not zero
+    double least_percent = 0.5;     ///< fall of the validation error that matters to anybody
+    /// Standard deviations of that fall to expect, beyond which an effect that is there passes in
+    /// nine of ten such recordings. Below, the recordings cannot judge.
+    double power = 4.4;
+    double alias = 1e-10;  ///< part of an effect that nothing imitates: below is rounding
+    double odds = 100.0;   ///< of two models, that make one clearly worse (by BIC)
+  } acceptance;
+
+  /// One round: which hypothesis explains the most.
+  struct Round {
+    /// Reduced chi-square below which the free run is scored, too: farther away it is elsewhere.
+    double close_chi_square = 25.0;
+    /// A refit is hopeless that promises less than this part of what the test asks, unless its
+    /// score is many times that: then the refit may find more.
+    double promise = 0.4, much = 10.0;
+    double rival_part = 0.6;  ///< of the best gain: is refitted with the best, others if that fails
+    std::size_t at_once = 2;  ///< that are asked of other recordings side by side
+    std::size_t blocks = 10;  ///< of a recording, every second of which is held out
+  } round;
+
+  /// Whether other recordings, fitted by themselves, tell the same.
+  struct Replication {
+    double far = 4.0;              ///< standard errors from zero that leave no doubt
+    double errors = 3.0;           ///< standard errors of a difference that count as alike
+    double part = 0.1;             ///< relative difference likewise: no model is better than that
+    double part_of_period = 0.02;  ///< of a period: with another one it is another ripple
+    double other_errors = 5.0, other_part = 0.1;  ///< beyond both a period is another one
+  } replication;
+
+  /// Rivals of what was accepted.
+  struct Rivals {
+    std::size_t constants = 4;  ///< of a corrected constant, others that do the same
+    double imitated = 0.1;      ///< part of a correction that these may leave
+    std::size_t refitted = 8;   ///< of one accepted hypothesis
+  } rivals;
+
+  /// What a search that ends far from the noise may name, per cent of the error beyond the noise.
+  struct FarFromNoise {
+    double of_effect = 25.0;  ///< less may imitate what is missing
+    double of_model = 50.0;   ///< of all effects together: half is what a model must do to be one
+    /// The same where the roles of the recordings were exchanged: a second try finds more by
+    /// chance.
+    double of_model_exchanged = 70.0;
+  } far_from_noise;
+
+  double curve_coefficients = 14.0;  ///< that a curve in the place of named effects has, at least
+};
+
+/// What all parts of a search are given.
+struct SearchContext {
+  SearchOptions options{};
+  RunContext run{};
+};
+
+}  // namespace axisfit

@@ -1,0 +1,257 @@
+#include "fit/search/strategies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <utility>
+
+#include "fit/criterion/gains.h"
+#include "fit/search/pruning.h"
+#include "fit/search/rivals.h"
+
+namespace axisfit {
+namespace {
+
+bool has_room(const SearchState& state, const Rounds& rounds) {
+  return state.accepted().size() < static_cast<std::size_t>(rounds.context.options.max_effects);
+}
+
+/// A hypothesis that gains beside an accepted effect of its kind, and only there, may be what that
+/// imitates: it becomes its rival.
+void note_relative(const Tried& tried, ModelChain& chain) {
+  using enum Rejection::Test;
+  constexpr std::array kOfValidation{validation, power, validation_size};
+  if (tried.hypothesis.kind == HypothesisKind::constant || !tried.rejection ||
+      std::ranges::find(kOfValidation, tried.rejection->test) == kOfValidation.end())
+    return;
+  for (Accepted& accepted : chain.accepted()) {
+    const auto is_known = [&](const Scored& rival) {
+      return is_same(*rival.hypothesis, tried.hypothesis);
+    };
+    if (accepted.hypothesis.acts_on == tried.hypothesis.acts_on &&
+        std::ranges::none_of(accepted.rivals, is_known))
+      accepted.rivals.push_back(
+          {std::make_shared<const Hypothesis>(tried.hypothesis), values_in(tried)});
+  }
+}
+
+/// The best of a round as part of the model, with those that it did not clearly beat: they are seen
+/// again when all else is explained. So are those of more parameters, which the rounds to come may
+/// tell from it.
+Accepted accepted_from(const RoundResult& round, const Tried& best, const SearchOptions& options) {
+  Accepted accepted{best.hypothesis, {}, best.replication || best.on_stretches};
+  for (const Tried& other : round.models) {
+    if (&other == &best || !other.fit.usable || !other.gain.comparable) continue;
+    if (is_clearly_worse(bic_advantage(best, other), options)) continue;
+    accepted.rivals.push_back(
+        {std::make_shared<const Hypothesis>(other.hypothesis), values_in(other)});
+  }
+  for (const Scored& second : round.seconds)
+    if (!is_same(*second.hypothesis, best.hypothesis) &&
+        second.hypothesis->kind != HypothesisKind::transmission)
+      accepted.rivals.push_back({second.hypothesis, {{}, second.own.shapes}});
+  return accepted;
+}
+
+/// What a round did to the state.
+struct RoundEnd {
+  bool passed = false;
+  std::size_t tried = 1;  ///< hypotheses and settings
+};
+
+/// Adds the hypothesis that explains the most, if one passes.
+RoundEnd add_best(SearchState& state, bool curves, double chance, Rounds& rounds) {
+  const auto begin = std::chrono::steady_clock::now();
+  ++rounds.count;
+  RoundResult round = try_round(state.current(),
+                                {.curves = curves,
+                                 .chance = chance,
+                                 .held_out_blocks = rounds.held_out_blocks,
+                                 .explained = state.explained(),
+                                 .excluded = state.degenerate},
+                                curves ? rounds.of_curves : rounds.of_names, rounds.context);
+  Tried* best = round.best ? &round.models[*round.best] : nullptr;
+  for (const Tried& tried : round.models) state.outcomes.record(tried, best, rounds.count);
+  if (best == nullptr) {
+    for (const Tried& tried : round.models) note_relative(tried, state.chain);
+  } else {
+    Accepted accepted = accepted_from(round, *best, rounds.context.options);
+    state.chain.append(std::move(accepted), std::move(best->job), std::move(best->fit));
+  }
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+  rounds.context.run.report(
+      {.phase = "search",
+       .best = state.current().fit.reduced_chi_square,
+       .finished = fmt::format("round {}, {:.1f} s: {}", rounds.count, time.count(),
+                               best != nullptr ? state.current().added : "none")});
+  return {best != nullptr, round.tried};
+}
+
+RoundEnd add_best(SearchState& state, bool curves, Rounds& rounds) {
+  return add_best(state, curves, rounds.context.options.acceptance.chance, rounds);
+}
+
+/// Exchanges the first accepted effect that has a clearly better rival; whether there was one.
+bool exchange(SearchState& state, std::size_t tried, const Rounds& rounds) {
+  std::optional<TriedRival> found = better_rival(state, tried, rounds.context);
+  if (!found) return false;
+  Tried& better = found->tried;
+  state.outcomes.reject(state.accepted()[found->place].hypothesis, Reason::replaced,
+                        better.hypothesis.name);
+  state.outcomes.record(better, &better, rounds.count);
+  // The exchanged effect goes last, where its parameters are.
+  state.strike_off(found->place);
+  state.chain.accepted().push_back({better.hypothesis});
+  state.chain.set_last({better.hypothesis.name, std::move(better.job), std::move(better.fit)});
+  return true;
+}
+
+/// named(), but for a stop.
+void add_named(SearchState& state, Rounds& rounds) {
+  bool may_exchange = true;
+  do {
+    while (has_room(state, rounds)) {
+      const RoundEnd end = add_best(state, false, rounds);
+      if (end.passed) continue;
+      if (!may_exchange || state.accepted().empty()) break;
+      may_exchange = false;
+      if (!exchange(state, end.tried, rounds)) break;
+    }
+  } while (drop_degenerate(state));
+}
+
+/// By how much b explains the recordings worse than a, parameters counted.
+double loss_of(const FittedModel& a, const FittedModel& b) {
+  return bic_difference(residual_series(a.job, a.fit), a.job.free.size(),
+                        residual_series(b.job, b.fit), b.job.free.size());
+}
+
+bool is_better(const FittedModel& a, const FittedModel& b, const SearchOptions& options) {
+  return a.fit.usable && is_clearly_worse(loss_of(a, b), options);
+}
+
+/// Whether a model with a curve in the place of the accepted effects could explain the recordings
+/// about as well, if it left nothing but noise.
+bool can_gain_by_a_curve(const SearchState& state, const SearchOptions& options) {
+  double more = options.curve_coefficients;
+  for (const Accepted& a : state.accepted()) more -= static_cast<double>(a.hypothesis.parameters());
+  const FittedModel& model = state.current();
+  return !is_clearly_worse(least_bic_difference(residual_series(model.job, model.fit), more),
+                           options);
+}
+
+/// Whether a search that began with a curve explains more than one that did not. A curve has a
+/// mean, too: what is not fitted must tell it from a named effect.
+bool is_proven(const FittedModel& from_curve, const FittedModel& other, bool other_has_curve,
+               const SearchOptions& options) {
+  const Improvement gain = improvement(other, from_curve);
+  if (!gain.comparable || !(gain.p_value < options.acceptance.chance)) return false;
+  const double loss = loss_of(other, from_curve);
+  return !(loss > 0.0 && (other_has_curve || is_clearly_worse(loss, options)));
+}
+
+/// The state that a strategy ends in, or if that is stopped the state before it.
+template <class Strategy>
+SearchState finished(const SearchState& before, Strategy&& strategy) {
+  try {
+    return strategy(before);
+  } catch (const Interrupted&) {
+    SearchState kept = before;
+    kept.interrupted = true;
+    return kept;
+  }
+}
+
+}  // namespace
+
+FittedModel tracking(FittedModel model, double gain, const SearchContext& context) {
+  model.job.options.criterion = Tracking{gain};
+  model.job.choose_criterion = false;
+  model.fit = refit_from(model.job, values_of(model.fit), context);
+  return model;
+}
+
+SearchState named(SearchState state, Rounds& rounds) {
+  try {
+    add_named(state, rounds);
+  } catch (const Interrupted&) {
+    state.interrupted = true;
+  }
+  return state;
+}
+
+SearchState together(SearchState state, Rounds& rounds) {
+  const std::vector<Accepted> known = state.accepted();
+  const FittedModel declared = state.chain.declared();
+  const bool is_continued = declared.job.options.is_continued();
+  if (is_continued)
+    state.restart(tracking(declared, score_gains(declared.job).front(), rounds.context));
+  const double chance = rounds.context.options.acceptance.provisional_chance;
+  while (state.current().fit.usable && has_room(state, rounds) && !state.explained() &&
+         add_best(state, false, chance, rounds).passed) {
+  }
+  const bool is_new = std::ranges::any_of(state.accepted(), [&](const Accepted& found) {
+    return std::ranges::none_of(
+        known, [&](const Accepted& other) { return is_same(found.hypothesis, other.hypothesis); });
+  });
+  const auto given_up = [&] {
+    state.restart(declared);
+    return state;
+  };
+  if (!is_new) return given_up();
+  if (is_continued) {
+    FittedModel all = state.chain.with_accepted(declared.job);
+    if (!all.fit.usable) return given_up();
+    state.chain.replace(declared, std::move(all));
+  }
+  add_named(state, rounds);
+  eliminate_backward(state, rounds.context);
+  return state;
+}
+
+SearchState with_curves(SearchState state, Rounds& rounds) {
+  try {
+    while (has_room(state, rounds) && add_best(state, true, rounds).passed) {
+    }
+  } catch (const Interrupted&) {
+    state.interrupted = true;
+  }
+  return state;
+}
+
+SearchState from_a_curve(const SearchState& state, Rounds& rounds) {
+  SearchState anew = state;
+  anew.restart(state.chain.declared());
+  if (!add_best(anew, true, rounds).passed) return state;
+  add_named(anew, rounds);
+  eliminate_backward(anew, rounds.context);
+  return anew;
+}
+
+SearchState search(SearchState declared, Rounds& rounds) {
+  const SearchOptions& options = rounds.context.options;
+  SearchState best = named(std::move(declared), rounds);
+  if (best.interrupted || best.explained()) return best;
+
+  SearchState other = finished(best, [&](const SearchState& s) { return together(s, rounds); });
+  if (other.interrupted) return other;
+  if (is_better(other.current(), best.current(), options)) best = std::move(other);
+  if (best.explained()) return best;
+
+  const std::size_t names = best.accepted().size();
+  best = with_curves(std::move(best), rounds);
+  const bool has_curve = best.accepted().size() > names;
+  // A simulation that tracks the data shows a curve also beside effects that imitate a part of it.
+  const bool tracks = axisfit::tracks(best.chain.declared().job.options.criterion);
+  if (best.interrupted || names == 0 || (tracks && !has_curve) ||
+      !can_gain_by_a_curve(best, options))
+    return best;
+  other = finished(best, [&](const SearchState& s) { return from_a_curve(s, rounds); });
+  if (other.interrupted || is_proven(other.current(), best.current(), has_curve, options))
+    return other;
+  return best;
+}
+
+}  // namespace axisfit

@@ -1,0 +1,54 @@
+// A hypothesis that was added to a model, refitted, and put to the acceptance test.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fit/search/acceptance.h"
+#include "fit/search/replication.h"
+#include "fit/search/scored.h"
+
+namespace axisfit {
+
+struct Tried {
+  Hypothesis hypothesis;
+  Job job;  ///< the parameters of the hypothesis are its last
+  FitResult fit;
+  std::vector<ResidualSeries> residuals;
+  double score = 0.0;                        ///< gain that the score test promised
+  Improvement gain;                          ///< against the model before
+  std::optional<Rejection> rejection;        ///< by the acceptance test; none: it may stay
+  std::optional<Replication> replication{};  ///< where it was asked for
+  bool on_stretches = false;  ///< accepted by held-out stretches of the fitted recordings
+};
+
+/// Fits from close by, content with less than a final fit: one start, one continuation.
+FitResult refit(const Job& job, const SearchContext& context, int max_iterations);
+FitResult refit(const Job& job, const SearchContext& context = {});
+
+/// The same from these values of the free parameters.
+FitResult refit_from(Job job, const std::vector<double>& values, const SearchContext& context = {});
+
+/// Adds a hypothesis, started where its score puts it, and refits.
+Tried try_hypothesis(const Job& job, const Scored& start, const SearchContext& context = {});
+
+/// Goes on with a refit that ended for want of iterations.
+void resume(Tried& tried, const SearchContext& context = {});
+
+/// Puts a refit, chosen as strictly as that, to the acceptance test: against these residuals.
+void judge(Tried& tried, const std::vector<ResidualSeries>& before, const Strictness& strictness,
+           const SearchOptions& options = {});
+
+/// What its quantities are.
+HypothesisValues values_in(const Tried& tried);
+
+/// A free shape of a hypothesis that a fit has driven to its bound: there the effect is a simpler
+/// one, as Dahl friction of no length is Coulomb friction.
+std::optional<ParameterId> shape_at_bound(const Job& job, const FitResult& fit,
+                                          const Hypothesis& hypothesis);
+
+/// By how much a explains all recordings better than b, parameters counted, see bic_difference().
+double bic_advantage(const Tried& a, const Tried& b);
+
+}  // namespace axisfit

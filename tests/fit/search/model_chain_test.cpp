@@ -1,0 +1,110 @@
+#include "fit/search/model_chain.h"
+
+#include <gtest/gtest.h>
+
+#include "fit/search/catalogue.h"
+#include "tests/fit/search/hypotheses.h"
+#include "tests/fit/search/selection.h"
+
+namespace axisfit {
+namespace {
+
+/// A slide whose job lacks friction and a spring, and the chain of models that has both.
+class ChainOfTwo : public testing::Test {
+ protected:
+  struct Made {
+    FittedModel declared;
+    Hypothesis friction, spring;
+    ModelChain chain;
+  };
+  static Made make() {
+    Model<double> truth = slide();
+    hidden_effect_named("coulomb_friction").put_into(truth);
+    hidden_effect_named("stroke_spring").put_into(truth);
+    Job job = two_recordings(truth, slide(), {"M", "B_a"});
+    FittedModel declared{"", job, estimate(job)};
+    const std::vector<Hypothesis> all = catalogue(job, scales());
+    Made made{declared, *find(all, "coulomb_friction"), *find(all, "stroke_spring"),
+              ModelChain(declared, kContext)};
+    for (const auto& [hypothesis, strength] :
+         {std::pair(made.friction, 4.0), std::pair(made.spring, 15.0)}) {
+      const FittedModel& now = made.chain.current();
+      Tried tried = try_hypothesis(
+          now.job,
+          {std::make_shared<const Hypothesis>(hypothesis), {{strength}, {}}, values_of(now.fit)});
+      made.chain.append({hypothesis}, std::move(tried.job), std::move(tried.fit));
+    }
+    return made;
+  }
+  static const Made& made() {
+    static const Made once = make();
+    return once;
+  }
+
+  static inline const SearchContext kContext{};
+  ModelChain chain_ = made().chain;
+};
+
+TEST_F(ChainOfTwo, HasAModelForEachEffectAndTheDeclaredOne) {
+  const std::vector<FittedModel> models = chain_.models();
+  ASSERT_EQ(models.size(), 3u);
+  EXPECT_EQ(models[0].added, "");
+  EXPECT_EQ(models[1].added, "coulomb_friction");
+  EXPECT_EQ(models[2].added, "stroke_spring");
+  EXPECT_EQ(chain_.current().job.free.size(), 4u);
+  EXPECT_TRUE(chain_.explained());
+  EXPECT_FALSE(explains(chain_.declared()));
+}
+
+TEST_F(ChainOfTwo, FitsWithoutAnEffectOnce) {
+  const FittedModel& reduced = chain_.without(0);
+  EXPECT_EQ(reduced.job.free.size(), 3u);
+  EXPECT_GT(reduced.fit.reduced_chi_square, 2.0 * chain_.current().fit.reduced_chi_square);
+  EXPECT_EQ(&chain_.without(0), &reduced);
+  // By itself and side by side.
+  ModelChain other = made().chain;
+  other.fit_without({0, 1});
+  EXPECT_EQ(values_of(other.without(0).fit), values_of(reduced.fit));
+}
+
+TEST_F(ChainOfTwo, ForgetsWhatWasBesideAnotherModel) {
+  const double before = chain_.without(1).fit.reduced_chi_square;
+  FittedModel reduced = chain_.without(0);
+  EXPECT_TRUE(chain_.erase(0).empty());
+  chain_.set_last(std::move(reduced));
+  ASSERT_EQ(chain_.accepted().size(), 1u);
+  EXPECT_EQ(chain_.accepted()[0].hypothesis.name, "stroke_spring");
+  EXPECT_EQ(chain_.current().added, "stroke_spring");
+  // Without the only effect it is the declared model.
+  EXPECT_EQ(values_of(chain_.without(0).fit), values_of(chain_.declared().fit));
+  EXPECT_NE(chain_.without(0).fit.reduced_chi_square, before);
+}
+
+TEST_F(ChainOfTwo, RefitsTheModelsBetweenWhereOneWasExchanged) {
+  chain_.set_last(chain_.current());
+  const std::vector<FittedModel> models = chain_.models();
+  ASSERT_EQ(models.size(), 3u);
+  EXPECT_EQ(models[1].added, "coulomb_friction");
+  EXPECT_EQ(models[1].job.free.size(), 3u);
+  EXPECT_TRUE(models[1].fit.usable);
+}
+
+TEST_F(ChainOfTwo, BeginsAnewWithTheDeclaredModelAlone) {
+  chain_.restart(made().declared);
+  EXPECT_TRUE(chain_.accepted().empty());
+  EXPECT_EQ(chain_.models().size(), 1u);
+  EXPECT_EQ(chain_.current().job.free.size(), 2u);
+}
+
+TEST_F(ChainOfTwo, IsFittedToTheOtherRecordingOnce) {
+  EXPECT_FALSE(chain_.has_elsewhere());
+  ASSERT_TRUE(chain_.elsewhere());
+  EXPECT_TRUE(chain_.has_elsewhere());
+  const ParameterResult& here = chain_.current().fit.parameters[2];
+  const ParameterResult& there = chain_.elsewhere()->parameters[2];
+  EXPECT_NE(here.value, there.value);
+  EXPECT_NEAR(here.value, there.value, 4.0 * there.uncertainty.standard_error);
+}
+
+}  // namespace
+}  // namespace axisfit

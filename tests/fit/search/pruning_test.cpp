@@ -1,0 +1,94 @@
+#include "fit/search/pruning.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/fit/search/hypotheses.h"
+#include "tests/fit/search/selection.h"
+
+namespace axisfit {
+namespace {
+
+const SearchContext kContext;
+
+/// A search that accepted these hypotheses, one after another, started from these strengths.
+SearchState accepted_in(const Job& job,
+                        const std::vector<std::pair<const char*, HypothesisValues>>& effects) {
+  SearchState state{ModelChain({"", job, estimate(job)}, kContext)};
+  int round = 0;
+  for (const auto& [name, own] : effects) {
+    const FittedModel& now = state.current();
+    const std::vector<Hypothesis> all = catalogue(now.job, scales());
+    const auto hypothesis = std::make_shared<const Hypothesis>(*find(all, name));
+    Tried tried = try_hypothesis(now.job, {hypothesis, own, values_of(now.fit)});
+    state.outcomes.record(tried, &tried, ++round);
+    state.chain.append({*hypothesis}, std::move(tried.job), std::move(tried.fit));
+  }
+  return state;
+}
+
+std::vector<std::string> names_in(const SearchState& state) {
+  std::vector<std::string> names;
+  for (const Accepted& a : state.accepted()) names.push_back(a.hypothesis.name);
+  return names;
+}
+
+using Names = std::vector<std::string>;
+
+TEST(EliminateBackward, DropsWhatTheModelDoesNotNeed) {
+  SearchState state =
+      accepted_in(hidden_effect_named("coulomb_friction").job(),
+                  {{"coulomb_friction", {{4.0}, {}}}, {"stroke_spring", {{1.0}, {}}}});
+  eliminate_backward(state, kContext);
+  EXPECT_EQ(names_in(state), Names{"coulomb_friction"});
+  const Hypothesis spring = state.outcomes.list()[1].hypothesis;
+  EXPECT_EQ(state.outcomes.find(spring)->reason, Reason::not_needed);
+  EXPECT_TRUE(state.outcomes.list()[0].in_model);
+  EXPECT_EQ(state.current().job.free.size(), 3u);
+}
+
+// Dahl friction without a length is Coulomb friction, which is in the catalogue.
+TEST(DropDegenerate, TakesOutWhatHasBecomeASimplerEffect) {
+  SearchState state = accepted_in(hidden_effect_named("coulomb_friction").job(),
+                                  {{"dahl_friction", {{5.0}, {1e-5}}}});
+  ASSERT_TRUE(state.current().fit.parameters.back().uncertainty.at_bound);
+  EXPECT_TRUE(drop_degenerate(state));
+  EXPECT_TRUE(state.accepted().empty());
+  ASSERT_EQ(state.degenerate.size(), 1u);
+  EXPECT_EQ(state.degenerate[0].name, "dahl_friction");
+  EXPECT_EQ(state.outcomes.list()[0].rejection->test, Rejection::Test::bound);
+  EXPECT_FALSE(drop_degenerate(state));
+}
+
+TEST(RejectionOfAll, IsForAModelThatLeavesMostOfTheError) {
+  Model<double> truth = slide();
+  hidden_effect_named("coulomb_friction").put_into(truth);
+  hidden_effect_named("velocity.gain").put_into(truth);
+  SearchState state = accepted_in(two_recordings(truth, slide(), {"M", "B_a"}),
+                                  {{"coulomb_friction", {{4.0}, {}}}});
+  const auto rejection = rejection_of_all(state, {});
+  ASSERT_TRUE(rejection);
+  EXPECT_EQ(rejection->test, Rejection::Test::share);
+  EXPECT_LT(rejection->found, 50.0);
+  SearchOptions content;
+  content.far_from_noise.of_model = 0.9 * rejection->found;
+  EXPECT_FALSE(rejection_of_all(state, content));
+}
+
+TEST(RejectionOfAll, IsNoneWhereTheModelExplains) {
+  SearchState state = accepted_in(hidden_effect_named("coulomb_friction").job(),
+                                  {{"coulomb_friction", {{4.0}, {}}}});
+  EXPECT_FALSE(rejection_of_all(state, {}));
+}
+
+TEST(RecordReplications, TellsWhatTheOtherRecordingSays) {
+  SearchState state = accepted_in(hidden_effect_named("coulomb_friction").job(),
+                                  {{"coulomb_friction", {{4.0}, {}}}});
+  record_replications(state, kContext);
+  const auto& replication = state.outcomes.list()[0].replication;
+  ASSERT_TRUE(replication);
+  EXPECT_TRUE(replication->is_alike);
+  EXPECT_NEAR(replication->parameters[0].value, 5.0, 0.2);
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,77 @@
+#include "fit/search/rivals.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/fit/search/hypotheses.h"
+#include "tests/fit/search/selection.h"
+
+namespace axisfit {
+namespace {
+
+const SearchContext kContext;
+
+std::shared_ptr<const Hypothesis> hypothesis(const Job& job, const char* name) {
+  const std::vector<Hypothesis> all = catalogue(job, scales());
+  return std::make_shared<const Hypothesis>(*find(all, name));
+}
+
+/// A search that accepted one hypothesis, with another as its rival.
+SearchState accepted_with_rival(const Job& job, const char* chosen, HypothesisValues own,
+                                const char* rival) {
+  SearchState state{ModelChain({"", job, estimate(job)}, kContext)};
+  const auto accepted = hypothesis(job, chosen);
+  Tried tried =
+      try_hypothesis(job, {accepted, std::move(own), values_of(state.current().fit)}, kContext);
+  state.outcomes.record(tried, &tried, 1);
+  state.chain.append({*accepted, {Scored{hypothesis(job, rival)}}}, std::move(tried.job),
+                     std::move(tried.fit));
+  return state;
+}
+
+TEST(BetterRival, IsTheTrueEffectInPlaceOfAnother) {
+  SearchState state = accepted_with_rival(hidden_effect_named("coulomb_friction").job(),
+                                          "stroke_spring", {{1.0}, {}}, "coulomb_friction");
+  const auto found = better_rival(state, 100, kContext);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->place, 0u);
+  EXPECT_EQ(found->tried.hypothesis.name, "coulomb_friction");
+  EXPECT_FALSE(found->tried.rejection);
+  EXPECT_NEAR(found->tried.fit.parameters.back().value, 5.0, 0.2);
+}
+
+TEST(BetterRival, IsNoneWhereTheTrueEffectWasChosen) {
+  SearchState state = accepted_with_rival(hidden_effect_named("coulomb_friction").job(),
+                                          "coulomb_friction", {{4.0}, {}}, "stroke_spring");
+  EXPECT_FALSE(better_rival(state, 100, kContext));
+}
+
+// Of a slide with one free parameter, twice the force does what half the mass does.
+TEST(EqualRivals, AreWhatExplainsAsMuch) {
+  const HiddenEffect mass = hidden_effect_named("added_mass");
+  SearchState state =
+      accepted_with_rival(mass.job(), "added_mass", {{0.4}, {}}, "coulomb_friction");
+  EXPECT_TRUE(equal_rivals(state, 2, kContext).empty());
+  state.chain.accepted()[0].rivals = {
+      Scored{hypothesis(state.chain.declared().job, mass.twin.c_str())}};
+  const auto equals = equal_rivals(state, 2, kContext);
+  ASSERT_EQ(equals.size(), 1u);
+  EXPECT_EQ(equals[0].place, 0u);
+  EXPECT_EQ(equals[0].tried.hypothesis.name, mass.twin);
+  const Outcome* outcome = state.outcomes.find(equals[0].tried.hypothesis);
+  ASSERT_NE(outcome, nullptr);
+  EXPECT_EQ(outcome->round, 2);
+}
+
+TEST(AreDelays, NeedsTwoTimesThatAreNoConstants) {
+  const Job job = two_recordings(slide(), slide(), {"M"}, 6.0, {Signal::velocity});
+  const auto dead_time = hypothesis(job, "dead_time"), delay = hypothesis(job, "velocity.delay"),
+             gain = hypothesis(job, "velocity.gain");
+  EXPECT_TRUE(are_delays(*dead_time, *delay));
+  EXPECT_FALSE(are_delays(*dead_time, *gain));
+  Hypothesis constant = *delay;
+  constant.kind = HypothesisKind::constant;
+  EXPECT_FALSE(are_delays(*dead_time, constant));
+}
+
+}  // namespace
+}  // namespace axisfit

@@ -1,0 +1,101 @@
+#include "fit/search/strategies.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/fit/search/selection.h"
+
+namespace axisfit {
+namespace {
+
+std::set<std::string> names_in(const SearchState& state) {
+  std::set<std::string> names;
+  for (const Accepted& a : state.accepted()) names.insert(a.hypothesis.name);
+  return names;
+}
+
+SearchState start_of(const Job& job, const Rounds& rounds) {
+  return {ModelChain({"", job, estimate(job)}, rounds.context)};
+}
+
+TEST(Named, AddsWhatPassesAndEndsWhereNothingMoreDoes) {
+  Rounds rounds;
+  SearchState state =
+      named(start_of(hidden_effect_named("coulomb_friction").job(), rounds), rounds);
+  EXPECT_EQ(names_in(state), std::set<std::string>{"coulomb_friction"});
+  EXPECT_TRUE(state.explained());
+  EXPECT_FALSE(state.interrupted);
+  EXPECT_EQ(rounds.count, 2);  // the second finds nothing
+  EXPECT_EQ(state.outcomes.list().front().round, 1);
+}
+
+TEST(Named, KeepsWhatItHasWhenItIsStopped) {
+  StopFlag stop = false;
+  Rounds rounds;
+  int scored = 0;
+  rounds.context.run = {&stop, nullptr, [&](const Progress& p) {
+                          if (p.phase == "scoring effects" && ++scored == 2) stop = true;
+                        }};
+  const SearchState state =
+      named(start_of(hidden_effect_named("coulomb_friction").job(), rounds), rounds);
+  EXPECT_TRUE(state.interrupted);
+  EXPECT_EQ(names_in(state), std::set<std::string>{"coulomb_friction"});
+}
+
+TEST(Together, ReturnsToTheDeclaredModelWhereItFindsNothingNew) {
+  Rounds rounds;
+  const SearchState found =
+      named(start_of(hidden_effect_named("coulomb_friction").job(), rounds), rounds);
+  const SearchState again = together(found, rounds);
+  EXPECT_TRUE(again.accepted().empty());
+  EXPECT_EQ(values_of(again.current().fit), values_of(found.chain.declared().fit));
+}
+
+TEST(Together, IsStoppedByAnException) {
+  StopFlag stop = false;
+  Rounds rounds;
+  const SearchState state = start_of(hidden_effect_named("coulomb_friction").job(), rounds);
+  rounds.context.run.stop = &stop;
+  stop = true;
+  EXPECT_THROW(together(state, rounds), Interrupted);
+}
+
+TEST(WithCurves, ExplainsByACurveWhatNoNamedEffectIsLeftFor) {
+  Rounds rounds;
+  // A wave along the stroke, steeper than any named effect but periodic_force allows: without it.
+  Model<double> truth = slide();
+  auto& force = add_effect<PeriodicForce>(truth);
+  force.F_s1 = 6.0;
+  force.period = 0.4;
+  SearchState state = start_of(two_recordings(truth, slide(), {"M", "B_a"}), rounds);
+  state = with_curves(std::move(state), rounds);
+  EXPECT_EQ(names_in(state), std::set<std::string>{"force_over_position"});
+}
+
+TEST(Search, GivesTheLastValidStateWhenALaterStrategyIsStopped) {
+  // Noise that is larger than stated: no strategy explains it, so that all of them run.
+  Job job = two_recordings(slide(), slide(), {"M", "B_a"});
+  for (Recording& r : job.recordings)
+    for (Measurement& m : r.measurements) m.sigma *= 0.7;
+  StopFlag stop = false;
+  Rounds rounds;
+  const SearchState first = start_of(job, rounds);
+  rounds.context.run = {&stop, nullptr, [&](const Progress& p) {
+                          if (p.phase == "search") stop = true;  // after the first round
+                        }};
+  const SearchState found = search(first, rounds);
+  EXPECT_TRUE(found.interrupted);
+  EXPECT_TRUE(found.accepted().empty());
+  EXPECT_EQ(values_of(found.current().fit), values_of(first.current().fit));
+}
+
+TEST(Tracking, FitsByTheErrorsOneStepAhead) {
+  const Job job = hidden_effect_named("coulomb_friction").job();
+  const FittedModel declared{"", job, estimate(job)};
+  const FittedModel tracked = tracking(declared, 30.0, {});
+  EXPECT_EQ(tracked.fit.observer_gain, 30.0);
+  EXPECT_EQ(declared.fit.observer_gain, 0.0);
+  EXPECT_LT(tracked.fit.reduced_chi_square, declared.fit.reduced_chi_square);
+}
+
+}  // namespace
+}  // namespace axisfit
