@@ -55,11 +55,15 @@ Job fixed_at(const Job& job, std::span<const double> values) {
   fixed.free.clear();
   const auto member = members(fixed.model);
   for (std::size_t i = 0; i < job.free.size(); ++i) {
-    if (job.free[i].recording)
-      fixed.recordings[*job.free[i].recording].overrides.emplace_back(job.free[i].quantity,
-                                                                      values[i]);
-    else
-      *member[job.free[i].quantity] = values[i];
+    const FreeParameter& p = job.free[i];
+    if (p.recording) {
+      fixed.recordings[*p.recording].overrides.emplace_back(p.quantity, values[i]);
+      continue;
+    }
+    *member[p.quantity] = values[i];
+    // An estimate goes before an initial state from the data, as in model_at().
+    for (Recording& r : fixed.recordings)
+      std::erase_if(r.overrides, [&](const auto& own) { return own.first == p.quantity; });
   }
   return fixed;
 }

@@ -100,7 +100,8 @@ TEST(ModelAt, AFreeParameterOverridesTheRecordingWhichOverridesTheModel) {
 }
 
 TEST(FixedAt, LeavesNothingFreeAndEveryModelAsItWas) {
-  const Job job = two_machines();
+  Job job = two_machines();
+  job.recordings[0].overrides = {{quantity_index("M"), 1.0}};
   const ParameterSpace space(job);
   // As the space has them, rounding included.
   const std::vector<double> values = space.values(space.internal({{kM, kB_a, kK_f}}));
