@@ -33,7 +33,7 @@ struct Accepted {
   /// Others that explained as much when it was chosen, and where their refits start: without
   /// strengths, one that has not been fitted; without others, from where all else is.
   std::vector<Scored> rivals{};
-  bool is_seen_elsewhere = false;  ///< it replicates, or held-out stretches show it
+  bool is_seen_elsewhere = false;  ///< it replicates, or held-out blocks show it
 };
 
 /// A value that may be copied, put aside and taken up again. What was found beside the last model

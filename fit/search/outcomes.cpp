@@ -10,7 +10,7 @@ Decision decision_on(Reason reason) {
   switch (reason) {
     case Reason::explains_best:
     case Reason::replicates:
-    case Reason::shown_by_stretches:
+    case Reason::shown_by_blocks:
       return Decision::accepted;
     case Reason::explains_equally:
       return Decision::undecided;
@@ -35,9 +35,9 @@ void Outcomes::record(const Tried& tried, const Tried* best, int round) {
                             tried.fit.parameters.end());
   if (&tried == best) {
     outcome.in_model = true;
-    outcome.reason = tried.replication    ? Reason::replicates
-                     : tried.on_stretches ? Reason::shown_by_stretches
-                                          : Reason::explains_best;
+    outcome.reason = tried.replication ? Reason::replicates
+                     : tried.on_blocks ? Reason::shown_by_blocks
+                                       : Reason::explains_best;
     outcome.replication = tried.replication;
   } else if (tried.rejection) {
     outcome.rejection = tried.rejection;

@@ -19,9 +19,9 @@ enum class Decision {
 /// What a decision on a hypothesis rests on.
 enum class Reason {
   // Accepted
-  explains_best,       ///< of all that were tried in its round
-  replicates,          ///< the recordings to validate, fitted by themselves, tell the same of it
-  shown_by_stretches,  ///< held out from the fitted recordings, since those to validate could not
+  explains_best,    ///< of all that were tried in its round
+  replicates,       ///< the recordings to validate, fitted by themselves, tell the same of it
+  shown_by_blocks,  ///< held out from the fitted recordings, since those to validate could not
   // Undecided
   explains_equally,  ///< as well as the other
   // Rejected

@@ -208,8 +208,8 @@ class RoundTrial {
       report_progress("does " + next.front()->hypothesis.name + " replicate?");
       parallel_for(next.size(), [&](std::size_t i) { try_to_replicate(*next[i]); });
       std::vector<Tried*> asked;
-      std::ranges::copy_if(next, std::back_inserter(asked), wants_stretches);
-      try_on_stretches(asked);
+      std::ranges::copy_if(next, std::back_inserter(asked), wants_blocks);
+      try_on_blocks(asked);
       for (const Tried* e : next)
         if (best == nullptr && !e->rejection) best = e;
     }
@@ -244,11 +244,11 @@ class RoundTrial {
     return memory_.elsewhere.emplace(values, std::move(fit)).first->second;
   }
 
-  /// Effects that the recordings to validate could not have shown are judged by stretches of the
+  /// Effects that the recordings to validate could not have shown are judged by blocks of the
   /// fitted ones, held out from both fits.
-  void try_on_stretches(const std::vector<Tried*>& asked) {
+  void try_on_blocks(const std::vector<Tried*>& asked) {
     if (asked.empty()) return;
-    report_progress("do held-out stretches show " + asked.front()->hypothesis.name + "?");
+    report_progress("do held-out blocks show " + asked.front()->hypothesis.name + "?");
     const auto held_out = [&](FittedModel model) {
       model = with_held_out_blocks(std::move(model), context_);
       auto series = residual_series(model.job, model.fit);
@@ -261,25 +261,25 @@ class RoundTrial {
     parallel_for(asked.size() + 1, [&](std::size_t i) {
       if (i > 0)
         with[i - 1] = held_out({"", asked[i - 1]->job, asked[i - 1]->fit});
-      else if (!memory_.on_stretches)
-        memory_.on_stretches = held_out(model_);
+      else if (!memory_.on_blocks)
+        memory_.on_blocks = held_out(model_);
     });
     for (std::size_t i = 0; i < asked.size(); ++i) {
       Tried& e = *asked[i];
-      Improvement gain = improvement(*memory_.on_stretches, with[i]);
+      Improvement gain = improvement(*memory_.on_blocks, with[i]);
       gain.fit_gain = e.gain.fit_gain;
       gain.samples = e.gain.samples;
       if (rejection_of(e.hypothesis, gain, determined(e), strict(false), context_.options))
         continue;
       e.rejection.reset();
       e.gain = gain;
-      e.on_stretches = true;
+      e.on_blocks = true;
     }
   }
 
-  /// Whether the recordings to validate could not have shown it and stretches could: a disturbance
-  /// goes on from one stretch to the next, and only another recording tells it from a law.
-  static bool wants_stretches(const Tried* e) {
+  /// Whether the recordings to validate could not have shown it and blocks could: a disturbance
+  /// goes on from one block to the next, and only another recording tells it from a law.
+  static bool wants_blocks(const Tried* e) {
     static const std::size_t kOverTime = *effect_named(ForceOverTime<double>::name);
     return e->rejection && e->rejection->test == Rejection::Test::power &&
            quantity_list()[e->hypothesis.strengths.front()].effect != kOverTime;

@@ -29,8 +29,8 @@ struct RoundMemory {
   std::vector<std::optional<Tried>> refits{};  ///< of the list's entries, not judged
   /// By the values of the extended model, see fit_elsewhere().
   std::map<std::vector<double>, std::optional<FitResult>> elsewhere{};
-  /// The residuals of the model fitted to every second stretch, see with_held_out_blocks().
-  std::optional<std::vector<ResidualSeries>> on_stretches{};
+  /// The residuals of the model fitted to every second block, see with_held_out_blocks().
+  std::optional<std::vector<ResidualSeries>> on_blocks{};
 };
 
 struct RoundResult {

@@ -41,7 +41,7 @@ void note_relative(const Tried& tried, ModelChain& chain) {
 /// again when all else is explained. So are those of more parameters, which the rounds to come may
 /// tell from it.
 Accepted accepted_from(const RoundResult& round, const Tried& best, const SearchOptions& options) {
-  Accepted accepted{best.hypothesis, {}, best.replication || best.on_stretches};
+  Accepted accepted{best.hypothesis, {}, best.replication || best.on_blocks};
   for (const Tried& other : round.models) {
     if (&other == &best || !other.fit.usable || !other.gain.comparable) continue;
     if (is_clearly_worse(bic_advantage(best, other), options)) continue;

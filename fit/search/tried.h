@@ -20,7 +20,7 @@ struct Tried {
   Improvement gain;                          ///< against the model before
   std::optional<Rejection> rejection;        ///< by the acceptance test; none: it may stay
   std::optional<Replication> replication{};  ///< where it was asked for
-  bool on_stretches = false;  ///< accepted by held-out stretches of the fitted recordings
+  bool on_blocks = false;  ///< accepted by held-out blocks of the fitted recordings
 };
 
 /// Fits from close by, content with less than a final fit: one start, one continuation.

@@ -122,10 +122,10 @@ std::string second_opinion_text(const RunResult& run_result) {
                                    number(e, unit_of(run_result.job(), e.parameter))));
   if (!values.empty())
     text += paragraph(
-        fmt::format("Inverse dynamics, without a simulation: {}. Of the {} {:.2g} % remain "
+        fmt::format("Inverse dynamics, without a simulation: {}. {:.2g} % of the {} remain "
                     "unexplained.",
-                    fmt::join(values, ", "), words_on(run_result.job().vocabulary(), "drive force"),
-                    100.0 * estimate.residual / estimate.drive_rms),
+                    fmt::join(values, ", "), 100.0 * estimate.residual / estimate.drive_rms,
+                    words_on(run_result.job().vocabulary(), "drive force")),
         2);
   if (contradictions.empty()) return text;
   std::vector<std::string> differ;

@@ -359,9 +359,9 @@ std::string reason_text(const Job& job, const Outcome& trial) {
     case Reason::replicates:
       return "explains the residual best of what the recordings to validate, fitted by themselves, "
              "tell alike";
-    case Reason::shown_by_stretches:
+    case Reason::shown_by_blocks:
       return fmt::format(
-          "explains the residual best: {:.3g} % lower error on held-out stretches of the fitted "
+          "explains the residual best: {:.3g} % lower error on held-out blocks of the fitted "
           "recordings, since those to validate could not have shown it",
           trial.improvement.validate_percent);
     case Reason::explains_less:

@@ -25,7 +25,7 @@ Tried tried(const Hypothesis& h, double value) {
 const Hypothesis kFriction = hypothesis("friction", 1), kSpring = hypothesis("spring", 2);
 
 TEST(DecisionOn, IsThatOfTheReason) {
-  for (const Reason r : {Reason::explains_best, Reason::replicates, Reason::shown_by_stretches})
+  for (const Reason r : {Reason::explains_best, Reason::replicates, Reason::shown_by_blocks})
     EXPECT_EQ(decision_on(r), Decision::accepted);
   EXPECT_EQ(decision_on(Reason::explains_equally), Decision::undecided);
   for (const Reason r : {Reason::failed_test, Reason::explains_less, Reason::replaced,
@@ -41,9 +41,9 @@ TEST(Outcomes, TellWhyTheBestOfARoundIsAccepted) {
   EXPECT_TRUE(outcomes.list()[0].in_model);
   ASSERT_EQ(outcomes.list()[0].parameters.size(), 1u);  // its own
   EXPECT_EQ(outcomes.list()[0].parameters[0].value, 5.0);
-  best.on_stretches = true;
+  best.on_blocks = true;
   outcomes.record(best, &best, 1);
-  EXPECT_EQ(outcomes.list()[0].reason, Reason::shown_by_stretches);
+  EXPECT_EQ(outcomes.list()[0].reason, Reason::shown_by_blocks);
   best.replication = Replication{};
   outcomes.record(best, &best, 1);
   EXPECT_EQ(outcomes.list()[0].reason, Reason::replicates);

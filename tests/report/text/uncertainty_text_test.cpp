@@ -116,8 +116,8 @@ TEST(UncertaintyTextTest, ASecondOpinionStandsInForAFitThatIsNotUsable) {
   EXPECT_EQ(second_opinion_text(run_result), "") << "it agrees";
   run_result.grade.grade = Grade::model_wrong;
   EXPECT_EQ(on_one_line(second_opinion_text(run_result)),
-            "Inverse dynamics, without a simulation: M = 5.00 +- 0.25 kg. Of the drive force 12 % "
-            "remain unexplained.");
+            "Inverse dynamics, without a simulation: M = 5.00 +- 0.25 kg. 12 % of the drive "
+            "force remain unexplained.");
   run_result.grade.grade = Grade::usable;
   opinion.contradictions = {0};
   EXPECT_EQ(on_one_line(second_opinion_text(run_result)),
