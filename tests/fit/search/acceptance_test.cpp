@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <iostream>
 
 #include "tests/fit/example.h"
@@ -56,9 +57,9 @@ Determination determined() { return {400.0, 11.0, 0.5, {}, {}}; }
 
 TEST(ImprovementTest, CountsInUnitsOfTheNoiseThatIsLeft) {
   // The noise along a wave is known from a band of frequencies only, and scatters.
-  constexpr int kSeeds = 20;
+  constexpr std::uint64_t kSeeds = 20;
   double fit_gain = 0.0, samples = 0.0, z = 0.0;
-  for (int seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const auto fitted = noise(2 * seed), judged = noise(2 * seed + 1);
     const auto before = pair(with_wave(fitted, 1.0), with_wave(judged, 1.0));
     const Improvement gain = improvement(before, pair(fitted, judged));
@@ -122,7 +123,7 @@ TEST(ImprovementTest, ADriftHidesNoRipple) {
       values[i] += 0.7 * std::sin(0.5 * static_cast<double>(i));
     return values;
   };
-  for (int seed = 1; seed <= 20; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const auto fitted = coloured(2 * seed), judged = coloured(2 * seed + 1);
     const Improvement gain = improvement(pair(wave(fitted), wave(judged)), pair(fitted, judged));
     EXPECT_LT(gain.p_value, SearchOptions().acceptance.chance) << seed;
@@ -136,7 +137,7 @@ TEST(ImprovementTest, ADriftHidesNoRipple) {
 // another: waves of many lengths, and a pulse at every burst, as friction is.
 TEST(ImprovementTest, ChanceHardlyEverPasses) {
   int passed = 0, trials = 0;
-  for (int seed = 1; seed <= 300; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     const auto fitted = coloured(2 * seed), judged = coloured(2 * seed + 1);
     for (const double w : {0.0, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0}) {
       double product = 0.0, square = 0.0;
