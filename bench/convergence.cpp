@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
     const std::clock_t begin = std::clock();  // of this process: other loads do not count
     const FitResult result = estimate(one);
     seconds.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
-    if (result.usable && result.reduced_chi_square < 1.1) {
+    if (result.is_usable() && result.reduced_chi_square < 1.1) {
       ++reached;
       for (std::size_t i = 0; i < truth.size(); ++i) {
         const double error = result.parameters[i].uncertainty.standard_error;

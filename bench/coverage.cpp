@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
       int inside = 0, with_error = 0, usable = 0;
       double square = 0.0;
       for (const FitResult& fit : fits) {
-        if (!fit.usable) continue;
+        if (!fit.is_usable()) continue;
         ++usable;
         const ParameterResult& found = fit.parameters[p];
         const ParameterUncertainty& u = found.uncertainty;

@@ -14,7 +14,7 @@ namespace {
 std::optional<Estimated> inertia_seen(const RunResult& result, const std::string& other) {
   const Job& job = result.job();
   const Channels channels = job.model.structure.channels;
-  if (channels == nullptr || !result.fit().usable) return std::nullopt;
+  if (channels == nullptr || !result.fit().is_usable()) return std::nullopt;
   for (std::size_t i = 0; i < job.free.size(); ++i) {
     const QuantityEntry& entry = quantity_list()[job.free[i].quantity];
     if (entry.group != ChannelForce<double>::name || job.free[i].recording) continue;

@@ -70,7 +70,7 @@ void exchange_roles(RunResult& result, const RunContext& context) {
 }
 
 void close_loop(RunResult& result, const RunContext& context) {
-  if (!result.options.select_effects || !result.first.usable) return;
+  if (!result.options.select_effects || !result.first.is_usable()) return;
   result.selection = select_effects(result.baseline, result.first, {}, context);
   exchange_roles(result, context);
   if (result.selection->horizon) result.horizon = result.selection->horizon;
@@ -95,7 +95,7 @@ void analyse_residual(RunResult& result, const RunContext& context) {
 
 void find_profiles(RunResult& result, const RunContext& context) {
   const auto chosen = parameters_to_profile(result.job(), result.options);
-  if (result.fit().usable && !chosen.empty())
+  if (result.fit().is_usable() && !chosen.empty())
     result.profiles = profiles(result.job(), result.fit(), chosen, context);
 }
 
@@ -208,7 +208,7 @@ void compare(RunResult& result, const RunContext& context) {
       const auto& [added, job, fit] = result.selection->models[i];
       ModelEntry& entry = models.emplace_back(ModelEntry{added, job, fit});
       entry.forces = result.scores[i].forces;
-      if (!fit.usable) continue;
+      if (!fit.is_usable()) continue;
       const std::optional<Scatter> scatter = find_scatter_errors(job, entry.fit);
       combine_errors(job, entry.fit);
       entry.uncertainty = axis_uncertainty(job, entry.fit, scatter, entry.forces);
@@ -227,7 +227,7 @@ void compare(RunResult& result, const RunContext& context) {
 }
 
 void find_guess_influences(const Job& job, FitResult& fit) {
-  if (job.guessed.empty() || !fit.usable) return;
+  if (job.guessed.empty() || !fit.is_usable()) return;
   std::vector<std::vector<GuessInfluence>> found =
       guess_influences(job, fit.parameters, fit.observer_gain);
   for (std::size_t i = 0; i < fit.parameters.size(); ++i)

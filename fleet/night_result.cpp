@@ -58,7 +58,7 @@ NightResult night_result(const RunResult& run) {
   const Vocabulary vocabulary = job.vocabulary();
   for (std::size_t i = 0; i < run.first.parameters.size(); ++i) {
     const ParameterResult& p = run.first.parameters[i];
-    if (job.free[i].recording || !run.first.usable) continue;
+    if (job.free[i].recording || !run.first.is_usable()) continue;
     const QuantityEntry& entry = job.entry(p.id.quantity);
     if (entry.group == "initial" || p.uncertainty.verdict() != ParameterVerdict::determined)
       continue;

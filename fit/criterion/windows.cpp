@@ -50,16 +50,14 @@ WindowStart start_at(const Recording& recording, std::size_t sample) {
 
 }  // namespace
 
-std::vector<std::size_t> first_samples(const Recording& recording, double length) {
+Partition windows_of(const Recording& recording, double length) {
   constexpr std::size_t kFewest = 10;
   const std::size_t samples = recording.times.size();
   const double duration = recording.times.back() - recording.times.front();
   const auto most = static_cast<double>(std::max<std::size_t>(1, samples / kFewest));
   const auto windows =
       static_cast<std::size_t>(std::clamp(std::round(duration / length), 1.0, most));
-  std::vector<std::size_t> first;
-  for (std::size_t k = 0; k < windows; ++k) first.push_back(k * samples / windows);
-  return first;
+  return {samples, windows};
 }
 
 std::vector<WindowStart> window_starts(const Job& job, std::size_t index) {
@@ -69,8 +67,9 @@ std::vector<WindowStart> window_starts(const Job& job, std::size_t index) {
   if (!(length > 0.0) || recording.command.meaning == Meaning::reference ||
       (recording.find(Signal::position) == nullptr && recording.find(Signal::velocity) == nullptr))
     return starts;
-  for (const std::size_t sample : first_samples(recording, length))
-    starts.push_back(start_at(recording, sample));
+  const Partition windows = windows_of(recording, length);
+  for (std::size_t k = 0; k < windows.parts(); ++k)
+    starts.push_back(start_at(recording, windows.first(k)));
   // The model's own state, from which it begins, may be known.
   if (recording.initial_state == InitialState::given || estimates_initial_state(job, index))
     starts.front() = {};

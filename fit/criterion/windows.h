@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "fit/data/job.h"
+#include "fit/data/partition.h"
 #include "sim/recorder.h"
 
 namespace axisfit {
@@ -29,9 +30,8 @@ struct WindowStart {
   double position_deviation = 1.0, velocity_deviation = 1.0;  ///< within which they are sought
 };
 
-/// The first samples of the windows of a recording, of about equal length, close to the one given
-/// (s), and of ten samples at least.
-std::vector<std::size_t> first_samples(const Recording& recording, double length);
+/// The windows of a recording, close to a length (s), and of ten samples at least.
+Partition windows_of(const Recording& recording, double length);
 
 /// The windows of a recording by the job's criterion, with states from the samples around each
 /// start, unset where not recorded. None where the simulation runs through: by another criterion,

@@ -267,7 +267,7 @@ std::optional<Reach> reach_of(const Experiment& experiment, const Job& job, cons
 
 std::optional<Suggestion> suggest_experiment(const Job& job, const FitResult& fit,
                                              const RunContext& context) {
-  if (!fit.usable || job.free.empty() || held_by_bound(job, fit)) return std::nullopt;
+  if (!fit.is_usable() || job.free.empty() || held_by_bound(job, fit)) return std::nullopt;
   Suggestion suggestion;
   suggestion.limits = complete_limits(job, fit);
   const std::vector<ResidualSeries> residuals = residual_series(job, fit);

@@ -56,6 +56,9 @@ struct ErrorOptions {
   /// coverage; chance that is counted as scatter widens intervals a little
   /// (bench/results/scatter.md).
   double scatter_significance = 0.2;
+  /// Fall of the log-likelihood at the ends of a 95 % interval: half of chi-square's
+  /// quantile, 3.84.
+  double interval_fall = 1.92;
   /// Standard deviation, on the scale of u, of a parameter that one group leaves open: far more
   /// than that of any that is determined.
   double open_deviation = 10.0;

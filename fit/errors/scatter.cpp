@@ -6,6 +6,7 @@
 
 #include "base/distributions.h"
 #include "fit/criterion/windows.h"
+#include "fit/data/partition.h"
 #include "fit/errors/residual_colour.h"
 #include "fit/solve/parameters.h"
 #include "fit/solve/solve.h"
@@ -53,7 +54,8 @@ Alone alone(const VectorXd& residuals, const MatrixXd& jacobian, const Rows& row
 /// The restricted likelihood of the variances in T, for groups of independent estimates.
 class Likelihood {
  public:
-  explicit Likelihood(std::vector<Alone> groups) : groups_(std::move(groups)) {}
+  Likelihood(std::vector<Alone> groups, const ErrorOptions& options)
+      : groups_(std::move(groups)), interval_fall_(options.interval_fall) {}
 
   double operator()(const VectorXd& variances) const {
     const Index n = variances.size();
@@ -97,8 +99,7 @@ class Likelihood {
   /// The standard deviations of the k-th parameter at which the likelihood is significantly lower
   /// than at the best variances, downwards and upwards. The other variances stay.
   std::pair<double, double> interval(const VectorXd& variances, Index k) const {
-    constexpr double kFall = 1.92;  // half of 3.84, chi-square's quantile of 95 %
-    constexpr int kHalvings = 40;   // to rounding
+    constexpr int kHalvings = 40;  // to rounding
     const double best = (*this)(variances);
     const auto at = [&](double deviation) {
       VectorXd other = variances;
@@ -108,14 +109,14 @@ class Likelihood {
     const auto crossing = [&](double inside, double outside) {
       for (int i = 0; i < kHalvings; ++i) {
         const double middle = 0.5 * (inside + outside);
-        (best - at(middle) < kFall ? inside : outside) = middle;
+        (best - at(middle) < interval_fall_ ? inside : outside) = middle;
       }
       return inside;
     };
     const double here = std::sqrt(variances[k]);
     double beyond = std::max(here, 0.1 * std::sqrt(usual(k)));
-    for (int i = 0; i < kHalvings && best - at(beyond) < kFall; ++i) beyond *= 2.0;
-    return {best - at(0.0) < kFall ? 0.0 : crossing(here, 0.0), crossing(here, beyond)};
+    for (int i = 0; i < kHalvings && best - at(beyond) < interval_fall_; ++i) beyond *= 2.0;
+    return {best - at(0.0) < interval_fall_ ? 0.0 : crossing(here, 0.0), crossing(here, beyond)};
   }
 
  private:
@@ -147,14 +148,14 @@ class Likelihood {
   }
 
   std::vector<Alone> groups_;
+  double interval_fall_;
 };
 
 /// One part of so many of a series.
 SeriesRows part_of(const SeriesRows& rows, std::size_t part, std::size_t parts) {
-  const auto at = [&](std::size_t p) {
-    return rows.count * static_cast<Index>(p) / static_cast<Index>(parts);
-  };
-  return {rows.recording, rows.measurement, rows.first + at(part), at(part + 1) - at(part)};
+  const Partition partition(static_cast<std::size_t>(rows.count), parts);
+  return {rows.recording, rows.measurement, rows.first + static_cast<Index>(partition.first(part)),
+          static_cast<Index>(partition.size(part))};
 }
 
 /// Into how many stretches the only recording is divided; one: it is too short.
@@ -245,7 +246,7 @@ std::optional<Scatter> scatter_of(const Job& job, std::span<const ParameterResul
         {each.back().step(of_machine), each.back().covariance(of_machine, of_machine), {}});
   }
 
-  const Likelihood likelihood(fitted);
+  const Likelihood likelihood(fitted, options);
   const auto n = static_cast<Index>(of_machine.size());
   std::vector<bool> held(of_machine.size(), false);
   VectorXd variances = likelihood.maximise(VectorXd::Zero(n), held);

@@ -11,6 +11,24 @@
 namespace axisfit {
 namespace {
 
+/// How the observer gain is lowered, stage by stage.
+struct DescentOptions {
+  /// Of a stage before the last, which only has to come near.
+  int iterations = 12;
+  double tolerance = 1e-4;
+  /// Ratio of one gain to the next: the first, and the largest, to which it is doubled while the
+  /// simulation keeps to the data.
+  double first_ratio = 3.0, largest_ratio = 20.0;
+  /// At a ratio below it, the next stage is taken whatever became of it.
+  double smallest_ratio = 1.3;
+  /// The cost may grow as the gain falls, if the model lacks something, but not by leaps beyond
+  /// this factor and term: those mean that the simulation lost the data between two gains.
+  double lost_factor = 3.0, lost_term = 1.0;
+  /// Two minima are one that differ by less in gain, cost and the parameters that the data
+  /// determine.
+  double same_minimum = 1e-2;
+};
+
 /// When a fit starts again, from where, and when it has seen enough. Costs are reduced costs where
 /// nothing else is said.
 struct StartOptions {
@@ -71,8 +89,8 @@ class Descent {
     options.max_iterations = job_.options.max_iterations;
     options.function_tolerance = job_.options.tolerance;
     if (!final) {
-      options.max_iterations = std::min(options.max_iterations, 12);
-      options.function_tolerance = 1e-4;
+      options.max_iterations = std::min(options.max_iterations, options_.iterations);
+      options.function_tolerance = options_.tolerance;
       options.penalize_distance_from_start = true;
     }
     SolveResult solved = solve(job_, space_, start, gain, options, context_);
@@ -97,17 +115,16 @@ class Descent {
   SolveResult run(SolveResult tracking, double gain) {
     // Below it the observer cannot do anything within the recording any more.
     const double lowest = 1.0 / longest_duration(job_);
-    double ratio = 3.0;
+    double ratio = options_.first_ratio;
     double previous_cost = tracking.reduced_cost;
     while (tracking.usable && gain > 0.0) {
       double next = gain / ratio;
       if (next < lowest) next = 0.0;
       SolveResult solved = solve_stage(tracking.u, next, next == 0.0);
       Stage& latest = stages_.back();
-      // The residual may grow as the gain falls, if the model lacks something, but not by leaps:
-      // those mean that the simulation lost the data between two gains.
-      const bool lost = !solved.usable || latest.reduced_cost > 3.0 * previous_cost + 1.0;
-      latest.accepted = !lost || ratio < 1.3;
+      const double lost_cost = options_.lost_factor * previous_cost + options_.lost_term;
+      const bool lost = !solved.usable || latest.reduced_cost > lost_cost;
+      latest.accepted = !lost || ratio < options_.smallest_ratio;
       report();
       if (!latest.accepted) {
         ratio = std::sqrt(ratio);
@@ -120,7 +137,7 @@ class Descent {
       previous_cost = latest.reduced_cost;
       tracking = std::move(solved);
       gain = next;
-      ratio = std::min(ratio * 2.0, 20.0);
+      ratio = std::min(ratio * 2.0, options_.largest_ratio);
     }
     return tracking;
   }
@@ -135,11 +152,11 @@ class Descent {
   /// Whether an earlier descent came by here, so that its end would be this one's, too. If not,
   /// later ones will know that this one did.
   bool is_known_minimum(double gain, const SolveResult& solved) {
-    constexpr double kSame = 1e-2;  // of costs, and of the parameters that the data determine
+    const double same = options_.same_minimum;
     const bool known = std::ranges::any_of(visited_, [&](const VisitedMinimum& place) {
-      return std::abs(place.gain - gain) < kSame * gain &&
-             std::abs(place.cost - solved.cost) < kSame * solved.cost &&
-             (place.u - solved.u).lpNorm<Eigen::Infinity>() < kSame;
+      return std::abs(place.gain - gain) < same * gain &&
+             std::abs(place.cost - solved.cost) < same * solved.cost &&
+             (place.u - solved.u).lpNorm<Eigen::Infinity>() < same;
     });
     if (!known) visited_.push_back({gain, solved.cost, solved.u});
     return known;
@@ -150,6 +167,7 @@ class Descent {
     Eigen::VectorXd u;
   };
 
+  const DescentOptions options_;
   const Job& job_;
   const ParameterSpace& space_;
   const std::function<void(const Stage&)>& progress_;

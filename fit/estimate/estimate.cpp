@@ -222,7 +222,6 @@ FitResult estimate(const Job& job, const RunContext& context, std::span<const do
       std::sqrt(found.autocorrelation_time * std::max(1.0, result.reduced_chi_square)));
   result.at_solution = std::make_shared<const Linearization>(std::move(at_solution));
   result.verdict = verdict_of(job, result, solved);
-  result.usable = result.verdict.kind == FitVerdict::Kind::usable;
   return result;
 }
 
@@ -242,7 +241,7 @@ FitResult estimate_with_noise(Job& job, const RunContext& context, std::span<con
   again.options = recipe::polish(job.options);
   constexpr int kTurns = 20;
   constexpr double kStays = 1e-4;
-  for (int turn = 0; turn < kTurns && result.usable; ++turn) {
+  for (int turn = 0; turn < kTurns && result.is_usable(); ++turn) {
     // Of every signal: its sum of squares and number of samples.
     std::map<Signal, std::pair<double, double>> sums;
     for (const SeriesRows& rows : result.at_solution->series) {

@@ -79,7 +79,6 @@ struct FitVerdict {
 };
 
 struct FitResult {
-  bool usable = false;  ///< converged, and follows every fitted signal
   FitVerdict verdict;
   std::string message;       ///< the solver's reason to stop
   bool interrupted = false;  ///< not all starts were finished
@@ -105,6 +104,9 @@ struct FitResult {
   int iterations = 0;         ///< of the best start, all stages
   std::vector<Stage> stages;  ///< of the best start
   std::vector<StartResult> starts;
+
+  /// Whether a minimum was found that follows every fitted signal.
+  bool is_usable() const { return verdict.kind == FitVerdict::Kind::usable; }
 };
 
 /// Where start number `start` begins: the initial values for the first, values drawn around them

@@ -18,12 +18,11 @@ std::vector<double> free_run_errors(Job job, std::span<const double> values, std
   if (!run) run = simulate_recording(job, space, index, u.data(), {});
   if (!run->finished) return {};
   const Recording& recording = job.recordings[index];
-  std::vector<std::size_t> bounds = first_samples(recording, horizon);
-  bounds.push_back(recording.times.size());
+  const Partition windows = windows_of(recording, horizon);
   std::vector<double> scales, errors;
   for (const Measurement& m : recording.measurements)
     scales.push_back(standard_deviation(m.values));
-  for (std::size_t k = 0; k + 1 < bounds.size(); ++k) {
+  for (std::size_t k = 0; k < windows.parts(); ++k) {
     double sum = 0.0;
     int signals = 0;
     for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
@@ -32,7 +31,7 @@ std::vector<double> free_run_errors(Job job, std::span<const double> values, std
       if (!measured.fitted || !(scale > 0.0)) continue;
       double squares = 0.0;
       int samples = 0;
-      for (std::size_t i = bounds[k]; i < bounds[k + 1]; ++i) {
+      for (std::size_t i = windows.first(k); i < windows.first(k + 1); ++i) {
         if (!measured.counts(i)) continue;
         squares += std::pow((measured.values[i] - run->simulated[m][i]) / scale, 2);
         ++samples;

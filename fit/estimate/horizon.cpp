@@ -41,10 +41,9 @@ std::vector<Stretch> stretches_of(const Job& job) {
     const Recording& recording = job.recordings[r];
     if (recording.role != Role::fit) continue;
     const double duration = duration_of(recording) / static_cast<double>(parts);
-    std::vector<std::size_t> bounds = first_samples(recording, duration);
-    bounds.push_back(recording.times.size());
-    for (std::size_t part = 0; part + 1 < bounds.size(); ++part)
-      stretches.push_back({r, part, bounds[part], bounds[part + 1], duration});
+    const Partition windows = windows_of(recording, duration);
+    for (std::size_t part = 0; part < windows.parts(); ++part)
+      stretches.push_back({r, part, windows.first(part), windows.first(part + 1), duration});
   }
   return stretches;
 }

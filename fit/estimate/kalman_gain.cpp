@@ -41,7 +41,7 @@ std::optional<double> kalman_gain(const Job& job, const std::vector<double>& val
 
 std::optional<double> quiet_gain(const Job& job, const FitResult& fit) {
   constexpr double kFarMore = 9.0;  // of the mean square, over that of the readings
-  const bool is_moved = fit.usable && fit.observer_gain == 0.0 && fit.at_solution &&
+  const bool is_moved = fit.is_usable() && fit.observer_gain == 0.0 && fit.at_solution &&
                         fit.at_solution->input_noise &&
                         fit.at_solution->input_noise->mean_squares.maxCoeff() > kFarMore;
   return is_moved ? kalman_gain(job, values_of(fit)) : std::nullopt;

@@ -38,14 +38,14 @@ std::optional<double> free_running_error(const Job& job, const FitResult& fit) {
 
 std::vector<FitResult> fits_at_other_gains(const Job& job, const FitResult& fit,
                                            const RunContext& context, const ErrorOptions& options) {
-  if (!tracks(job.options.criterion) || !(fit.observer_gain > 0.0) || !fit.usable) return {};
+  if (!tracks(job.options.criterion) || !(fit.observer_gain > 0.0) || !fit.is_usable()) return {};
   const ThreadPool pool(job.options.threads);
   const std::array factors{1.0 / options.other_gain, options.other_gain};
   std::vector<FitResult> fits(factors.size());
   parallel_for(fits.size(), [&](std::size_t k) {
     fits[k] = fit_at(job, fit, factors[k] * fit.observer_gain, context);
   });
-  std::erase_if(fits, [](const FitResult& f) { return !f.usable; });
+  std::erase_if(fits, [](const FitResult& f) { return !f.is_usable(); });
   return fits;
 }
 

@@ -91,7 +91,7 @@ std::optional<Dependence> dependence_on(const std::string& name, const std::vect
 
 std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) {
   std::vector<ResidualSeries> list = residual_series(job, result);
-  if (result.usable) allow_for_parameters(job, result, list);
+  if (result.is_usable()) allow_for_parameters(job, result, list);
   std::vector<SeriesTest> tests(list.size());
   const ThreadPool pool(job.options.threads);
   parallel_for(list.size(), [&](std::size_t s) {
@@ -115,7 +115,7 @@ std::vector<SeriesTest> test_residuals(const Job& job, const FitResult& result) 
     const auto& times = recording.times;
     std::vector<double> instants;
     for (const std::size_t i : series.samples) instants.push_back(times[i]);
-    test.outliers = outliers(series.values);
+    test.outliers = outliers(series.values, kOptions.outliers);
     std::erase_if(test.outliers, [&](std::size_t i) {
       return std::abs(series.values[i]) < kOptions.outlier_sigmas;
     });

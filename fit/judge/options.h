@@ -5,6 +5,20 @@
 
 namespace axisfit {
 
+/// Isolated bad samples (outliers.h).
+struct OutlierOptions {
+  std::size_t fewest_samples = 30;  ///< of a series, for it to have a scale
+  std::size_t neighbours = 10;      ///< on either side, whose median is the level
+  std::size_t phase = 50;           ///< samples over which the scatter is one and the same
+  std::size_t burst = 3;            ///< bad samples in a row, at most
+  double alone = 1.0 / 3.0;         ///< of its deviation, within which its neighbours stay
+  double false_alarms = 0.005;      ///< in a series of Gaussian noise
+  /// The scale is not taken at the median of the magnitudes but where this part of them is less:
+  /// nearly twice as efficient, it sees a phase of motion that is a fifth of a series, and the
+  /// values of a grid most of which are equal. That fewer than one in five are bad may be assumed.
+  double scale_part = 0.8;
+};
+
 /// What docs/effect-selection.md and docs/result.md say of explained signals and of grades holds
 /// with these values.
 struct GradeOptions {
@@ -19,8 +33,9 @@ struct GradeOptions {
   double colour_excess = 0.25, colour_errors = 8.0;
 
   // Whether a residual depends on a variable that it should not depend on.
-  std::size_t ranges = 12;      ///< of the variable, with equally many samples
-  double significance = 1e-3;   ///< of eight variables and dozens of signals, one by chance is rare
+  std::size_t ranges = 12;     ///< of the variable, with equally many samples
+  double significance = 1e-3;  ///< of eight variables and dozens of signals, one by chance is rare
+  OutlierOptions outliers{};
   double outlier_sigmas = 4.0;  ///< less stands out from its neighbours alone, as a count does
 
   // How far a fit can be relied on.

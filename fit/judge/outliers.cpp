@@ -8,30 +8,15 @@
 namespace axisfit {
 namespace {
 
-constexpr std::size_t kMinSamples = 30;
-constexpr std::size_t kNeighbours = 10;  // on either side
-constexpr std::size_t kPhase = 50;       // samples over which the scatter is one and the same
-constexpr std::size_t kBurst = 3;
-constexpr double kAlone = 1.0 / 3.0;
-constexpr double kFalseAlarms = 0.005;  // in a series
+/// The magnitude that this part of standard normal values stays below.
+double normal_magnitude(double part) { return normal_quantile(0.5 + 0.5 * part); }
 
-// The scale is not taken at the median of the magnitudes but where four in five are less: nearly
-// twice as efficient, it sees a phase of motion that is a fifth of a series, and the values of a
-// grid most of which are equal. That fewer than one in five are bad may be assumed.
-constexpr double kShare = 0.8;
-
-/// The magnitude that this share of standard normal values stays below.
-double normal_magnitude() {
-  static const double value = normal_quantile(0.5 + 0.5 * kShare);
-  return value;
-}
-
-/// Standard deviation of normal deviations from their magnitudes.
-double scale(std::span<const double> magnitudes) {
+/// Standard deviation of normal deviations, by the magnitude that this part of them stays below.
+double scale(std::span<const double> magnitudes, double part) {
   std::vector<double> sorted(magnitudes.begin(), magnitudes.end());
-  const auto rank = static_cast<std::ptrdiff_t>(kShare * static_cast<double>(sorted.size()));
+  const auto rank = static_cast<std::ptrdiff_t>(part * static_cast<double>(sorted.size()));
   std::nth_element(sorted.begin(), sorted.begin() + rank, sorted.end());
-  return sorted[static_cast<std::size_t>(rank)] / normal_magnitude();
+  return sorted[static_cast<std::size_t>(rank)] / normal_magnitude(part);
 }
 
 double median(std::vector<double>& values) {
@@ -56,40 +41,42 @@ double rounding_error(std::span<const double> values) {
 /// How many scales normal deviations, so many of them, hardly ever reach. The scale is itself an
 /// estimate, as certain as a standard deviation of so many degrees of freedom (from the variance of
 /// a sample quantile). It is less certain in coloured noise, but there neighbours go along.
-double threshold(std::size_t deviations) {
+double threshold(std::size_t deviations, const OutlierOptions& options) {
   const double n = static_cast<double>(deviations);
-  const double q = normal_magnitude();
-  const double degrees_of_freedom =
-      n * 2.0 * std::pow(q * normal_density(q), 2) / (kShare * (1.0 - kShare));
-  return student_upper_quantile(0.5 * kFalseAlarms / n, degrees_of_freedom);
+  const double q = normal_magnitude(options.scale_part);
+  const double degrees_of_freedom = n * 2.0 * std::pow(q * normal_density(q), 2) /
+                                    (options.scale_part * (1.0 - options.scale_part));
+  return student_upper_quantile(0.5 * options.false_alarms / n, degrees_of_freedom);
 }
 
 /// Whether a sample departs from `level` and returns, within a burst, and next to nothing around
 /// goes as far.
-bool is_alone(std::span<const double> values, std::size_t at, double level) {
-  const double limit = kAlone * std::abs(values[at] - level);
+bool is_alone(std::span<const double> values, std::size_t at, double level,
+              const OutlierOptions& options) {
+  const double limit = options.alone * std::abs(values[at] - level);
   const auto beyond = [&](std::size_t i) { return std::abs(values[i] - level) > limit; };
   std::size_t first = at, last = at;
-  while (first > 0 && last - first < kBurst && beyond(first - 1)) --first;
-  while (last + 1 < values.size() && last - first < kBurst && beyond(last + 1)) ++last;
-  if (last - first >= kBurst || first < 2 || last + 2 >= values.size()) return false;
+  while (first > 0 && last - first < options.burst && beyond(first - 1)) --first;
+  while (last + 1 < values.size() && last - first < options.burst && beyond(last + 1)) ++last;
+  if (last - first >= options.burst || first < 2 || last + 2 >= values.size()) return false;
   // Others nearby: noise, or a second spike.
   std::size_t others = 0;
-  for (std::size_t i = at - std::min(at, kNeighbours); i < first; ++i) others += beyond(i);
-  for (std::size_t i = last + 1; i <= std::min(values.size() - 1, at + kNeighbours); ++i)
+  for (std::size_t i = at - std::min(at, options.neighbours); i < first; ++i) others += beyond(i);
+  for (std::size_t i = last + 1; i <= std::min(values.size() - 1, at + options.neighbours); ++i)
     others += beyond(i);
   return others <= (first == last ? 2u : 1u);
 }
 
 }  // namespace
 
-std::vector<std::size_t> outliers(std::span<const double> residuals) {
+std::vector<std::size_t> outliers(std::span<const double> residuals,
+                                  const OutlierOptions& options) {
   const std::size_t n = residuals.size();
-  if (n < kMinSamples) return {};
+  if (n < options.fewest_samples) return {};
   std::vector<double> level(n), magnitude(n), neighbours;
   for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t begin = i - std::min(i, kNeighbours);
-    const std::size_t end = std::min(n, i + 1 + kNeighbours);
+    const std::size_t begin = i - std::min(i, options.neighbours);
+    const std::size_t end = std::min(n, i + 1 + options.neighbours);
     neighbours.clear();
     for (std::size_t k = begin; k < end; ++k)
       if (k != i) neighbours.push_back(residuals[k]);
@@ -97,20 +84,21 @@ std::vector<std::size_t> outliers(std::span<const double> residuals) {
     magnitude[i] = std::abs(residuals[i] - level[i]);
   }
   const double rounding = rounding_error(residuals);
-  const double whole = scale(magnitude) + rounding;
+  const double whole = scale(magnitude, options.scale_part) + rounding;
   if (!(whole > 0.0)) return {};
-  const double reach = threshold(n);
+  const double reach = threshold(n, options);
 
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < n; ++i) {
-    if (magnitude[i] <= reach * whole || !is_alone(residuals, i, level[i])) continue;
+    if (magnitude[i] <= reach * whole || !is_alone(residuals, i, level[i], options)) continue;
     // Each side by itself: at the edge of a phase one of them is wholly within it.
     const std::span<const double> all = magnitude;
-    const auto before = all.subspan(i - std::min(i, kPhase), std::min(i, kPhase));
-    const auto after = all.subspan(i + 1, std::min(n - 1 - i, kPhase));
+    const auto before = all.subspan(i - std::min(i, options.phase), std::min(i, options.phase));
+    const auto after = all.subspan(i + 1, std::min(n - 1 - i, options.phase));
     double local = 0.0;
     for (const auto side : {before, after})
-      if (side.size() >= kPhase / 2) local = std::max(local, scale(side));
+      if (side.size() >= options.phase / 2)
+        local = std::max(local, scale(side, options.scale_part));
     if (magnitude[i] > reach * (local + rounding)) found.push_back(i);
   }
   return found;

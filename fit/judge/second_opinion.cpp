@@ -34,7 +34,8 @@ InverseStart try_inverse_start(Job& job, FitResult& fit, const RunContext& conte
     return InverseStart::not_tried;
   const std::vector<double> from = start_from(job, *estimate);
   const double cost = cost_at(job, values_of(fit), fit.observer_gain);
-  if (fit.usable && !is_graded_wrong(job, fit) && !(cost_at(job, from, fit.observer_gain) < cost))
+  if (fit.is_usable() && !is_graded_wrong(job, fit) &&
+      !(cost_at(job, from, fit.observer_gain) < cost))
     return InverseStart::not_tried;
 
   Job again = job;
@@ -42,7 +43,7 @@ InverseStart try_inverse_start(Job& job, FitResult& fit, const RunContext& conte
   FitResult other = estimate_with_noise(again, context, from);
   again.options = job.options;
   const auto rank = [](const FitResult& f, double c) {
-    return std::tuple(!f.usable, f.verdict.kind == FitVerdict::Kind::not_simulated, c);
+    return std::tuple(!f.is_usable(), f.verdict.kind == FitVerdict::Kind::not_simulated, c);
   };
   const double other_cost = cost_at(job, values_of(other), fit.observer_gain);
   if (!(rank(other, other_cost) < rank(fit, options.same_minimum * cost)))
@@ -65,7 +66,7 @@ std::optional<SecondOpinion> second_opinion(const Job& job, const FitResult& fit
         std::hypot(own.uncertainty.standard_error, other.uncertainty.standard_error);
     const double difference = std::abs(own.value - other.value);
     const double size = std::max(std::abs(own.value), std::abs(other.value));
-    if (fit.usable && other.uncertainty.determined &&
+    if (fit.is_usable() && other.uncertainty.determined &&
         difference > options.contradiction_errors * error &&
         difference > options.contradiction_part * size)
       opinion.contradictions.push_back(i);

@@ -13,11 +13,14 @@
 
 #include "base/distributions.h"
 #include "base/linear_algebra.h"
+#include "fit/search/options.h"
 #include "fit/solve/parameters.h"
 #include "sim/effects/effects.h"
 
 namespace axisfit {
 namespace {
+
+constexpr SearchOptions::ClosedForms kOptions;
 
 /// What curves have as their variable.
 struct Variable {
@@ -204,14 +207,13 @@ Eigen::MatrixXd with_column(Eigen::MatrixXd a, const Eigen::VectorXd& column) {
 std::size_t best_beside(const Eigen::MatrixXd& terms, const Eigen::VectorXd& left,
                         const std::vector<Form>& forms, const Eigen::MatrixXd& columns,
                         double price) {
-  constexpr double kAlias = 1e-6;
   const Eigen::MatrixXd basis = LeastSquaresSolver(terms).basis();
   const Eigen::MatrixXd own = columns - basis * (basis.transpose() * columns);
   double most = 0.0;
   std::size_t best = forms.size();
   for (std::size_t g = 0; g < forms.size(); ++g) {
     const auto k = static_cast<Eigen::Index>(g);
-    if (own.col(k).norm() < kAlias * columns.col(k).norm()) continue;
+    if (own.col(k).norm() < kOptions.alias * columns.col(k).norm()) continue;
     const double gain =
         std::pow(own.col(k).dot(left), 2) / own.col(k).squaredNorm() - forms[g].inside * price;
     if (gain <= most) continue;
@@ -266,7 +268,7 @@ std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
     if (chosen.empty()) {
       least_cost = std::min(least_cost, cost);  // of nothing at all
     } else if (cost < least_cost && degrees > 0.0 &&
-               chi_square <= chi_square_upper_quantile(1e-3, degrees)) {
+               chi_square <= chi_square_upper_quantile(kOptions.chance, degrees)) {
       least_cost = cost;
       const Eigen::VectorXd sum = spline.coefficients([&](double q) {
         double value = 0.0;
@@ -285,8 +287,7 @@ std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
             {factors[k], std::sqrt(variance(k, k)), forms[chosen[c]].unit, forms[chosen[c]].text});
       }
     }
-    constexpr std::size_t kMost = 3;
-    if (chosen.size() == kMost) return best;
+    if (chosen.size() == kOptions.most_terms) return best;
     const std::size_t next = best_beside(terms, left, forms, columns, price);
     if (next == forms.size()) return best;
     chosen.push_back(next);
@@ -308,7 +309,7 @@ bool is_confirmed(const ClosedForm& form, const Hypothesis& curve, const FittedM
   for (std::size_t k = 0; k < form.coefficients.size(); ++k)
     *member[curve.strengths.front() - 1 + k] = form.coefficients[k];
   const FitResult fit = refit(job, context);
-  if (!fit.usable) return false;
+  if (!fit.is_usable()) return false;
   const auto found = residual_series(job, fit);
   const Improvement gain = improvement(residual_series(without.job, without.fit), found);
   if (!gain.comparable || gain.p_value > context.options.acceptance.chance) return false;

@@ -33,7 +33,7 @@ std::optional<ExchangedSearch> search_with_exchanged_roles(const Job& baseline,
   found.first = estimate_with_noise(found.baseline, context);
   if (found.first.interrupted) throw Interrupted();
   found.inverse_start = try_inverse_start(found.baseline, found.first, context);
-  if (!found.first.usable) return std::nullopt;
+  if (!found.first.is_usable()) return std::nullopt;
   SearchOptions options;
   options.far_from_noise.of_model = options.far_from_noise.of_model_exchanged;
   found.selection = select_effects(found.baseline, found.first, options, context);

@@ -107,6 +107,35 @@ struct SearchOptions {
     double of_model_exchanged = 70.0;
   } far_from_noise;
 
+  /// What is tried of another transmission.
+  struct Transmission {
+    /// Hz, of motor and arm against each other: slower and they would not move together, faster and
+    /// it would not show.
+    std::array<double, 3> frequencies{15.0, 40.0, 120.0};
+    double damping_ratio = 0.1;                        ///< of that motion
+    std::array<double, 3> motor_parts{0.1, 0.5, 0.9};  ///< of the moved mass, where it is one
+    double least_arm_part = 0.01;                      ///< that is left of it for the arm
+    /// Parts of the stroke: from a gap that is hardly seen to one of a few thousandths.
+    std::array<double, 3> gaps{1e-4, 5e-4, 3e-3};
+  } transmission;
+
+  /// Periods of a force along the stroke, as peaks of a spectrum over it.
+  struct Periods {
+    double samples_per_period = 4.0;  ///< at the highest speed, and ...
+    double most_per_stroke = 400.0;   ///< ... periods, at most
+    double cycle_step = 0.25;         ///< cycles per stroke, from line to line: peaks are one wide
+    std::size_t first_line = 4;       ///< of one cycle: longer forces are no ripple
+    std::size_t sizes = 24;           ///< of a response are computed, which change slowly
+    std::size_t exact = 4;            ///< times as many peaks as are wanted are computed exactly
+  } periods;
+
+  /// A sum of named terms in the place of a curve.
+  struct ClosedForms {
+    double chance = 1e-3;        ///< that the curve differs from its form no more than by noise
+    std::size_t most_terms = 3;  ///< more say no less than the curve
+    double alias = 1e-6;         ///< part of a term that the others cannot make: below is rounding
+  } closed_forms;
+
   double curve_coefficients = 14.0;  ///< that a curve in the place of named effects has, at least
 };
 

@@ -6,10 +6,13 @@
 #include <numbers>
 
 #include "base/linear_algebra.h"
+#include "fit/search/options.h"
 #include "sim/sampling.h"
 
 namespace axisfit {
 namespace {
+
+constexpr SearchOptions::Periods kOptions;
 
 /// One step of a rigid axis of unit mass that tracks the data by the observer, by the implicit
 /// midpoint rule, stable however high the observer gain: of (position, velocity), and what a force
@@ -105,7 +108,8 @@ std::vector<double> periods_in(const Recording& recording, const SimulatedRecord
   }
   const double stroke = high - low;
   const double interval = mean_interval(recording.times);
-  const double shortest = std::max(4.0 * speed * interval, stroke / 400.0);
+  const double shortest =
+      std::max(kOptions.samples_per_period * speed * interval, stroke / kOptions.most_per_stroke);
   if (!(stroke > 0.0) || !(shortest < stroke)) return {};
 
   struct Line {
@@ -133,18 +137,18 @@ std::vector<double> periods_in(const Recording& recording, const SimulatedRecord
   // response, backwards in time, to the residual: one for all waves. The size of a response changes
   // slowly over the waves, so that a few of them tell.
   const std::vector<double> adjoint = adjoint_response(recording, residual, observer);
-  const double spacing = 0.25 / stroke;  // 1/m, a quarter of a cycle over the stroke
-  constexpr std::size_t kFirst = 4, kSizes = 24;
+  const double spacing = kOptions.cycle_step / stroke;  // 1/m
   const auto waves = static_cast<std::size_t>(std::ceil((1.0 / shortest) / spacing));
-  const std::size_t stride = std::max<std::size_t>(1, waves / kSizes);
+  const std::size_t stride = std::max<std::size_t>(1, waves / kOptions.sizes);
   std::vector<std::complex<double>> turn(n), phase(n);
   for (std::size_t i = 0; i < n; ++i) {
     turn[i] = unit(spacing, i);
-    phase[i] = adjoint[i] * weight(i) * unit((kFirst - 1) * spacing, i);
+    phase[i] =
+        adjoint[i] * weight(i) * unit(static_cast<double>(kOptions.first_line - 1) * spacing, i);
   }
   std::vector<Line> spectrum;
   double size = 0.0;
-  for (std::size_t k = kFirst; k < waves; ++k) {
+  for (std::size_t k = kOptions.first_line; k < waves; ++k) {
     if (is_set(stop)) throw Interrupted();
     std::complex<double> product = 0.0;
     for (std::size_t i = 0; i < n; ++i) product += phase[i] *= turn[i];
@@ -158,10 +162,9 @@ std::vector<double> periods_in(const Recording& recording, const SimulatedRecord
     const bool above_right = i + 1 == spectrum.size() || spectrum[i].gain > spectrum[i + 1].gain;
     if (above_left && above_right) peaks.push_back(spectrum[i]);
   }
-  constexpr std::size_t kExact = 4;
   std::ranges::stable_sort(peaks, std::greater{}, &Line::gain);
   // The best of them exactly.
-  if (peaks.size() > kExact * most) peaks.resize(kExact * most);
+  if (peaks.size() > kOptions.exact * most) peaks.resize(kOptions.exact * most);
   for (Line& peak : peaks) {
     const Eigen::MatrixXd columns = columns_of(peak.wave);
     const Eigen::Vector2d right = columns.transpose() * residual;

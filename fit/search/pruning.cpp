@@ -32,7 +32,7 @@ bool drop_degenerate(SearchState& state) {
     const auto shape = shape_at_bound(state.current().job, state.current().fit, hypothesis);
     if (!shape) continue;
     const FittedModel& reduced = state.chain.without(a);
-    if (!reduced.fit.usable) continue;
+    if (!reduced.fit.is_usable()) continue;
     state.outcomes.fail(hypothesis, {.test = Rejection::Test::bound, .parameter = shape});
     state.take_out(a, reduced);
     state.degenerate.push_back(hypothesis);
@@ -58,7 +58,7 @@ void eliminate_backward(SearchState& state, const SearchContext& context) {
       if (!is_plain(state.accepted()[b])) doubted.push_back(b);
     state.chain.fit_without(doubted);
     const FittedModel& reduced = state.chain.without(a);
-    if (!reduced.fit.usable ||
+    if (!reduced.fit.is_usable() ||
         is_needed(improvement(reduced, state.current()), effect.hypothesis.parameters(),
                   effect.is_seen_elsewhere, context.options)) {
       ++a;
@@ -82,7 +82,7 @@ void drop_imitators(SearchState& state, const SearchContext& context) {
         continue;
       state.report_progress(context.run, "what does " + hypothesis.name + " explain?");
       const FittedModel& reduced = state.chain.without(a);
-      if (!reduced.fit.usable) continue;
+      if (!reduced.fit.is_usable()) continue;
       const double explained = improvement(reduced, state.current()).missing_percent;
       if (explained >= percent) continue;
       percent = explained;

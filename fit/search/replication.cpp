@@ -34,7 +34,7 @@ std::optional<FitResult> fit_elsewhere(const Job& job, const FitResult& fit,
   std::optional<Job> other = with_exchanged_roles(job);
   if (!other) return std::nullopt;
   FitResult result = refit_from(*std::move(other), values_of(fit), context);
-  if (!result.usable) return std::nullopt;
+  if (!result.is_usable()) return std::nullopt;
   return result;
 }
 

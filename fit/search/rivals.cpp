@@ -45,7 +45,7 @@ Scored with_strengths(Scored rival, const Job& others, const SearchContext& cont
   const Job alone =
       with_hypothesis(fixed_at(others, initial_values(others)), hypothesis, {}, rival.own);
   const FitResult fit = refit(alone, context);
-  if (fit.usable) rival.own = values_in(fitted_model(alone, fit), hypothesis);
+  if (fit.is_usable()) rival.own = values_in(fitted_model(alone, fit), hypothesis);
   return rival;
 }
 
@@ -69,7 +69,7 @@ std::vector<Tried> try_rivals(const SearchState& state, std::size_t place, Count
     if (start.others.empty()) start.others = initial_values(others);
     list[i] = try_hypothesis(others, start, context);
   });
-  std::erase_if(list, [](const Tried& t) { return !t.fit.usable; });
+  std::erase_if(list, [](const Tried& t) { return !t.fit.is_usable(); });
   return list;
 }
 

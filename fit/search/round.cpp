@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "fit/criterion/gains.h"
+#include "fit/data/partition.h"
 #include "fit/search/shortlist.h"
 #include "sim/effects/effects.h"
 
@@ -194,7 +195,7 @@ class RoundTrial {
   void try_elsewhere() {
     std::vector<Tried*> order;
     for (Tried& e : result_.models)
-      if (e.fit.usable && is_of_validation(*e.rejection)) order.push_back(&e);
+      if (e.fit.is_usable() && is_of_validation(*e.rejection)) order.push_back(&e);
     std::ranges::stable_sort(order, std::greater{},
                              [](const Tried* e) { return e->gain.fit_gain; });
     const std::size_t at_once = limits().at_once;
@@ -321,11 +322,11 @@ RoundResult try_round(const FittedModel& model, const RoundOptions& options, Rou
 }
 
 FittedModel with_held_out_blocks(FittedModel model, const SearchContext& context) {
-  const std::size_t blocks = context.options.round.blocks;
   for (Recording& r : model.job.recordings) {
-    r.held_out.assign(r.times.size(), false);
-    for (std::size_t i = 0; i < r.times.size(); ++i)
-      r.held_out[i] = i * blocks / r.times.size() % 2 == 1;
+    const Partition blocks(r.times.size(), context.options.round.blocks);
+    r.held_out.clear();
+    for (std::size_t k = 0; k < blocks.parts(); ++k)
+      r.held_out.resize(blocks.first(k + 1), k % 2 == 1);
   }
   model.fit = refit_from(model.job, values_of(model.fit), context);
   return model;

@@ -102,7 +102,7 @@ FittedModel final_model(const SearchState& state, const FitResult& first, const 
     state.report_progress(rounds.context.run, "final fit");
     try {
       FitResult exact = final_fit(last.job, values_of(last.fit), rounds.context.run);
-      if (exact.usable) last.fit = std::move(exact);
+      if (exact.is_usable()) last.fit = std::move(exact);
     } catch (const Interrupted&) {
       interrupted = true;
     }
@@ -128,7 +128,7 @@ EffectSelection search_effects(const Job& job, const FitResult& first, Rounds& r
   EffectSelection selection;
   SearchState state = begin(job, first, rounds);
   selection.held_out_blocks = rounds.held_out_blocks;
-  if (state.current().fit.usable) {
+  if (state.current().fit.is_usable()) {
     state = search(std::move(state), rounds);
     const SearchState found = state;
     try {
@@ -140,7 +140,7 @@ EffectSelection search_effects(const Job& job, const FitResult& first, Rounds& r
     }
   }
   selection.verdict.small = small_effects(state, rounds);
-  const bool is_noise = state.current().fit.usable && state.explained();
+  const bool is_noise = state.current().fit.is_usable() && state.explained();
   selection.explained = is_noise && selection.verdict.small.empty();
   selection.result = final_model(state, first, rounds, selection.interrupted);
   try {
@@ -150,7 +150,7 @@ EffectSelection search_effects(const Job& job, const FitResult& first, Rounds& r
     selection.interrupted = true;
     selection.models = {state.chain.declared(), state.current()};
   }
-  if (state.chain.declared().fit.usable) {
+  if (state.chain.declared().fit.is_usable()) {
     enter_effects(state, selection.result, selection.verdict);
     selection.verdict.kind = kind_of(selection, is_noise);
   }
@@ -192,7 +192,7 @@ EffectSelection with_criterion(EffectSelection selection, const Criterion& crite
   // Windows, and a gain that follows the noise, show less than the search has seen.
   const bool was_noise =
       selection.explained || verdict.kind == SelectionVerdict::Kind::hardly_anything;
-  const bool is_noise = was_noise && last.fit.usable && explains(last);
+  const bool is_noise = was_noise && last.fit.is_usable() && explains(last);
   selection.explained = is_noise && verdict.small.empty();
   if (verdict.kind != SelectionVerdict::Kind::no_usable_fit)
     verdict.kind = kind_of(selection, is_noise);
@@ -216,7 +216,7 @@ Start start_of(const Job& job, const FitResult& first, const SearchContext& cont
   start.input_is_noisy = least_gain.has_value();
   const bool was_chosen_to_track = job.choose_criterion && tracks(job.options.criterion);
   start.tracks =
-      first.usable && (window_states(job) > 0 || start.input_is_noisy || was_chosen_to_track);
+      first.is_usable() && (window_states(job) > 0 || start.input_is_noisy || was_chosen_to_track);
   if (!start.tracks) return start;
   if (!least_gain) least_gain = kalman_gain(job, values_of(first));
   start.model = tracking(std::move(start.model),

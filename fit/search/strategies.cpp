@@ -43,7 +43,7 @@ void note_relative(const Tried& tried, ModelChain& chain) {
 Accepted accepted_from(const RoundResult& round, const Tried& best, const SearchOptions& options) {
   Accepted accepted{best.hypothesis, {}, best.replication || best.on_blocks};
   for (const Tried& other : round.models) {
-    if (&other == &best || !other.fit.usable || !other.gain.comparable) continue;
+    if (&other == &best || !other.fit.is_usable() || !other.gain.comparable) continue;
     if (is_clearly_worse(bic_advantage(best, other), options)) continue;
     accepted.rivals.push_back(
         {std::make_shared<const Hypothesis>(other.hypothesis), values_in(other)});
@@ -129,7 +129,7 @@ double loss_of(const FittedModel& a, const FittedModel& b) {
 }
 
 bool is_better(const FittedModel& a, const FittedModel& b, const SearchOptions& options) {
-  return a.fit.usable && is_clearly_worse(loss_of(a, b), options);
+  return a.fit.is_usable() && is_clearly_worse(loss_of(a, b), options);
 }
 
 /// Whether a model with a curve in the place of the accepted effects could explain the recordings
@@ -189,7 +189,7 @@ SearchState together(SearchState state, Rounds& rounds) {
   if (is_continued)
     state.restart(tracking(declared, score_gains(declared.job).front(), rounds.context));
   const double chance = rounds.context.options.acceptance.provisional_chance;
-  while (state.current().fit.usable && has_room(state, rounds) && !state.explained() &&
+  while (state.current().fit.is_usable() && has_room(state, rounds) && !state.explained() &&
          add_best(state, false, chance, rounds).passed) {
   }
   const bool is_new = std::ranges::any_of(state.accepted(), [&](const Accepted& found) {
@@ -203,7 +203,7 @@ SearchState together(SearchState state, Rounds& rounds) {
   if (!is_new) return given_up();
   if (is_continued) {
     FittedModel all = state.chain.with_accepted(declared.job);
-    if (!all.fit.usable) return given_up();
+    if (!all.fit.is_usable()) return given_up();
     state.chain.replace(declared, std::move(all));
   }
   add_named(state, rounds);

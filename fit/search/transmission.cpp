@@ -6,8 +6,12 @@
 #include <numbers>
 #include <utility>
 
+#include "fit/search/options.h"
+
 namespace axisfit {
 namespace {
+
+constexpr SearchOptions::Transmission kOptions;
 
 std::size_t index_of(std::string_view quantity) { return quantity_index(quantity); }
 
@@ -32,10 +36,9 @@ struct Coupling {
   double stiffness, damping;
 };
 Coupling coupling(double motor, double arm, double frequency) {
-  constexpr double kDampingRatio = 0.1;
   const double w = 2.0 * std::numbers::pi * frequency;
   const double stiffness = motor * arm / (motor + arm) * w * w;
-  return {stiffness, 2.0 * kDampingRatio * stiffness / w};
+  return {stiffness, 2.0 * kOptions.damping_ratio * stiffness / w};
 }
 
 }  // namespace
@@ -75,25 +78,22 @@ std::vector<Hypothesis> transmission_hypotheses(const Job& job, const SearchScal
     if (frees_mass) values.push_back(scales.mass - motor);
     return values;
   };
-  const std::vector<double> shares =
-      splits_mass ? std::vector{0.1, 0.5, 0.9} : std::vector{axis.J_m / r2 / scales.mass};
-  // Hz, of motor and arm against each other: slower and they would not move together, faster and
-  // it would not show.
-  constexpr double kFrequencies[]{15.0, 40.0, 120.0};
+  std::vector<double> shares{axis.J_m / r2 / scales.mass};
+  if (splits_mass) shares.assign(kOptions.motor_parts.begin(), kOptions.motor_parts.end());
   for (const double share : shares) {
     const double motor = share * scales.mass, arm = scales.mass - motor;
     if (!(motor > 0.0) || !(arm > 0.0)) return {};
-    soft.settings.push_back(setting({coupling(motor, arm, kFrequencies[1]).damping}, motor));
-    for (const double frequency : kFrequencies) {
+    soft.settings.push_back(
+        setting({coupling(motor, arm, kOptions.frequencies[1]).damping}, motor));
+    for (const double frequency : kOptions.frequencies) {
       const auto [stiffness, damping] = coupling(motor, arm, frequency);
       gap.settings.push_back(setting({stiffness, damping}, motor));
     }
   }
   const double middle = shares[shares.size() / 2] * scales.mass;
-  for (const double frequency : kFrequencies)
+  for (const double frequency : kOptions.frequencies)
     soft.probes.push_back(coupling(middle, scales.mass - middle, frequency).stiffness);
-  // From a gap that is hardly seen to a few thousandths of the stroke.
-  gap.probes = {1e-4 * stroke, 5e-4 * stroke, 3e-3 * stroke};
+  for (const double part : kOptions.gaps) gap.probes.push_back(part * stroke);
   return {std::move(soft), std::move(gap)};
 }
 
@@ -104,8 +104,9 @@ void give_backlash(Job& job, double J_m) {
   if (!capabilities(job.model.structure).is_force_driven) return;
   axis.J_m = J_m;
   const double motor = J_m / std::pow(motor_radius(job.model), 2);
-  // At least a hundredth of it all is the arm.
-  const auto without_motor = [&](double mass) { return std::max(mass - motor, 0.01 * mass); };
+  const auto without_motor = [&](double mass) {
+    return std::max(mass - motor, kOptions.least_arm_part * mass);
+  };
   axis.M = without_motor(axis.M);
   for (FreeParameter& p : job.free) {
     if (p.quantity != index_of("M")) continue;

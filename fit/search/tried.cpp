@@ -46,7 +46,7 @@ void resume(Tried& tried, const SearchContext& context) {
 void judge(Tried& tried, const std::vector<ResidualSeries>& before, const Strictness& strictness,
            const SearchOptions& options) {
   tried.gain = improvement(before, tried.residuals);
-  if (!tried.fit.usable) {
+  if (!tried.fit.is_usable()) {
     tried.rejection = Rejection{.test = Rejection::Test::fit};
     return;
   }

@@ -178,13 +178,12 @@ std::optional<SimulatedRecording> simulate_in_windows(const Job& job, const Para
   recording.held_out.clear();
   if (share < 1.0) {
     constexpr double kFewest = 20.0;
-    std::vector<std::size_t> bounds = first_samples(recording, length);
-    bounds.push_back(recording.times.size());
-    for (std::size_t k = 0; k + 1 < bounds.size(); ++k) {
-      const auto samples = static_cast<double>(bounds[k + 1] - bounds[k]);
+    const Partition windows = windows_of(recording, length);
+    for (std::size_t k = 0; k < windows.parts(); ++k) {
+      const auto samples = static_cast<double>(windows.size(k));
       const double known = std::min(samples, std::max(kFewest, share * samples));
-      recording.held_out.resize(bounds[k] + static_cast<std::size_t>(known), false);
-      recording.held_out.resize(bounds[k + 1], true);
+      recording.held_out.resize(windows.first(k) + static_cast<std::size_t>(known), false);
+      recording.held_out.resize(windows.first(k + 1), true);
     }
   }
   const RecordingCost cost(fitted, space, index, {});

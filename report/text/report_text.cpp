@@ -103,7 +103,7 @@ std::string starts_text(const RunResult& run_result) {
   if (starts < 2) {
     constexpr double kMuch = 4.0;
     const bool has_many = capabilities(run_result.job().model.structure).has_backlash;
-    return has_many && run_result.fit().usable && run_result.fit().reduced_chi_square > kMuch
+    return has_many && run_result.fit().is_usable() && run_result.fit().reduced_chi_square > kMuch
                ? paragraph(
                      "A gear makes wrong minima: --starts 8 shows whether this is one of them.", 2)
                : "";

@@ -35,7 +35,7 @@ TEST(EmpsTest, FitAgreesWithThePublishedEstimates) {
   const JobFile file = read_job_file(AXISFIT_CONFIGS "/jobs/emps.yaml", folder);
   const FitResult result = estimate(file.job);
   EXPECT_TRUE(result.verdict.has_minimum());
-  EXPECT_TRUE(result.usable) << result.message;
+  EXPECT_TRUE(result.is_usable()) << result.message;
 
   std::map<std::string, double> value;
   for (const ParameterResult& p : result.parameters) {

@@ -24,7 +24,7 @@ RunResult run_result_of(const std::string& job, const RunOptions& run_options = 
 /// any recording, fitted or not.
 void expect_truth(const RunResult& run_result, const Truth& truth) {
   const FitResult& fit = run_result.fit();
-  ASSERT_TRUE(fit.usable) << fit.message;
+  ASSERT_TRUE(fit.is_usable()) << fit.message;
   EXPECT_NEAR(fit.reduced_chi_square, 1.0, 0.05);
   EXPECT_TRUE(run_result.diagnosis->explained);
   ASSERT_EQ(fit.parameters.size(), truth.size());

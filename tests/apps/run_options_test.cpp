@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <stdexcept>
 #include <string>
 
 #include "tests/apps/files.h"
+#include "tests/base/message_of.h"
 #include "tests/sim/axes.h"
 
 namespace axisfit {
@@ -20,24 +20,15 @@ Job job() {
   return job;
 }
 
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "none";
-}
-
 TEST(RunOptions, AToleranceIsOfASignalThatThereIs) {
   const Tolerance found = tolerance_of("2.5 mm/s", job());
   EXPECT_EQ(found.value, 2.5);
   EXPECT_EQ(found.unit, "mm/s");
   EXPECT_EQ(tolerance_of("1mm/s", job()).unit, "mm/s");
-  EXPECT_EQ(refusal([] { tolerance_of("1 mm", job()); }),
+  EXPECT_EQ(message_of([] { tolerance_of("1 mm", job()); }),
             "--within '1 mm': no signal of the job can be given in mm");
   for (const char* text : {"", "mm/s", "0 mm/s", "-1 mm/s", "1", "inf mm/s", "nan mm/s"})
-    EXPECT_EQ(refusal([&] { tolerance_of(text, job()); }),
+    EXPECT_EQ(message_of([&] { tolerance_of(text, job()); }),
               "--within '" + std::string(text) +
                   "': write a number above zero and its unit, such as 1mm");
 }
@@ -46,21 +37,21 @@ TEST(RunOptions, AnAxisOfTheMachineHasItsJointCommandAndChannels) {
   Rig rig;
   rig.model = driven_mass(3.0);
   Job own = job();
-  EXPECT_EQ(refusal([&] { check_is_of_machine(rig, own, "here"); }), "none");
+  EXPECT_EQ(message_of([&] { check_is_of_machine(rig, own, "here"); }), "");
   rig.model.structure.joint = Joint::revolute;
-  EXPECT_EQ(refusal([&] { check_is_of_machine(rig, own, "here"); }),
+  EXPECT_EQ(message_of([&] { check_is_of_machine(rig, own, "here"); }),
             "here: joint or unit of the command are not those of the job's axis");
   const auto with = [&](const ChannelList& of_job, const ChannelList& of_axis) {
     own.model.structure.channels = kept(of_job);
     Rig other;
     other.model = driven_mass(3.0);
     other.model.structure.channels = of_axis.empty() ? nullptr : kept(of_axis);
-    return refusal([&] { check_is_of_machine(other, own, "here"); });
+    return message_of([&] { check_is_of_machine(other, own, "here"); });
   };
   const Channel oil{"oil", "degC", 20.0}, supply{"supply", "V", 0.0};
-  EXPECT_EQ(with({oil, supply}, {oil, supply}), "none");
-  EXPECT_NE(with({oil, supply}, {supply, oil}), "none");
-  EXPECT_NE(with({oil}, {oil, supply}), "none");
+  EXPECT_EQ(with({oil, supply}, {oil, supply}), "");
+  EXPECT_NE(with({oil, supply}, {supply, oil}), "");
+  EXPECT_NE(with({oil}, {oil, supply}), "");
 }
 
 TEST(RunOptions, OtherModelsAreThoseOfTheirFiles) {
@@ -75,7 +66,8 @@ TEST(RunOptions, OtherModelsAreThoseOfTheirFiles) {
   EXPECT_FALSE(models[0].uncertainty);
   Job turning = job();
   turning.model.structure.joint = Joint::revolute;
-  EXPECT_TRUE(refusal([&] { models_of({file}, turning); }).starts_with("--compare " + file + ": "));
+  EXPECT_TRUE(
+      message_of([&] { models_of({file}, turning); }).starts_with("--compare " + file + ": "));
 }
 
 TEST(RunOptions, AMotionIsForTheRigOfTheJob) {

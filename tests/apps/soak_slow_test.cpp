@@ -42,7 +42,7 @@ TEST(Soak, AThousandFitsTakeNoMoreMemoryThanTwoHundred) {
   // The whole of fit-params but for its command line.
   const auto fit = [](const std::string& job, bool select_effects = false) {
     const RunResult run_result = run(read_job_file(job).job, {.select_effects = select_effects});
-    ASSERT_TRUE(run_result.fit().usable);
+    ASSERT_TRUE(run_result.fit().is_usable());
     const std::string json = result_json(run_result).dump(2), text = report_text(run_result),
                       csv = residuals_csv(run_result.job(), run_result.fit(), run_result.diagnosis),
                       page = report_page(run_result, {"fit-params", job, "", "", ""});

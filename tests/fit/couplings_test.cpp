@@ -26,7 +26,7 @@ AxisRun run_of(const std::string& name, const std::string& channel, const std::s
       index = entry.index;
   job.free.push_back(free_parameter(quantity_list()[index], value));
   FitResult& fit = axis.result.first;
-  fit.usable = true;
+  fit.verdict.kind = FitVerdict::Kind::usable;
   ParameterResult found;
   found.value = value;
   found.uncertainty.determined = true;

@@ -123,7 +123,7 @@ inline Job two_recordings(const Model<double>& truth, const Model<double>& decla
 inline FitResult result_at_start(const Job& job) {
   const ParameterSpace space(job);
   FitResult result;
-  result.usable = true;
+  result.verdict.kind = FitVerdict::Kind::usable;
   std::vector<double> values;
   for (std::size_t i = 0; i < job.free.size(); ++i) {
     values.push_back(job.free[i].initial);

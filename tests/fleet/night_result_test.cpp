@@ -53,7 +53,7 @@ RunResult run_of_machine() {
   run.grade.grade = Grade::usable;
   run.baseline = scattering_machine(2, 0.0, 1, 0.1);
   run.baseline.recordings[1].role = Role::validate;
-  run.first.usable = true;
+  run.first.verdict.kind = FitVerdict::Kind::usable;
   run.first.parameters = {
       {{quantity_index("M")}, 12.0, {.determined = true, .standard_error = 0.5}},
       {{quantity_index("B_a")}, 40.0, {}}};
@@ -85,7 +85,7 @@ TEST(NightResult, LeavesOutParametersOfOneRecordingAndOfWrongFits) {
   run.baseline.free[0].recording = 0;
   EXPECT_TRUE(night_result(run).parameters.empty());
   run = run_of_machine();
-  run.first.usable = false;
+  run.first.verdict.kind = FitVerdict::Kind::no_minimum;
   EXPECT_TRUE(night_result(run).parameters.empty());
 }
 

@@ -3,26 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <exception>
 #include <filesystem>
 #include <string>
 
 #include "fleet/factory.h"
 #include "fleet/plan.h"
 #include "tests/apps/files.h"
+#include "tests/base/message_of.h"
 
 namespace axisfit {
-
-/// What a call throws; empty if nothing.
-template <class Call>
-std::string message_of(Call&& call) {
-  try {
-    call();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
-}
 
 /// A factory of three axes and five nights.
 class SmallFleet : public ::testing::Test {

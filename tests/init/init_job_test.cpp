@@ -140,7 +140,7 @@ TEST_F(InitJobTest, TheUsersGainIsAllThatABentScrewNeeds) {
   folder_.write("axis.yaml", axis);
   EXPECT_TRUE(read().job.guessed.empty());
   const FitResult result = estimate(read().job);
-  ASSERT_TRUE(result.usable) << result.message;
+  ASSERT_TRUE(result.is_usable()) << result.message;
   EXPECT_NEAR(result.parameters[0].value, 85.687, 0.01 * 85.687);  // bent by what is missing
   EXPECT_NEAR(result.parameters[1].value, 258.96, 0.05 * 258.96);
   // With the observer gain as high as the samples allow, the simulation follows 6 N that the model

@@ -34,7 +34,7 @@ class InitJobTest : public ::testing::Test {
 
   std::map<std::string, double> fitted(const JobFile& file) {
     const FitResult result = estimate(file.job);
-    EXPECT_TRUE(result.usable) << result.message;
+    EXPECT_TRUE(result.is_usable()) << result.message;
     std::map<std::string, double> values;
     for (const ParameterResult& p : result.parameters) {
       const std::string& name = file.job.entry(p.id.quantity).name;

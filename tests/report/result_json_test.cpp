@@ -230,7 +230,7 @@ TEST(ResultTest, ARecordingThatCannotBeSimulatedHasNoErrors) {
   run_result.checks = check_recordings(file.job);
   run_result.grade = grade_of(file.job, run_result.first, {});
   EXPECT_EQ(run_result.first.verdict.kind, FitVerdict::Kind::not_simulated);
-  EXPECT_FALSE(run_result.first.usable);
+  EXPECT_FALSE(run_result.first.is_usable());
   const Json json = result_json(run_result);
   EXPECT_EQ(json.at("status"), "failed");
   EXPECT_TRUE(json.at("recordings")[0].at("signals")[0].at("rmse").is_null());

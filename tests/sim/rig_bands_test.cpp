@@ -4,30 +4,21 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sim/rig.h"
-#include "tests/sim/axes.h"
+#include "tests/sim/rigs.h"
 
 namespace axisfit {
 namespace {
 
-/// A mass of 10 kg that is known to 2 %.
+/// Its mass is known to 2 %.
 Rig rig() {
-  Rig rig;
-  rig.model = driven_mass(10.0);
-  rig.model.axis.K_f = 1.0;
+  Rig rig = rig_of_mass();
   AxisUncertainty& known = rig.uncertainty.emplace();
   known.quantities = {{quantity_index("M"), true, 0.02, 0.0, 1.0}};
   known.correlation = {1.0};
   return rig;
 }
 
-RecordingOptions options() {
-  RecordingOptions options;
-  options.duration = 1.0;
-  options.rate = 50.0;
-  options.signals = {Signal::velocity};
-  return options;
-}
+RecordingOptions options() { return one_second(50.0, {Signal::velocity}); }
 
 TEST(Bands, FollowEverySignalInItsUnit) {
   const std::vector<Column> columns = record_with_bands(rig(), StepMotion{20.0, 0.0}, options());

@@ -5,28 +5,23 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "tests/sim/axes.h"
+#include "tests/sim/rigs.h"
 
 namespace axisfit {
 namespace {
 
-/// A mass of 10 kg that a force of 1 N per volt drives, with a noisy velocity.
+/// With a noisy velocity.
 Rig rig() {
-  Rig rig;
-  rig.model = driven_mass(10.0);
-  rig.model.axis.K_f = 1.0;
+  Rig rig = rig_of_mass();
   rig.noise[index_of(Signal::velocity)] = 0.01;
   return rig;
 }
 
 RecordingOptions options(std::vector<Signal> signals) {
-  RecordingOptions options;
-  options.duration = 1.0;
-  options.rate = 100.0;
-  options.signals = std::move(signals);
-  return options;
+  return one_second(100.0, std::move(signals));
 }
 
 constexpr StepMotion kStep{20.0, 0.305};

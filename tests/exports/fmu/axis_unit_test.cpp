@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "tests/base/message_of.h"
 #include "tests/sim/axes.h"
 
 namespace axisfit {
@@ -23,15 +23,6 @@ AxisUnit mass() {
   Model<double> model = driven_mass(2.0);
   model.axis.K_f = 1.0;
   return AxisUnit(model);
-}
-
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "none";
 }
 
 TEST(AxisUnit, InputsHoldUntilTheyAreSetAgain) {
@@ -86,28 +77,28 @@ TEST(AxisUnit, GoesBackToASnapshot) {
   AxisUnit other = mass();
   std::vector<char> cut = then;
   cut.pop_back();
-  EXPECT_EQ(refusal([&] { other.restore(cut); }), "this is no state of the axis");
+  EXPECT_EQ(message_of([&] { other.restore(cut); }), "this is no state of the axis");
 }
 
 TEST(AxisUnit, RefusesWhatCannotBe) {
   AxisUnit unit = mass();
-  EXPECT_EQ(refusal([&] { unit.value(99); }), "no variable has the value reference 99");
-  EXPECT_EQ(refusal([&] { unit.set(kChannelVariables, 1.0); }),
+  EXPECT_EQ(message_of([&] { unit.value(99); }), "no variable has the value reference 99");
+  EXPECT_EQ(message_of([&] { unit.set(kChannelVariables, 1.0); }),
             "no variable has the value reference 2");
-  EXPECT_EQ(refusal([&] { unit.set(kCommandVariable, INFINITY); }),
+  EXPECT_EQ(message_of([&] { unit.set(kCommandVariable, INFINITY); }),
             "the value for the value reference 1 is not finite");
-  EXPECT_EQ(refusal([&] { unit.set(reference_of("M"), -1.0); }),
+  EXPECT_EQ(message_of([&] { unit.set(reference_of("M"), -1.0); }),
             "M must be from 0.001 to 100000 kg, not -1");
-  EXPECT_EQ(refusal([&] { unit.step(0.0, -0.1); }), "a step of -0.1 s is not possible");
-  EXPECT_EQ(refusal([&] { unit.step(0.2, 0.1); }),
+  EXPECT_EQ(message_of([&] { unit.step(0.0, -0.1); }), "a step of -0.1 s is not possible");
+  EXPECT_EQ(message_of([&] { unit.step(0.2, 0.1); }),
             "a step from 0.2 s is not possible, since the axis is at 0 s");
-  EXPECT_EQ(refusal([&] { unit.set_start(1.0); }), "none");
+  EXPECT_EQ(message_of([&] { unit.set_start(1.0); }), "");
   unit.step(1.0, 0.1);
-  EXPECT_EQ(refusal([&] { unit.set_start(0.0); }),
+  EXPECT_EQ(message_of([&] { unit.set_start(0.0); }),
             "the start cannot be set any more: the axis has moved");
-  EXPECT_EQ(refusal([&] { unit.set(reference_of("initial.y0"), 0.1); }),
+  EXPECT_EQ(message_of([&] { unit.set(reference_of("initial.y0"), 0.1); }),
             "initial.y0 cannot be set any more: the axis has moved");
-  EXPECT_EQ(refusal([&] { unit.set(reference_of("k_g"), 1e6); }).substr(0, 35),
+  EXPECT_EQ(message_of([&] { unit.set(reference_of("k_g"), 1e6); }).substr(0, 35),
             "no variable has the value reference")
       << "a rigid axis has none";
 }

@@ -25,7 +25,7 @@ TEST(SuggestExperiment, IsFollowedWithTheSuccessPredicted) {
   Job job = slow_job(5);
   job.limits = kLimits;
   const FitResult before = estimate(job);
-  ASSERT_TRUE(before.usable);
+  ASSERT_TRUE(before.is_usable());
   const auto suggestion = suggest_experiment(job, before);
   ASSERT_TRUE(suggestion);
   const auto relative = [&](const Uncertainty& u, std::size_t i) {
@@ -42,7 +42,7 @@ TEST(SuggestExperiment, IsFollowedWithTheSuccessPredicted) {
       recorded(slide(), suggestion->experiment.motion, suggestion->experiment.duration, 6));
   job.recordings.back().name = "next";
   const FitResult after = estimate(job);
-  ASSERT_TRUE(after.usable);
+  ASSERT_TRUE(after.is_usable());
   for (std::size_t i = 0; i < job.free.size(); ++i) {
     const double predicted = suggestion->predicted.parameters[i].standard_error;
     EXPECT_NEAR(after.parameters[i].uncertainty.standard_error, predicted, 0.15 * predicted);

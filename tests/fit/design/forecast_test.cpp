@@ -14,7 +14,7 @@ TEST(Forecast, IsWhatTheFitFinds) {
   Job job = two_recordings(slide(), slide(), {"M", "B_a"});
   const Forecast expected = forecast(job, draw_start(job, 0));
   const FitResult fit = estimate(job);
-  ASSERT_TRUE(expected.finite && fit.usable);
+  ASSERT_TRUE(expected.finite && fit.is_usable());
   for (std::size_t i = 0; i < job.free.size(); ++i) {
     const double error = fit.parameters[i].uncertainty.standard_error;
     EXPECT_NEAR(expected.uncertainty.parameters[i].standard_error, error, 0.05 * error);

@@ -10,7 +10,7 @@ namespace {
 TEST(ClosedLoop, GivesTheMassFromReferenceAndEncoderWhereTheGainsAreKnown) {
   const Servo servo;
   const FitResult fit = estimate(servo_job(servo));
-  ASSERT_TRUE(fit.usable) << fit.message;
+  ASSERT_TRUE(fit.is_usable()) << fit.message;
   const double truth[]{servo.mass, servo.viscous, servo.coulomb};
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_NEAR(fit.parameters[i].value, truth[i], 0.01 * truth[i])
@@ -28,7 +28,7 @@ TEST(ClosedLoop, TellsWhatItCannotTell) {
   EXPECT_FALSE(scaled.parameters[3].uncertainty.determined);
   job.free.back() = free_parameter("controller.k_p", 10.0);
   const FitResult fit = estimate(job);
-  ASSERT_TRUE(fit.usable) << fit.message;
+  ASSERT_TRUE(fit.is_usable()) << fit.message;
   EXPECT_NEAR(fit.parameters[3].value, servo.k_p, 0.01 * servo.k_p);
   EXPECT_NEAR(fit.parameters[0].value, servo.mass, 0.02 * servo.mass);
 }

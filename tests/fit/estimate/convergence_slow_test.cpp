@@ -27,7 +27,7 @@ TEST(Convergence, PaperJobFromStartsWithinAFactorOfFive) {
     const std::vector<double> from = draw_start(job, start);
     for (std::size_t i = 0; i < from.size(); ++i) one.free[i].initial = from[i];
     const FitResult result = estimate(one);
-    if (!result.usable || result.reduced_chi_square >= 1.1) continue;
+    if (!result.is_usable() || result.reduced_chi_square >= 1.1) continue;
     ++reached;
     for (std::size_t i = 0; i < truth.size(); ++i)
       EXPECT_LT(std::abs(result.parameters[i].value - truth[i]),

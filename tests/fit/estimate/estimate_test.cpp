@@ -47,7 +47,7 @@ double sum_of_squares(const Job& job, const FitResult& result, std::size_t recor
 
 TEST(Estimate, FindsTheTruthFromAPoorStart) {
   const FitResult result = estimate(example_job());
-  ASSERT_TRUE(result.usable) << result.message;
+  ASSERT_TRUE(result.is_usable()) << result.message;
   EXPECT_TRUE(result.verdict.has_minimum());
   EXPECT_LT(result.reduced_chi_square, 1.1);
   EXPECT_EQ(result.observer_gain, 0.0);
@@ -103,7 +103,7 @@ TEST(Estimate, TakesAPriorForKnowledge) {
   job.free.push_back(free_parameter("R", 1.0));
   job.free.back().prior = Prior{0.56, 0.001};
   const FitResult result = estimate(job);
-  ASSERT_TRUE(result.usable);
+  ASSERT_TRUE(result.is_usable());
   EXPECT_NEAR(result.parameters[2].value, 0.56, 0.004);
   EXPECT_GE(result.parameters[2].uncertainty.standard_error, 0.98 * 0.001);
   // Errors grow with the residual, never above the prior by more than that.
@@ -123,7 +123,7 @@ TEST(Estimate, SharesParametersAndKeepsOthersPerRecording) {
   job.free.push_back(job.free[1]);
   job.free[2].recording = 1;
   const FitResult result = estimate(job);
-  ASSERT_TRUE(result.usable) << result.message;
+  ASSERT_TRUE(result.is_usable()) << result.message;
   EXPECT_EQ(result.parameters[1].id, (ParameterId{quantity_index("M"), 0}));
   EXPECT_EQ(result.parameters[2].id, (ParameterId{quantity_index("M"), 1}));
   EXPECT_NEAR(result.parameters[1].value, 146.0,
@@ -151,7 +151,7 @@ TEST(Estimate, RefusesAModelThatCannotBeSimulated) {
   Job job = example_job();
   job.recordings[0].overrides.emplace_back(quantity_index("J_m"), std::nan(""));
   const FitResult result = estimate(job);
-  EXPECT_FALSE(result.usable);
+  EXPECT_FALSE(result.is_usable());
   EXPECT_EQ(result.verdict.kind, FitVerdict::Kind::not_simulated);
   EXPECT_EQ(result.verdict.kind, FitVerdict::Kind::not_simulated);
 }
@@ -160,7 +160,7 @@ TEST(Estimate, RefusesAFitThatIsNoBetterThanAConstant) {
   Job job = example_job();
   for (double& v : job.recordings[0].measurements[0].values.edit()) v = -v;  // a wrong sign
   const FitResult result = estimate(job);
-  EXPECT_FALSE(result.usable) << result.message;
+  EXPECT_FALSE(result.is_usable()) << result.message;
   EXPECT_EQ(result.verdict, (FitVerdict{.kind = FitVerdict::Kind::signal_not_followed,
                                         .signal = job.recordings[0].measurements[0].signal,
                                         .recording = 0}));
@@ -172,15 +172,15 @@ TEST(Estimate, RefusesAHopelessFitUnlessTheNoiseIsKnownToBeLarge) {
   Measurement& m = job.recordings[0].measurements[0];
   for (double& v : m.values.edit()) v = -v;
   m.sigma = 10.0;
-  EXPECT_TRUE(estimate(job).usable);
+  EXPECT_TRUE(estimate(job).is_usable());
   m.noise = NoiseSource::fit;
-  EXPECT_FALSE(estimate(job).usable);
+  EXPECT_FALSE(estimate(job).is_usable());
 }
 
 TEST(Estimate, ReducedChiSquareCountsDegreesOfFreedom) {
   const Job job = slide_in_few_samples();
   const FitResult result = estimate(job);
-  ASSERT_TRUE(result.usable) << result.message;
+  ASSERT_TRUE(result.is_usable()) << result.message;
   const double sum = sum_of_squares(job, result, 0);
   EXPECT_NEAR(result.reduced_chi_square, sum / (16.0 - 2.0), 1e-9 * sum);
   EXPECT_NEAR(result.recordings[0].signals[0].reduced_chi_square, sum / 16.0, 1e-9 * sum);
@@ -231,7 +231,7 @@ TEST(Estimate, KeepsTheStartsThatWereFinishedWhenItIsStopped) {
   StopFlag stop = false;
   const FitResult result =
       estimate(job, {&stop, nullptr, [&](const Progress& p) { stop = p.done == 1; }});
-  EXPECT_TRUE(result.usable);
+  EXPECT_TRUE(result.is_usable());
   EXPECT_TRUE(result.interrupted);
   EXPECT_EQ(result.starts.size(), 1u);
   job.options.starts = 1;
@@ -259,7 +259,7 @@ TEST(EstimateWithNoise, FindsTheNoiseOfEverySignal) {
   Job job = job_of_unknown_noise();
   const std::vector<FreeParameter> declared = job.free;
   const FitResult result = estimate_with_noise(job);
-  ASSERT_TRUE(result.usable) << result.message;
+  ASSERT_TRUE(result.is_usable()) << result.message;
   EXPECT_NEAR(result.reduced_chi_square, 1.0, 1e-3);
   for (const Recording& r : job.recordings)
     for (const Measurement& m : r.measurements)
@@ -278,7 +278,7 @@ TEST(EstimateWithNoise, CountsDegreesOfFreedom) {
   Job job = slide_in_few_samples();
   job.recordings[0].measurements[0].noise = NoiseSource::fit;
   const FitResult result = estimate_with_noise(job);
-  ASSERT_TRUE(result.usable) << result.message;
+  ASSERT_TRUE(result.is_usable()) << result.message;
   EXPECT_NEAR(sum_of_squares(job, result, 0), 16.0 - 2.0, 0.01);
 }
 

@@ -110,9 +110,9 @@ TEST(SecondOpinion, BeginsAgainWhereNoMinimumWasFound) {
   job.options.continuation.reset();
   job.options.max_iterations = 12;
   FitResult fit = estimate_with_noise(job);
-  ASSERT_FALSE(fit.usable);
+  ASSERT_FALSE(fit.is_usable());
   EXPECT_EQ(try_inverse_start(job, fit), InverseStart::better);
-  EXPECT_TRUE(fit.usable);
+  EXPECT_TRUE(fit.is_usable());
   EXPECT_NEAR(fit.reduced_chi_square, 1.0, 0.2);
   EXPECT_EQ(fit.starts.size(), 2u);
   EXPECT_EQ(job.options.max_iterations, 12);

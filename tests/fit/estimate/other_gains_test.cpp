@@ -50,9 +50,9 @@ TEST(OtherGains, LeaveACompleteModelAlone) {
 TEST(OtherGains, AreOfUsableFitsWithFixedObserversAlone) {
   Job job = tracking_job(true);
   FitResult fit = estimate(job);
-  fit.usable = false;
+  fit.verdict.kind = FitVerdict::Kind::no_minimum;
   EXPECT_TRUE(fits_at_other_gains(job, fit).empty());
-  fit.usable = true;
+  fit.verdict.kind = FitVerdict::Kind::usable;
   job.options.criterion = FreeRun{};
   EXPECT_TRUE(fits_at_other_gains(job, fit).empty());
 }

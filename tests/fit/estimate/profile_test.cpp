@@ -41,7 +41,7 @@ double deviance_at(Job job, const FitResult& fit, std::size_t parameter, double 
 TEST(Profile, OfALinearModelAgreesWithItsStandardErrors) {
   const Job job = slide_job();
   const FitResult fit = estimate(job);
-  ASSERT_TRUE(fit.usable) << fit.message;
+  ASSERT_TRUE(fit.is_usable()) << fit.message;
   for (const Profile& profile : all_profiles(job, fit)) {
     SCOPED_TRACE(name_of(fit.parameters[profile.parameter].id));
     const ParameterResult& p = fit.parameters[profile.parameter];
@@ -65,7 +65,7 @@ TEST(Profile, IsOpenWhereTheDataAreFlat) {
   Job job = two_recordings(truth, truth, {"V_L", "B_a"});
   job.recordings = {recorded(truth, SineMotion{0.2, 1.0, 1.0}, 1.0, 3)};
   const FitResult fit = estimate(job);
-  ASSERT_TRUE(fit.usable) << fit.message;
+  ASSERT_TRUE(fit.is_usable()) << fit.message;
   ASSERT_FALSE(fit.parameters[0].uncertainty.determined);
   const Profile limit = all_profiles(job, fit)[0];
   EXPECT_TRUE(limit.upper.open);
@@ -84,8 +84,8 @@ TEST(Profile, OfWhatStandsAtItsBoundHasOneSide) {
   job.free.push_back(friction);
   // Noise decides on which side of zero the friction would end: take one that ends below.
   FitResult fit;
-  for (std::uint64_t seed = 1; seed < 10 && !(fit.usable && fit.parameters[2].uncertainty.at_bound);
-       ++seed) {
+  for (std::uint64_t seed = 1;
+       seed < 10 && !(fit.is_usable() && fit.parameters[2].uncertainty.at_bound); ++seed) {
     job.recordings = {recorded(slide(), fit_motion(), 1.2, seed)};
     fit = estimate(job);
   }

@@ -39,8 +39,8 @@ TEST(StressSlowTest, AFitFromAnywhereEndsWithAVerdict) {
   for (std::uint64_t draw = 0; draw < 100; ++draw) {
     SCOPED_TRACE(draw);
     const FitResult fit = estimate(anywhere_job(draw));
-    EXPECT_EQ(fit.usable, fit.verdict.kind == FitVerdict::Kind::usable);
-    if (!fit.usable) continue;
+    EXPECT_EQ(fit.is_usable(), fit.verdict.kind == FitVerdict::Kind::usable);
+    if (!fit.is_usable()) continue;
     EXPECT_TRUE(std::isfinite(fit.reduced_chi_square));
     for (const ParameterResult& p : fit.parameters)
       EXPECT_TRUE(std::isfinite(p.value)) << name_of(p.id);

@@ -85,7 +85,7 @@ TEST(TwoEncoders, TellGapStiffnessAndBothMasses) {
               free_parameter("H", 100e-6), free_parameter("k_g", 6e6),
               free_parameter("b_g", 3e3)};
   const FitResult fit = estimate(job);
-  ASSERT_TRUE(fit.usable) << fit.message;
+  ASSERT_TRUE(fit.is_usable()) << fit.message;
   const double values[]{truth.mass, truth.motor,     truth.viscous, truth.coulomb,
                         truth.gap,  truth.stiffness, truth.damping};
   for (std::size_t i = 0; i < job.free.size(); ++i)

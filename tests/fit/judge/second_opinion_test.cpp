@@ -54,7 +54,7 @@ TEST(SecondOpinion, ContradictsNothingThatIsNotKnown) {
   open.parameters[0].uncertainty.determined = false;
   EXPECT_TRUE(contradictions_at(1.3, open).empty());
   open = fit_of_slide();
-  open.usable = false;
+  open.verdict.kind = FitVerdict::Kind::no_minimum;
   EXPECT_TRUE(contradictions_at(1.3, open).empty());
 }
 
@@ -78,10 +78,10 @@ TEST(InverseStart, ReplacesAFitThatFoundNothing) {
   job.options.starts = 3;
   FitResult fit = fit_of_slide();
   const std::size_t starts = fit.starts.size();
-  fit.usable = false;
+  fit.verdict.kind = FitVerdict::Kind::no_minimum;
   fit.parameters[0].value = 100.0;
   ASSERT_EQ(try_inverse_start(job, fit), InverseStart::better);
-  EXPECT_TRUE(fit.usable);
+  EXPECT_TRUE(fit.is_usable());
   EXPECT_NEAR(fit.parameters[0].value, 20.0, 4.0 * fit.parameters[0].uncertainty.standard_error);
   EXPECT_GT(fit.starts.size(), starts) << "those before are told, too";
   EXPECT_EQ(job.options.starts, 3) << "as the user has them";

@@ -86,7 +86,7 @@ TEST_F(ChainOfTwo, RefitsTheModelsBetweenWhereOneWasExchanged) {
   ASSERT_EQ(models.size(), 3u);
   EXPECT_EQ(models[1].added, "coulomb_friction");
   EXPECT_EQ(models[1].job.free.size(), 3u);
-  EXPECT_TRUE(models[1].fit.usable);
+  EXPECT_TRUE(models[1].fit.is_usable());
 }
 
 TEST_F(ChainOfTwo, BeginsAnewWithTheDeclaredModelAlone) {

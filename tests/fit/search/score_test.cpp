@@ -25,7 +25,7 @@ std::vector<Scored> best_settings(const ScoreTest& test) {
 
 ScoreTest score(const Job& job) {
   const FitResult fit = estimate(job);
-  EXPECT_TRUE(fit.usable) << fit.message;
+  EXPECT_TRUE(fit.is_usable()) << fit.message;
   return score_test(job, values_of(fit), score_gains(job).front());
 }
 

@@ -29,7 +29,7 @@ TEST_P(OneUndeclaredEffect, IsAcceptedAlone) {
   ASSERT_EQ(selection.models.size(), 2u);
   EXPECT_EQ(selection.models[0].added, "");
   EXPECT_EQ(selection.models[1].added, secret.name);
-  EXPECT_TRUE(selection.result.fit.usable);
+  EXPECT_TRUE(selection.result.fit.is_usable());
   EXPECT_LT(selection.result.fit.reduced_chi_square, 1.1);
   for (const auto& list : {secret.strengths, secret.shapes})
     for (const auto& [name, value] : list) expect_found(selection, name, value);
@@ -325,7 +325,7 @@ TEST(SelectEffects, KeepsWhatIsAcceptedWhenItIsStopped) {
                                       }});
     EXPECT_EQ(selection.interrupted, stop.load());
     EXPECT_EQ(accepted(selection), late ? Names{"drive_lag"} : Names{});
-    EXPECT_TRUE(selection.result.fit.usable);
+    EXPECT_TRUE(selection.result.fit.is_usable());
     EXPECT_EQ(selection.verdict.kind,
               late ? SelectionVerdict::Kind::effects_accepted : SelectionVerdict::Kind::stopped);
   }
@@ -372,7 +372,7 @@ TEST(SelectEffects, TellsWhatItDoes) {
 TEST(SelectEffects, NeedsAUsableFit) {
   const Job job = hidden_effect_named("coulomb_friction").job();
   FitResult fit = estimate(job);
-  fit.usable = false;
+  fit.verdict.kind = FitVerdict::Kind::no_minimum;
   const EffectSelection selection = select_effects(job, fit);
   EXPECT_TRUE(selection.effects.empty());
   EXPECT_FALSE(selection.explained);

@@ -38,7 +38,7 @@ inline const Outcome* trial_of(const EffectSelection& selection, std::string_vie
 /// Fits, closes the loop, and tells the outcome on the way.
 inline EffectSelection close(const Job& job) {
   const FitResult fit = estimate(job);
-  EXPECT_TRUE(fit.usable) << fit.message;
+  EXPECT_TRUE(fit.is_usable()) << fit.message;
   EffectSelection selection = select_effects(job, fit);
   std::cout << "reduced chi-square " << fit.reduced_chi_square << "\n";
   for (const Outcome& t : selection.effects)

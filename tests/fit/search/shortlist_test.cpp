@@ -52,7 +52,7 @@ TEST(Shortlist, PromisesWhatTheAcceptanceTestFinds) {
   Job job = with_friction(3.0);
   job.options.criterion = Tracking{30.0};
   const FitResult fit = estimate(job);
-  ASSERT_TRUE(fit.usable);
+  ASSERT_TRUE(fit.is_usable());
   const Shortlist list = shortlist(job, values_of(fit), score_gains(job), false);
   const auto entry = std::ranges::find_if(
       list.entries, [](const Scored& e) { return e.hypothesis->name == "coulomb_friction"; });

@@ -26,6 +26,27 @@ Evaluated evaluate(const RecordingCost& cost, const Eigen::VectorXd& u) {
   return e;
 }
 
+/// How far a column of the Jacobian at u is from central differences, and how large these are. Of
+/// the first signal only: the acceleration jumps with the contact, where differences mean nothing.
+struct ColumnError {
+  double error = 0.0, size = 0.0;
+};
+ColumnError error_of_column(const RecordingCost& cost, const Eigen::VectorXd& u, std::size_t k) {
+  constexpr double kStep = 1e-5;  // smaller ones drown the least of the derivatives in rounding
+  const auto columns = static_cast<std::size_t>(u.size());
+  Eigen::VectorXd above = u, below = u;
+  above[static_cast<Eigen::Index>(k)] += kStep;
+  below[static_cast<Eigen::Index>(k)] -= kStep;
+  const Evaluated e = evaluate(cost, u), a = evaluate(cost, above), b = evaluate(cost, below);
+  double error = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < e.residuals.size() / 2; ++i) {
+    const double difference = (a.residuals[i] - b.residuals[i]) / (2.0 * kStep);
+    error += std::pow(e.jacobian[i * columns + k] - difference, 2);
+    size += std::pow(difference, 2);
+  }
+  return {std::sqrt(error), std::sqrt(size)};
+}
+
 Job example_job() {
   Job job;
   job.model = paper_axis();
@@ -97,20 +118,8 @@ TEST(RecordingCost, JacobianIsThatOfDifferencesForAnyNumberOfParameters) {
     const RecordingCost cost(job, space, 0, Observer::of_velocity(100.0, false));
     const Evaluated e = evaluate(cost, u);
     ASSERT_TRUE(e.finite);
-    const std::size_t columns = job.free.size(), last = columns - 1;
-    const double step = 1e-5;  // smaller ones drown the least of the derivatives in rounding
-    Eigen::VectorXd above = u, below = u;
-    above[static_cast<Eigen::Index>(last)] += step;
-    below[static_cast<Eigen::Index>(last)] -= step;
-    const Evaluated a = evaluate(cost, above), b = evaluate(cost, below);
-    double error = 0.0, size = 0.0;
-    // Velocity only: the acceleration jumps with the contact, where differences mean nothing.
-    for (std::size_t i = 0; i < e.residuals.size() / 2; ++i) {
-      const double difference = (a.residuals[i] - b.residuals[i]) / (2.0 * step);
-      error += std::pow(e.jacobian[i * columns + last] - difference, 2);
-      size += std::pow(difference, 2);
-    }
-    EXPECT_LE(std::sqrt(error), 2e-4 * std::sqrt(size) + 1e-6) << name;
+    const auto [error, size] = error_of_column(cost, u, job.free.size() - 1);
+    EXPECT_LE(error, 2e-4 * size + 1e-6) << name;
   }
 }
 
@@ -132,18 +141,8 @@ TEST(RecordingCost, JacobianIsThatOfDifferencesThroughAFilter) {
     ASSERT_TRUE(e.finite);
     EXPECT_NE(e.residuals, plain.residuals);
     for (std::size_t k = 0; k < space.size(); ++k) {
-      constexpr double kStep = 1e-5;
-      Eigen::VectorXd above = u, below = u;
-      above[static_cast<Eigen::Index>(k)] += kStep;
-      below[static_cast<Eigen::Index>(k)] -= kStep;
-      const Evaluated a = evaluate(cost, above), b = evaluate(cost, below);
-      double error = 0.0, size = 0.0;
-      for (std::size_t i = 0; i < e.residuals.size() / 2; ++i) {
-        const double difference = (a.residuals[i] - b.residuals[i]) / (2.0 * kStep);
-        error += std::pow(e.jacobian[i * space.size() + k] - difference, 2);
-        size += std::pow(difference, 2);
-      }
-      EXPECT_LT(std::sqrt(error), 1e-4 * std::sqrt(size)) << name_of(space[k].id());
+      const auto [error, size] = error_of_column(cost, u, k);
+      EXPECT_LT(error, 1e-4 * size) << name_of(space[k].id());
     }
   }
 }
@@ -265,7 +264,7 @@ std::pair<double, double> errors_when_tracking(const Model<double>& truth, Signa
            });
   job.free = {free_parameter("M", 1.3 * truth.axis.M), free_parameter("B_a", 1.5 * truth.axis.B_a)};
   const FitResult fit = estimate(job);
-  EXPECT_TRUE(fit.usable);
+  EXPECT_TRUE(fit.is_usable());
   return {fit.parameters[0].value / truth.axis.M - 1.0,
           fit.parameters[1].value / truth.axis.B_a - 1.0};
 }

@@ -3,52 +3,43 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "tests/io/config/recording_reader.h"
 
 namespace axisfit {
 namespace {
 
+std::vector<Column> columns() {
+  Column time{"t", {}}, u{"u", {}}, duty{"duty", {}}, volts{"volts", {}};
+  for (int i = 0; i < 20; ++i) {
+    time.values.push_back(0.1 * i);
+    u.values.push_back(i);
+    duty.values.push_back(i % 2 == 0 ? 0.5 : -0.25);
+    volts.values.push_back(48.0 - i);
+  }
+  return {time, u, duty, volts};
+}
+
 /// Reads what drives a mass, or the paper's axis, from a recording of 20 samples.
-class InputTest : public ::testing::Test {
+class InputTest : public RecordingReaderTest {
  protected:
-  InputTest() {
-    Column time{"t", {}}, u{"u", {}}, duty{"duty", {}}, volts{"volts", {}};
-    for (int i = 0; i < 20; ++i) {
-      time.values.push_back(0.1 * i);
-      u.values.push_back(i);
-      duty.values.push_back(i % 2 == 0 ? 0.5 : -0.25);
-      volts.values.push_back(48.0 - i);
-    }
-    sources_.tables = {{"a.csv", {"a.csv", {time, u, duty, volts}, {}}}};
+  InputTest() : RecordingReaderTest(columns()) {
     rig_.model.structure = {Drive::force_source, Transmission::rigid, {}, Joint::prismatic};
   }
 
   std::optional<Series> read(const std::string& signals) {
-    diagnostics_ = std::make_unique<Diagnostics>();
-    const auto node =
-        ConfigNode::parse("file: a.csv\ntime: {column: t, unit: s}\nsignals: {" + signals + "}",
-                          "job.yaml", *diagnostics_);
-    ConfigMap map(*node);
-    SeriesReader reader(sources_);
-    reader.open_own(*map.required("file"), "a.csv");
-    reader.read_own_times(*map.required("time"));
-    const ConfigNode of_signals = *map.required("signals");
-    ConfigMap entries(of_signals);
     recording_ = {};
-    return read_input(of_signals, entries, rig_, reader, recording_);
-  }
-  std::string said() const {
-    std::string text;
-    for (const Diagnostic& d : diagnostics_->sorted()) text += d.message + "\n";
-    return text;
+    return read_signals(signals, [&](const ConfigNode& node, SeriesReader& reader) {
+      ConfigMap entries(node);
+      return read_input(node, entries, rig_, reader, recording_);
+    });
   }
 
-  RecordingSources sources_;
   Rig rig_;
   Recording recording_;
-  std::unique_ptr<Diagnostics> diagnostics_;
 };
 
 TEST_F(InputTest, ACommandIsInTheUnitOfTheDrive) {

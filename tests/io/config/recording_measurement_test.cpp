@@ -4,42 +4,40 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "tests/io/config/recording_reader.h"
+
 namespace axisfit {
 namespace {
 
-/// Reads the signals of a recording of 200 samples at 1 kHz: a velocity that moves, held ten times.
-class MeasurementTest : public ::testing::Test {
- protected:
-  MeasurementTest() {
-    Column time{"t", {}}, held{"held", {}}, plain{"v", {}};
-    for (int i = 0; i < 200; ++i) {
-      time.values.push_back(1e-3 * i);
-      plain.values.push_back(std::sin(0.05 * i) + 1e-3 * std::cos(2.1 * i));
-      held.values.push_back(plain.values[static_cast<std::size_t>(i - i % 10)]);
-    }
-    sources_.tables = {{"a.csv", {"a.csv", {time, held, plain}, {}}}};
+/// A velocity that moves, and the same held ten times.
+std::vector<Column> columns() {
+  Column time{"t", {}}, held{"held", {}}, plain{"v", {}};
+  for (int i = 0; i < 200; ++i) {
+    time.values.push_back(1e-3 * i);
+    plain.values.push_back(std::sin(0.05 * i) + 1e-3 * std::cos(2.1 * i));
+    held.values.push_back(plain.values[static_cast<std::size_t>(i - i % 10)]);
   }
+  return {time, held, plain};
+}
+
+/// Reads the signals of a recording of 200 samples at 1 kHz.
+class MeasurementTest : public RecordingReaderTest {
+ protected:
+  MeasurementTest() : RecordingReaderTest(columns()) {}
 
   /// Reads signals from YAML; how many there are.
   std::size_t read(const std::string& yaml, Drive drive = Drive::force_source) {
-    diagnostics_ = std::make_unique<Diagnostics>();
-    const auto node =
-        ConfigNode::parse("file: a.csv\ntime: {column: t, unit: s}\nsignals: {" + yaml + "}",
-                          "job.yaml", *diagnostics_);
-    ConfigMap map(*node);
-    SeriesReader reader(sources_);
-    reader.open_own(*map.required("file"), "a.csv");
-    reader.read_own_times(*map.required("time"));
-    ConfigMap signals(*map.required("signals"));
     measured_.clear();
-    const Structure structure{drive, Transmission::rigid, {}, Joint::prismatic};
-    read_measurements(signals, structure, {}, reader, measured_);
-    times_ = *reader.times();
+    read_signals(yaml, [&](const ConfigNode& node, SeriesReader& reader) {
+      ConfigMap signals(node);
+      const Structure structure{drive, Transmission::rigid, {}, Joint::prismatic};
+      read_measurements(signals, structure, {}, reader, measured_);
+      times_ = *reader.times();
+    });
     return measured_.size();
   }
   /// The only one, at the times of the recording.
@@ -48,14 +46,7 @@ class MeasurementTest : public ::testing::Test {
     EXPECT_EQ(measured_.size(), 1u);
     return on_times(measured_.front(), times_);
   }
-  std::string said() const {
-    std::string text;
-    for (const Diagnostic& d : diagnostics_->sorted()) text += d.message + "\n";
-    return text;
-  }
 
-  RecordingSources sources_;
-  std::unique_ptr<Diagnostics> diagnostics_;
   std::vector<Measured> measured_;
   std::vector<double> times_;
 };

@@ -176,7 +176,6 @@ TEST(WordsTest, OfAConstantAreThoseOfTheAxis) {
 
 TEST(WordsTest, OfARunNameTheFitOnce) {
   RunResult run_result;
-  run_result.first.usable = true;
   run_result.first.verdict.kind = FitVerdict::Kind::usable;
   run_result.first.reduced_chi_square = 2.5;
   run_result.grade = {Grade::usable, FitGrade::Reason::residual};
