@@ -325,8 +325,9 @@ FittedModel with_held_out_blocks(FittedModel model, const SearchContext& context
   for (Recording& r : model.job.recordings) {
     const Partition blocks(r.times.size(), context.options.round.blocks);
     r.held_out.clear();
+    // Counted from the end, so that a block begins with the first sample that is wholly in it.
     for (std::size_t k = 0; k < blocks.parts(); ++k)
-      r.held_out.resize(blocks.first(k + 1), k % 2 == 1);
+      r.held_out.resize(r.times.size() - blocks.first(blocks.parts() - 1 - k), k % 2 == 1);
   }
   model.fit = refit_from(model.job, values_of(model.fit), context);
   return model;
