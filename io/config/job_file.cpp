@@ -263,7 +263,8 @@ class JobReader {
       entries_.push_back(diagnostics_.count() == mistakes ? std::optional(entry) : std::nullopt);
       const Recording& recording = result_.job.recordings.back();
       if (!sources_.tables.contains(recording.file))
-        result_.files.push_back(resolved(entry, recording.file, sources_.folder));
+        result_.files.push_back(
+            file_of_recording(resolved(entry, recording.file, sources_.folder)));
     }
     result_.rig.model.structure.closed_loop = result_.job.model.structure.closed_loop =
         std::ranges::any_of(result_.job.recordings, [](const Recording& r) {

@@ -6,12 +6,22 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
 
 #include "base/plain_text.h"
 #include "base/suggest.h"
+#include "io/recording/change_list_file.h"
+#include "io/recording/codesys_file.h"
 #include "io/recording/csv.h"
+#include "io/recording/halscope_file.h"
+#include "io/recording/json_file.h"
 #include "io/recording/mat_file.h"
 #include "io/recording/mcap_file.h"
+#include "io/recording/sysid_file.h"
+#include "io/recording/text_lines.h"
+#include "io/recording/wpilog_file.h"
 #include "io/recording/xlsx_file.h"
 
 namespace axisfit {
@@ -25,7 +35,28 @@ Table read_table(const std::string& path) {
   if (path.ends_with(".mat")) return read_mat(path);
   if (path.ends_with(".mcap")) return read_mcap(path);
   if (path.ends_with(".xlsx")) return read_xlsx(path);
+  if (is_wpilog(path)) return read_wpilog(path);
+  const TextLines text(path);
+  const std::string_view beginning = text.ahead();
+  if (is_codesys(beginning)) return read_codesys(path);
+  if (is_sysid(beginning)) return read_sysid(path, {});
+  if (is_halscope(beginning)) return read_halscope(path);
+  if (is_json(beginning)) return read_json(path);
+  if (is_change_list(beginning)) return read_change_list(path);
   return read_csv(path);
+}
+
+/// One recording of several in a file.
+Table read_one_of(const std::string& path, const std::string& name) {
+  const TextLines text(path);
+  if (is_sysid(text.ahead())) return read_sysid(path, name);
+  throw RecordingError(path, 0,
+                       fmt::format("holds one recording: leave '#{}' out of its name", name));
+}
+
+Table read_recording(const std::string& path) {
+  const std::string file = file_of_recording(path);
+  return file == path ? read_table(path) : read_one_of(file, path.substr(file.size() + 1));
 }
 
 /// The number from 1 that a text is; 0: it is none.
@@ -37,7 +68,7 @@ std::size_t column_number(const std::string& text) {
 
 }  // namespace
 
-RecordingFile::RecordingFile(const std::string& path) : table_(read_table(path)) {}
+RecordingFile::RecordingFile(const std::string& path) : table_(read_recording(path)) {}
 
 std::variant<const Column*, std::string> RecordingFile::column(const std::string& name) const {
   const std::vector<Column>& columns = table_.columns;
@@ -91,6 +122,14 @@ std::string RecordingFile::reference(std::size_t column) const {
   const bool own = !name.empty() && is_sanitized(name) && column_number(name) == 0 &&
                    std::ranges::count(table_.columns, name, &Column::name) == 1;
   return own ? name : std::to_string(column + 1);
+}
+
+std::string file_of_recording(const std::string& path) {
+  std::error_code ignored;
+  const std::size_t mark = path.rfind('#');
+  if (mark == std::string::npos || std::filesystem::exists(path, ignored)) return path;
+  const std::string file = path.substr(0, mark);
+  return std::filesystem::is_regular_file(file, ignored) ? file : path;
 }
 
 }  // namespace axisfit

@@ -13,8 +13,10 @@ namespace axisfit {
 /// A recording as stored: columns, whatever the format.
 class RecordingFile {
  public:
-  /// Reads `path` as what its name ends in: .mat, .xlsx, .mcap, or anything else as text. Throws
-  /// RecordingError.
+  /// Reads `path` as what its name ends in: .mat, .xlsx or .mcap; and anything else as what it
+  /// begins with: a data log of WPILib, a trace of CODESYS, tests of SysId, a log of halscope,
+  /// JSON, a list of changes, or else a table in text. Of a file of several recordings, "#" and the
+  /// name of one follow the path: "arm.json#slow-forward". Throws RecordingError.
   explicit RecordingFile(const std::string& path);
   /// What another program holds in memory.
   explicit RecordingFile(Table table) : table_(std::move(table)) {}
@@ -37,5 +39,8 @@ class RecordingFile {
 
   Table table_;
 };
+
+/// The file that a path of a recording names: without "#" and the name of one recording in it.
+std::string file_of_recording(const std::string& path);
 
 }  // namespace axisfit

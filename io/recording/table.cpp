@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 #include "base/plain_text.h"
 
@@ -51,6 +52,15 @@ const Column* Table::find(std::string_view name) const {
 
 std::string Table::where(std::size_t row) const {
   return row < lines.size() ? place(file, lines[row]) : file + ": row " + std::to_string(row + 1);
+}
+
+void add_series(Table& table, Column times, Column values) {
+  if (!table.columns.empty()) values.clock = table.columns.back().clock;
+  if (!values.clock || table.columns[*values.clock].values != times.values) {
+    values.clock = table.columns.size();
+    table.columns.push_back(std::move(times));
+  }
+  table.columns.push_back(std::move(values));
 }
 
 }  // namespace axisfit

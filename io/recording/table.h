@@ -43,6 +43,10 @@ struct Table {
   std::string where(std::size_t row) const;
 };
 
+/// Appends a series with times of its own: its values and, as their clock, the times. The clock is
+/// that of the series before where the times are the same.
+void add_series(Table& table, Column times, Column values);
+
 /// Tables by the names by which jobs call them.
 using Tables = std::map<std::string, Table>;
 

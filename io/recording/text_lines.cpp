@@ -205,6 +205,21 @@ bool TextLines::next(std::string_view& line) {
   return true;
 }
 
+std::string TextLines::rest() {
+  constexpr std::size_t kPacked = 100;  // times as long as the file
+  const std::size_t most = kPacked * std::filesystem::file_size(path_) + kLongestLine;
+  while (!at_end_) {
+    if (buffer_.size() > most)
+      throw RecordingError(path_, 0,
+                           "unpacks to more than a hundred times its size; unpack it, and look "
+                           "whether it is a recording");
+    read_more();
+  }
+  std::string text = buffer_.substr(begin_);
+  begin_ = buffer_.size();
+  return text;
+}
+
 std::string in_utf8(std::string_view text) {
   if (find_invalid_utf8(text) == std::string_view::npos) return std::string(text);
   Conversion windows("UTF-8", "CP1252");

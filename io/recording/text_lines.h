@@ -26,6 +26,14 @@ class TextLines {
   /// changed.
   bool next(std::string_view& line);
 
+  /// What has been read beyond the line returned last; at first up to 1 MB from the beginning, by
+  /// which kinds of files are told apart. Valid until the next call.
+  std::string_view ahead() const { return std::string_view(buffer_).substr(begin_); }
+
+  /// All that follows the line returned last, at once. Throws RecordingError as next() does, and
+  /// where a small file unpacks to so much that it can be no recording.
+  std::string rest();
+
   /// Of the line returned last, from 1.
   std::size_t number() const { return number_; }
 

@@ -48,5 +48,30 @@ TEST(RecordingFile, IsReadAsWhatItsNameEndsIn) {
     EXPECT_THROW(RecordingFile(folder.write(name, text)), RecordingError) << name;
 }
 
+TEST(RecordingFile, IsReadAsWhatItBeginsWith) {
+  const TempFolder folder;
+  const auto columns = [&](const std::string& text) {
+    return RecordingFile(folder.write("run.csv", text)).columns().size();
+  };
+  EXPECT_EQ(columns("{\"t\": [0, 1], \"x\": [2, 3]}"), 2u);
+  EXPECT_EQ(columns("[{\"t\": 0, \"x\": 1}]"), 2u);
+  EXPECT_EQ(columns("Timestamp,Key,Value\n0,a,1\n1,b,2\n"), 4u);
+  EXPECT_EQ(columns("[key]; [value]\n0.Variable; a\n; 0; 1\n"), 2u);
+  EXPECT_EQ(columns("# Sampling period is 1000 ns\na\n1\n"), 2u);
+  EXPECT_EQ(columns("{\"slow-forward\": [[0, 1, 2, 3]], \"units\": \"Meters\"}"), 4u);
+}
+
+TEST(RecordingFile, ANumberSignSaysWhichRecordingOfAFile) {
+  const TempFolder folder;
+  const std::string file = folder.write("a.csv", "t,x\n0,1\n");
+  EXPECT_EQ(file_of_recording(file), file);
+  EXPECT_EQ(file_of_recording(file + "#one"), file);
+  EXPECT_EQ(file_of_recording(folder.path("none.csv#one")), folder.path("none.csv#one"));
+  // What is called so is that file.
+  const std::string odd = folder.write("a.csv#1", "t,x\n0,1\n");
+  EXPECT_EQ(file_of_recording(odd), odd);
+  EXPECT_EQ(RecordingFile(odd).columns().size(), 2u);
+}
+
 }  // namespace
 }  // namespace axisfit

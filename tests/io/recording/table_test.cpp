@@ -25,5 +25,17 @@ TEST(RecordingError, NamesTheLineOnlyWhenThereIsOne) {
   EXPECT_STREQ(RecordingError("rec.csv", 0, "no").what(), "rec.csv: no");
 }
 
+TEST(Table, SeriesOfEqualTimesShareAClock) {
+  Table table{"a", {}};
+  add_series(table, {"t a", {0, 1}}, {"a", {1, 2}});
+  add_series(table, {"t b", {0, 1}}, {"b", {3, 4}});
+  add_series(table, {"t c", {0, 2}}, {"c", {5, 6}});
+  ASSERT_EQ(table.columns.size(), 5u);
+  EXPECT_EQ(table.columns[1].clock, 0u);
+  EXPECT_EQ(table.columns[2].clock, 0u);
+  EXPECT_EQ(table.columns[3].name, "t c");
+  EXPECT_EQ(table.columns[4].clock, 3u);
+}
+
 }  // namespace
 }  // namespace axisfit

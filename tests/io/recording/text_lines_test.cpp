@@ -79,5 +79,31 @@ TEST_F(TextLinesTest, ReadsFilesLargerThanOneChunk) {
   EXPECT_EQ(table.lines.back(), kRows + 1);
 }
 
+TEST_F(TextLinesTest, TheRestIsWhatNoLineWasTakenOf) {
+  std::ofstream(path(), std::ios::binary) << "a\n" << std::string(3 << 20, 'b') << "\nc";
+  TextLines lines(path());
+  EXPECT_TRUE(lines.ahead().starts_with("a\nb"));
+  std::string_view line;
+  ASSERT_TRUE(lines.next(line));
+  EXPECT_TRUE(lines.ahead().starts_with("bbb"));
+  EXPECT_EQ(lines.rest(), std::string(3 << 20, 'b') + "\nc");
+  EXPECT_FALSE(lines.next(line));
+}
+
+TEST_F(TextLinesTest, TheRestIsInProportionToTheFile) {
+  const gzFile file = gzopen(path().c_str(), "wb");
+  const std::string nothing(1 << 20, ' ');
+  for (int i = 0; i < 50; ++i) gzwrite(file, nothing.data(), 1 << 20);
+  gzclose(file);
+  try {
+    TextLines(path()).rest();
+    FAIL() << "no error";
+  } catch (const RecordingError& caught) {
+    EXPECT_EQ(without_directory(caught.what()),
+              "rec.csv: unpacks to more than a hundred times its size; unpack it, and look whether "
+              "it is a recording");
+  }
+}
+
 }  // namespace
 }  // namespace axisfit
