@@ -305,7 +305,8 @@ int run_command(const FitArguments& arguments) {
                     "recordings, use --init)",
                     arguments.files[1]));
   const std::string& job = arguments.files.front();
-  for (const char* ending : {".csv", ".txt", ".gz", ".mat", ".mcap", ".xlsx"})
+  for (const char* ending :
+       {".csv", ".txt", ".gz", ".mat", ".mcap", ".xlsx", ".wpilog", ".trace", ".jsonl"})
     if (job.ends_with(ending))
       throw std::runtime_error(fmt::format(
           "{} is a recording; to create a job for it: fit-params --init {}", job, quoted(job)));

@@ -166,8 +166,10 @@ const Map& keys_of_channels() {
 const Section& recording_keys() {
   const Recording defaults;
   static const Section keys{
-      Key::required("file", Text{},
-                    "recording: text (CSV, also `.gz`), `.mat`, `.mcap` or `.xlsx`"),
+      Key::required(
+          "file", Text{},
+          "recording: text (CSV, also `.gz`), JSON, `.mat`, `.mcap`, `.xlsx`, `.wpilog` or "
+          "`.trace`; of several in one file `FILE#NAME`"),
       Key::optional("name", Text{}, DefaultText{"file name without folder and extension"},
                     "name in reports; unique within the job"),
       Key::optional(
