@@ -187,10 +187,17 @@ class Guesser {
   /// comes before.
   void read_headings(const std::vector<ColumnAnswer>& answers) {
     const std::vector<Column>& columns = file_.columns();
+    clocks_.assign(columns.size(), false);
+    for (const Column& column : columns)
+      if (column.clock) clocks_[*column.clock] = true;
     for (std::size_t c = 0; c < columns.size(); ++c) {
       const Column& column = columns[c];
       Heading heading{file_.reference(c), {}, nullptr, usable(column)};
       heading.guess = guess_column(heading_text(column));
+      // "Time (/arm/position)" is a time whatever it is the time of.
+      if (is_clock(c) && (!heading.guess || heading.guess->kind != Kind::time))
+        heading.guess =
+            guess_column(heading_text({.name = "time", .values = {}, .unit = column.unit}));
       for (const ColumnAnswer& answer : answers) {
         if (answer.column != heading.reference && answer.column != std::to_string(c + 1)) continue;
         heading.answer = &answer;
@@ -374,10 +381,7 @@ class Guesser {
     return channels;
   }
 
-  bool is_clock(std::size_t c) const {
-    return std::ranges::any_of(file_.columns(),
-                               [c](const Column& column) { return column.clock == c; });
-  }
+  bool is_clock(std::size_t c) const { return clocks_[c]; }
 
   UnscaledColumn& add_column(std::size_t c, const Key& key, Values values) {
     UnscaledColumn& column = columns_[key] = {};
@@ -672,6 +676,7 @@ class Guesser {
   const RecordingFile& file_;
   const std::string& path_;
   Joint joint_;
+  std::vector<bool> clocks_;       ///< of each column: whether others go by it
   std::vector<Heading> headings_;  ///< of the columns of the file
   std::size_t time_column_ = 0;
   UnscaledColumn time_;

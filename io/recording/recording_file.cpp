@@ -31,6 +31,9 @@ namespace {
 /// Nothing is measured beyond this in any unit, and squares of squares of residuals are finite.
 constexpr double kLargest = 1e30;
 
+/// No recording of an axis has more, and what compares their names takes its time.
+constexpr std::size_t kMostColumns = 16384;
+
 Table read_table(const std::string& path) {
   if (path.ends_with(".mat")) return read_mat(path);
   if (path.ends_with(".mcap")) return read_mcap(path);
@@ -56,7 +59,12 @@ Table read_one_of(const std::string& path, const std::string& name) {
 
 Table read_recording(const std::string& path) {
   const std::string file = file_of_recording(path);
-  return file == path ? read_table(path) : read_one_of(file, path.substr(file.size() + 1));
+  Table table = file == path ? read_table(path) : read_one_of(file, path.substr(file.size() + 1));
+  if (table.columns.size() > kMostColumns)
+    throw RecordingError(
+        file, 0,
+        fmt::format("has more than {} columns; export only the signals of the axis", kMostColumns));
+  return table;
 }
 
 /// The number from 1 that a text is; 0: it is none.

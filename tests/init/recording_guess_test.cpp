@@ -129,5 +129,22 @@ TEST(RecordingGuessTest, ValuesTellWhatHasNoName) {
   EXPECT_TRUE(guess.find(Kind::position)->guessed);
 }
 
+TEST(GuessRecording, AClockIsATimeWhateverItIsTheTimeOf) {
+  Table table = swing(1.0, 1.0);
+  std::string text = "Timestamp,Key,Value\n";
+  for (std::size_t i = 0; i < table.rows(); ++i)
+    for (std::size_t c : {1U, 3U})
+      text += std::to_string(table.columns[0].values[i] + 0.001 * double(c)) + "," +
+              (c == 1 ? "/current" : "/velocity") + "," +
+              std::to_string(table.columns[c].values[i]) + "\n";
+  const TempFolder folder;
+  const std::string path = folder.write("list.csv", text);
+  const RecordingGuess guess = guess_recording(RecordingFile(path), path);
+  EXPECT_EQ(guess.time.column, "Time (/current)");
+  ASSERT_EQ(guess.columns.size(), 2u);
+  for (const GuessedColumn& column : guess.columns)
+    EXPECT_TRUE(column.column == "/current" || column.column == "/velocity") << column.column;
+}
+
 }  // namespace
 }  // namespace axisfit

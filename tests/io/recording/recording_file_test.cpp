@@ -73,5 +73,18 @@ TEST(RecordingFile, ANumberSignSaysWhichRecordingOfAFile) {
   EXPECT_EQ(RecordingFile(odd).columns().size(), 2u);
 }
 
+TEST(RecordingFile, HasNotTooManyColumns) {
+  const TempFolder folder;
+  std::string text = "Timestamp,Key,Value\n";
+  for (int i = 0; i < 16384; ++i) text += "0,k" + std::to_string(i) + ",1\n";
+  try {
+    RecordingFile(folder.write("a.csv", text));
+    FAIL() << "no error";
+  } catch (const RecordingError& caught) {
+    EXPECT_EQ(folder.without_path(caught.what()),
+              "a.csv: has more than 16384 columns; export only the signals of the axis");
+  }
+}
+
 }  // namespace
 }  // namespace axisfit
