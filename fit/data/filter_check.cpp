@@ -20,15 +20,20 @@ double quantile(std::span<double> values, double part) {
   return *at;
 }
 
-/// Correlation at a lag of normal values about zero, by their signs alone, so that a few large ones
-/// do not count.
-double correlation_of_signs(std::span<const double> values, std::size_t lag) {
+/// Correlation of normal values about zero with others that many samples before, by their signs
+/// alone, so that a few large ones do not count.
+double correlation_of_signs(std::span<const double> values, std::span<const double> others,
+                            std::size_t lag) {
   double sum = 0.0;
   for (std::size_t i = lag; i < values.size(); ++i) {
-    const double product = values[i] * values[i - lag];
+    const double product = values[i] * others[i - lag];
     sum += double(product > 0.0) - double(product < 0.0);
   }
   return std::sin(0.5 * std::numbers::pi * sum / static_cast<double>(values.size() - lag));
+}
+
+double correlation_of_signs(std::span<const double> values, std::size_t lag) {
+  return correlation_of_signs(values, values, lag);
 }
 
 /// The quieter half of a signal's sixth differences in two neighbouring octaves of its spectrum:
@@ -80,25 +85,69 @@ struct TwoOctaves {
 };
 
 /// Length of a moving average of white noise: a difference of it is that of what enters and what
-/// leaves, so that differences so far apart are opposite, and their neighbours are not. Zero where
-/// there is none.
+/// leaves, so that differences so far apart are opposite, and their neighbours are not. A tone is
+/// opposite after half a period, too, and so is what rounding makes of one; but it is back after a
+/// whole period, and not only so near the half, where an average has forgotten. Zero where there is
+/// none.
 std::size_t moving_average_in(std::span<const double> values) {
   const std::vector<double> d = sixth_differences(values, 1);
   constexpr std::size_t kLeast = 5;                     // nearer ones overlap
   constexpr double kOpposite = -0.4, kNeighbour = 0.2;  // of -0.5, and of 0.42
+  constexpr std::size_t kBeyond = 8;  // sixth differences of white noise have forgotten after six
   const std::size_t most = std::min<std::size_t>(500, d.size() / 8);
+  // Three standard errors of such a correlation of neighbours that are correlated themselves.
+  const double by_chance = std::max(kNeighbour, 9.0 / std::sqrt(static_cast<double>(d.size())));
+  const auto none_about = [&](std::size_t from, std::size_t to) {
+    for (std::size_t lag = from; lag <= to; ++lag)
+      if (std::abs(correlation_of_signs(d, lag)) > by_chance) return false;
+    return true;
+  };
   for (std::size_t lag = kLeast; lag <= most; ++lag)
     if (correlation_of_signs(d, lag) < kOpposite && correlation_of_signs(d, lag - 1) > kNeighbour &&
-        correlation_of_signs(d, lag + 1) > kNeighbour)
+        correlation_of_signs(d, lag + 1) > kNeighbour && none_about(2 * lag - 2, 2 * lag + 2) &&
+        none_about(lag + kBeyond, lag + kBeyond + 1))
       return lag;
   return 0;
 }
 
+/// Whether what a signal has in the octave about 0.25 / stride cycles per sample goes along with
+/// the command, however late: an axis turns the phase by up to half a period, and drives and
+/// recorders are late by little.
+bool follows_command(std::span<const double> values, std::span<const double> command,
+                     std::size_t stride) {
+  if (command.empty()) return false;
+  const std::vector<double> of_values = sixth_differences(values, 2 * stride),
+                            of_command = sixth_differences(command, 2 * stride);
+  const std::size_t period = 4 * stride;
+  // Above what is left of noise by chance, at any of the lags: an octave has about one value of
+  // its own per period.
+  constexpr double kAtLeast = 0.4, kByChance = 4.0;
+  const double limit =
+      std::max(kAtLeast, kByChance / std::sqrt(static_cast<double>(of_values.size() / period)));
+  for (std::size_t lag = 0; lag <= 2 * period; lag += std::max<std::size_t>(1, stride / 2))
+    if (std::abs(correlation_of_signs(of_values, of_command, lag)) > limit) return true;
+  return false;
+}
+
+/// Of values, to tell a pattern, and how many of them may be none of it.
+constexpr std::size_t kLeastChanges = 30;
+constexpr double kAlmostAll = 0.98;
+
 }  // namespace
 
+bool changes_with(std::span<const double> values, std::span<const double> others) {
+  std::size_t changes = 0, together = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] == values[i - 1]) continue;
+    ++changes;
+    together += others[i] != others[i - 1] ? 1 : 0;
+  }
+  return changes >= kLeastChanges &&
+         static_cast<double>(together) >= kAlmostAll * static_cast<double>(changes);
+}
+
 std::size_t repetition_of(std::span<const double> values) {
-  constexpr std::size_t kLeastChanges = 30;
-  constexpr double kAlmostAll = 0.98, kBeyondRounding = 1.9;
+  constexpr double kBeyondRounding = 1.9;
   std::vector<double> distances, changes;
   for (std::size_t i = 1, last = 0; i < values.size(); ++i) {
     if (values[i] == values[i - 1]) continue;
@@ -115,22 +164,29 @@ std::size_t repetition_of(std::span<const double> values) {
   return static_cast<std::size_t>(usual);
 }
 
-std::optional<SuspectedFilter> suspected_filter(std::span<const double> values) {
+std::optional<SuspectedFilter> suspected_filter(std::span<const double> values,
+                                                std::span<const double> command) {
   constexpr std::size_t kLeastValues = 500;
   if (values.size() < kLeastValues) return std::nullopt;
   TwoOctaves octaves(values, 1);
-  if (octaves.alternates && octaves.low > octaves.high)
+  // The last digits of a number are no noise.
+  const auto [lowest, highest] = std::ranges::minmax(values);
+  if (!(octaves.low > 1e-9 * (highest - lowest))) return std::nullopt;
+  if (octaves.alternates && octaves.low > octaves.high && !follows_command(values, command, 1))
     if (const std::size_t average = moving_average_in(values); average > 0)
       return SuspectedFilter{0.44 / static_cast<double>(average), average};
   // Rounding is white only where the noise makes it so.
   if (!(octaves.high > 0.5 * resolution_of(values))) return std::nullopt;
   // From the highest octave on: what rings in a lower one leaves the noise above it white.
   const double rise = 1.3 + 5.0 / std::sqrt(static_cast<double>(values.size()));
-  constexpr std::size_t kLowest = 8;
+  // A lower one has fewer values of its own, of which some slips make anything.
+  constexpr std::size_t kLowest = 8, kLeastPerStride = 250;
   std::size_t stride = 1;
-  while (octaves.low > rise * octaves.high && !octaves.is_noise && stride < kLowest)
+  while (octaves.low > rise * octaves.high && !octaves.is_noise && stride < kLowest &&
+         2 * stride * kLeastPerStride <= values.size())
     octaves = TwoOctaves(values, stride *= 2);
   if (!octaves.is_noise || !(octaves.low > rise * octaves.high)) return std::nullopt;
+  if (follows_command(values, command, stride)) return std::nullopt;
   constexpr double kStillRises = 1.25;
   while (octaves.is_noise && octaves.low > kStillRises * octaves.high &&
          64 * stride < values.size())

@@ -8,12 +8,10 @@
 
 #include "fit/data/noise.h"
 #include "fit/data/standstill.h"
+#include "fit/data/stuck_check.h"
 
 namespace axisfit {
 namespace {
-
-/// Least samples in a run, or at a limit, that are worth a word.
-constexpr std::size_t kMinRun = 25;
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -34,67 +32,8 @@ RateRatio compared(Eigen::VectorXd a, Eigen::VectorXd b, bool about_means) {
   return {std::copysign(size_b / size_a, correlation), correlation};
 }
 
-/// The longest run of equal values while the arm moves.
-void find_stuck(const Recording& recording, const std::vector<double>& values,
-                const std::vector<bool>& standstill, ValueCheck& check) {
-  const auto moves = [&](std::size_t i) { return standstill.empty() || !standstill[i]; };
-  std::size_t pairs = 0, equal = 0, longest = 0, at = 0;
-  for (std::size_t i = 1, run = 1; i < values.size(); ++i) {
-    if (!moves(i) || !moves(i - 1)) {
-      run = 1;
-      continue;
-    }
-    ++pairs;
-    if (values[i] != values[i - 1]) {
-      run = 1;
-      continue;
-    }
-    ++equal;
-    if (++run > longest) {
-      longest = run;
-      at = i + 1 - run;
-    }
-  }
-  if (longest < kMinRun) return;
-  // Outside of the run: so often a value is followed by its equal, for example on a coarse grid.
-  const double usual = static_cast<double>(equal - (longest - 1) + 1) /
-                       static_cast<double>(pairs - (longest - 1) + 2);
-  if (static_cast<double>(longest) * std::log(usual) >
-      std::log(1e-9 / static_cast<double>(values.size())))
-    return;
-  check.stuck = longest;
-  check.stuck_at = recording.times[at];
-}
-
-/// Samples that stay at the end of the range while the arm moves.
-void find_clipped(const std::vector<double>& values, const std::vector<bool>& standstill,
-                  ValueCheck& check) {
-  // A constant signal, or one whose noise is below its rounding, may well stay at its extreme.
-  if (!(check.high > check.low) || check.noise < 0.5 * check.resolution) return;
-  for (const double limit : {check.low, check.high}) {
-    std::size_t there = 0;
-    for (std::size_t i = 0; i < values.size(); ++i)
-      there += values[i] == limit && (standstill.empty() || !standstill[i]) ? 1 : 0;
-    if (there < kMinRun || there <= check.clipped) continue;
-    check.clipped = there;
-    check.clipped_at = limit;
-  }
-}
-
-/// The command in force at every sample.
-std::vector<double> sampled_command(const Recording& recording) {
-  const Schedule& command = recording.command;
-  std::vector<double> values;
-  std::size_t next = 0;
-  for (const double t : recording.times) {
-    while (next < command.times.size() && command.times[next] <= t) ++next;
-    values.push_back(next > 0 ? command.values[next - 1] : 0.0);
-  }
-  return values;
-}
-
 ValueCheck check_values(const Recording& recording, const Measurement& measurement,
-                        const std::vector<bool>& standstill, bool command_is_held) {
+                        const StuckCheck& stuck_check, const std::vector<double>& command) {
   ValueCheck check;
   const std::vector<double>& values = measurement.values;
   std::tie(check.low, check.high) = std::pair(std::ranges::min(values), std::ranges::max(values));
@@ -103,15 +42,22 @@ ValueCheck check_values(const Recording& recording, const Measurement& measureme
   if (measurement.hold == 1) check.repetition = repetition_of(values);
   // Stairs have the spectrum of a moving average, and the motion that they cause has it, too.
   if (measurement.hold == 1 && check.repetition == 1 && measurement.filter == Filter() &&
-      !command_is_held)
-    check.filter = suspected_filter(values);
+      repetition_of(command) == 1)
+    check.filter = suspected_filter(values, command);
   // A position that stays is an arm at rest, or at its stop; the voltages have limits of their own.
   const Signal signal = measurement.signal;
   if (signal == Signal::position || signal == Signal::preamplifier_voltage ||
       signal == Signal::motor_voltage)
     return check;
-  find_clipped(values, standstill, check);
-  if (check.clipped == 0) find_stuck(recording, values, standstill, check);
+  std::tie(check.clipped, check.clipped_at) = [&] {
+    const ClippedValues clipped = stuck_check.clipped(measurement);
+    return std::pair(clipped.samples, clipped.value);
+  }();
+  if (check.clipped > 0) return check;
+  if (const EqualValues stuck = stuck_check.stuck(measurement); stuck.size() > 0) {
+    check.stuck = stuck.size();
+    check.stuck_at = recording.times[stuck.from];
+  }
   return check;
 }
 
@@ -214,15 +160,41 @@ Sampling densest_sampling(const Recording& recording) {
   return sampling(densest.empty() ? std::vector<double>(recording.times) : densest);
 }
 
+/// What comes in the same messages as a signal that is repeated is repeated as often.
+void find_frames(const Recording& recording, const std::vector<double>& command,
+                 RecordingCheck& check) {
+  const auto repeated = std::ranges::find_if(
+      check.measurements, [](const ValueCheck& values) { return values.repetition > 1; });
+  if (repeated == check.measurements.end()) return;
+  const auto index = static_cast<std::size_t>(repeated - check.measurements.begin());
+  const std::vector<double>& known = recording.measurements[index].values;
+  const std::size_t times = repeated->repetition;
+  for (std::size_t m = 0; m < check.measurements.size(); ++m) {
+    ValueCheck& values = check.measurements[m];
+    const Measurement& measurement = recording.measurements[m];
+    if (values.repetition > 1 || measurement.hold > 1 || !changes_with(measurement.values, known))
+      continue;
+    values.repetition = times;
+    values.filter.reset();
+  }
+  if (check.command.repetition == 1 && changes_with(command, known))
+    check.command.repetition = times;
+}
+
 }  // namespace
 
 RecordingCheck check_recording(const Recording& recording) {
   RecordingCheck check;
   check.sampling = densest_sampling(recording);
   const std::vector<bool> standstill = at_standstill(recording);
-  const bool command_is_held = repetition_of(sampled_command(recording)) > 1;
+  const std::vector<double> command_values = sampled_command(recording);
+  const StuckCheck stuck_check(recording, standstill);
   for (const Measurement& m : recording.measurements)
-    check.measurements.push_back(check_values(recording, m, standstill, command_is_held));
+    check.measurements.push_back(check_values(recording, m, stuck_check, command_values));
+  check.command.repetition = repetition_of(command_values);
+  find_frames(recording, command_values, check);
+  check.command_is_magnitude = is_magnitude(recording, command_values);
+  check.hard_stop = hard_stop(recording, command_values);
 
   // The command in force from the first sample on.
   const Schedule& command = recording.command;

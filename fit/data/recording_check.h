@@ -8,6 +8,7 @@
 
 #include "fit/data/filter_check.h"
 #include "fit/data/job.h"
+#include "fit/data/motion_check.h"
 
 namespace axisfit {
 
@@ -86,9 +87,11 @@ struct RateCheck {
 
 struct RecordingCheck {
   Sampling sampling;
-  ValueCheck command;                    ///< of its values: low and high alone
+  ValueCheck command;                    ///< of its values: low, high and repetition alone
   std::size_t switches = 0;              ///< changes of the command
   double at_maximum = 0.0;               ///< share of the time the command is at its largest size
+  bool command_is_magnitude = false;     ///< see is_magnitude()
+  std::optional<HardStop> hard_stop{};   ///< where the motion ends on one
   std::vector<ValueCheck> measurements;  ///< in the recording's order
   std::vector<RateCheck> rates;          ///< those that are related
   double speed = 0.0;                    ///< m/s, largest, either way; zero where none is recorded

@@ -83,6 +83,16 @@ std::vector<RecordingWarning> warnings_of(const Job& job, const Recording& recor
 
   const double largest = std::max(std::abs(check.command.low), std::abs(check.command.high));
   if (!(largest > 0.0)) warnings.push_back(warning::NoCommand());
+  if (check.command_is_magnitude)
+    warnings.push_back(warning::NoDirection{std::abs(check.command.high) == largest});
+  // A command that a drive takes every few samples is a staircase. What was measured is none, nor
+  // is it likely where the measured signals come as seldom.
+  const bool in_frames = std::ranges::any_of(check.measurements, [&](const ValueCheck& values) {
+    return values.repetition == check.command.repetition;
+  });
+  if (check.command.repetition > 1 && (in_frames || recording.command.hold == Hold::linear))
+    warnings.push_back(warning::RepeatedInput{check.command.repetition});
+  if (check.hard_stop) warnings.push_back(warning::OnHardStop{*check.hard_stop});
   // Friction and a short run keep the arm slower than expected; little makes it faster.
   constexpr double kMaxExcess = 3.0, kMaxDeficit = 30.0;
   const double expected = command_gain(job.model) * largest;

@@ -54,6 +54,21 @@ struct WrongRate {
 
 struct NoCommand {};
 
+/// A command whose sign is elsewhere: it never changes, and the arm goes both ways.
+struct NoDirection {
+  bool is_positive = true;  ///< whether it is never negative; false: never positive
+};
+
+/// Each value of the input is recorded several times, and is no staircase that acted so.
+struct RepeatedInput {
+  std::size_t times = 1;
+};
+
+/// A motion that ends on a hard stop, which the model does not have.
+struct OnHardStop {
+  HardStop stop;
+};
+
 /// The axis file gives another speed at the largest command than the arm reaches.
 struct UnlikelySpeed {
   double speed = 0.0;              ///< m/s, of the arm
@@ -110,6 +125,7 @@ struct UnlikelySigma {
 using RecordingWarning =
     std::variant<warning::Gaps, warning::UnevenSampling, warning::TimeUnit,
                  warning::UnlikelyInterval, warning::WrongRate, warning::NoCommand,
+                 warning::NoDirection, warning::RepeatedInput, warning::OnHardStop,
                  warning::UnlikelySpeed, warning::Constant, warning::Stuck, warning::Clipped,
                  warning::Missing, warning::Repeated, warning::Filtered, warning::UnlikelySigma>;
 

@@ -131,6 +131,28 @@ std::string text_of(const warning::NoCommand&, const Names&) {
   return "The command is zero throughout: is that the right column?";
 }
 
+std::string text_of(const warning::NoDirection& w, const Names& name) {
+  return fmt::format(
+      "The command is never {}, but the {} goes both ways, as if driven by it in either direction: "
+      "the column has the size of the command, and its direction is in another one. Multiply the "
+      "two into one column.",
+      w.is_positive ? "negative" : "positive", words_on(name.vocabulary, "arm"));
+}
+
+std::string text_of(const warning::RepeatedInput& w, const Names&) {
+  return fmt::format(
+      "The command: each value is recorded {} times. If the drive did not take it as such a "
+      "staircase, record it at every sample, or keep only the rows with a new value.",
+      w.times);
+}
+
+std::string text_of(const warning::OnHardStop& w, const Names& name) {
+  return fmt::format(
+      "The {} runs into a hard stop at {:.6g} s and stays there to the end, while the drive still "
+      "pushes. The model has no such stop: exclude it with 'trim: {{to: {:.6g} s}}'.",
+      words_on(name.vocabulary, "arm"), w.stop.at, w.stop.last_before);
+}
+
 std::string text_of(const warning::UnlikelySpeed& w, const Names& name) {
   return fmt::format(
       "The {} reaches {} {}, but at its largest command, {} V, the axis file gives {} {}. Check "

@@ -47,6 +47,45 @@ TEST(RepetitionTest, IsNotRounding) {
   EXPECT_EQ(repetition_of(std::vector<double>(2000, 1.0)), 1u);
 }
 
+TEST(RepetitionTest, IsSharedByWhatComesInOneMessage) {
+  std::vector<double> known = motion(1), ramp;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    known[i] = known[i - i % 4];
+    ramp.push_back(0.1 * static_cast<double>(i - i % 4));
+  }
+  EXPECT_EQ(repetition_of(ramp), 1u);  // as rounding would
+  EXPECT_TRUE(changes_with(ramp, known));
+  EXPECT_FALSE(changes_with(known, motion(2)) && changes_with(motion(2), known));
+  EXPECT_FALSE(changes_with(std::vector<double>(known.size(), 1.0), known));
+}
+
+TEST(SuspectedFilterTest, IsNotWhatTheCommandDoes) {
+  // A random sequence with a new value at every fifth sample that drives through a lag, with noise
+  // in the command, so that it is no staircase.
+  Normal normal(7);
+  std::vector<double> command, values;
+  double level = 0.0, state = 0.0;
+  for (std::size_t i = 0; i < 4000; ++i) {
+    if (i % 5 == 0) level = normal();
+    command.push_back(level + 1e-3 * normal());
+    state += 0.3 * (level - state);
+    values.push_back(state + 1e-4 * normal());
+  }
+  EXPECT_TRUE(suspected_filter(values));
+  EXPECT_FALSE(suspected_filter(values, command));
+  EXPECT_TRUE(suspected_filter(motion(4, butterworth(2, 0.1, false), 4000), command));
+}
+
+TEST(SuspectedFilterTest, IsNoAverageOfARoundedTone) {
+  for (double period = 61.7; period < 600.0; period *= 1.1) {
+    std::vector<double> values(4000);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = std::sin(2.0 * std::numbers::pi * static_cast<double>(i) / period);
+    EXPECT_FALSE(suspected_filter(rounded(values, 3e-3))) << period;
+    EXPECT_FALSE(suspected_filter(values)) << period;
+  }
+}
+
 TEST(SuspectedFilterTest, TellsTheLengthOfAMovingAverage) {
   for (const std::size_t length : {8u, 21u, 50u})
     for (const bool zero_phase : {false, true}) {

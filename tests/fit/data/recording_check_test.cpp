@@ -164,6 +164,28 @@ TEST(RecordingCheckTest, FindsAFilterAndAHoldThatAreNotDeclared) {
   }
 }
 
+TEST(RecordingCheckTest, FindsFramesOfEverySignalAndOfTheInput) {
+  // A ramp: the steps of the velocity and of the command are all alike.
+  Recording recording;
+  Measurement position, velocity;
+  position.signal = Signal::position;
+  velocity.signal = Signal::velocity;
+  recording.command.hold = Hold::linear;
+  for (std::size_t i = 0; i < 800; ++i) {
+    const double t = 5e-3 * static_cast<double>(i), fresh = 5e-3 * static_cast<double>(i - i % 4);
+    recording.times.edit().push_back(t);
+    position.values.edit().push_back(fresh * fresh);
+    velocity.values.edit().push_back(2.0 * fresh);
+    if (i % 4 == 0) recording.command.append(t, 3.0 * fresh);
+  }
+  position.sigma = velocity.sigma = 1e-6;
+  recording.measurements = {velocity, position};
+  const RecordingCheck check = check_recording(recording);
+  EXPECT_EQ(check.measurements[0].repetition, 4u);
+  EXPECT_EQ(check.measurements[1].repetition, 4u);
+  EXPECT_EQ(check.command.repetition, 4u);
+}
+
 TEST(RecordingCheckTest, FindsASensorOutOfItsRange) {
   Recording recording = moving();
   for (double& a : recording.measurements[2].values.edit()) a = std::min(a, 15.0);

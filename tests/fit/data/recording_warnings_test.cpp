@@ -111,6 +111,24 @@ TEST_F(RecordingWarningsTest, OfAllRatesAlikeIsTheUnitOfTime) {
 TEST_F(RecordingWarningsTest, OfTheCommand) {
   check_.command = {};
   only<warning::NoCommand>();
+  check_.command = {.low = 0.0, .high = 2.0};
+  check_.command_is_magnitude = true;
+  EXPECT_TRUE(only<warning::NoDirection>().is_positive);
+  check_.command = {.low = -2.0, .high = 0.0};
+  EXPECT_FALSE(only<warning::NoDirection>().is_positive);
+  check_.command_is_magnitude = false;
+  check_.hard_stop = HardStop{1.5, 1.4};
+  EXPECT_EQ(only<warning::OnHardStop>().stop.last_before, 1.4);
+}
+
+TEST_F(RecordingWarningsTest, OfAnInputThatIsRepeatedUnlessItActsSo) {
+  check_.command.repetition = 4;
+  EXPECT_TRUE(found().empty());
+  recording_.command.hold = Hold::linear;
+  EXPECT_EQ(only<warning::RepeatedInput>().times, 4u);
+  recording_.command.hold = Hold::zero_order;
+  check_.measurements[1].repetition = 4;
+  EXPECT_EQ(found().size(), 2u);
 }
 
 TEST_F(RecordingWarningsTest, OfASpeedThatTheAxisFileDoesNotGive) {

@@ -58,6 +58,16 @@ TEST(WarningsTextTest, OfRates) {
 TEST(WarningsTextTest, OfSignals) {
   EXPECT_EQ(text_of(warning::NoCommand()),
             "The command is zero throughout: is that the right column?");
+  EXPECT_EQ(text_of(warning::NoDirection{true}),
+            "The command is never negative, but the arm goes both ways, as if driven by it in "
+            "either direction: the column has the size of the command, and its direction is in "
+            "another one. Multiply the two into one column.");
+  EXPECT_EQ(text_of(warning::RepeatedInput{4}),
+            "The command: each value is recorded 4 times. If the drive did not take it as such a "
+            "staircase, record it at every sample, or keep only the rows with a new value.");
+  EXPECT_EQ(text_of(warning::OnHardStop{{1.2345, 1.2325}}),
+            "The arm runs into a hard stop at 1.2345 s and stays there to the end, while the drive "
+            "still pushes. The model has no such stop: exclude it with 'trim: {to: 1.2325 s}'.");
   EXPECT_EQ(text_of(warning::UnlikelySpeed{0.5, 10.0, 50.0, Signal::position}),
             "The arm reaches 0.5 m/s, but at its largest command, 10 V, the axis file gives 50 "
             "m/s. Check the units of the command and of the position, and K_1, K_2, K_t and r_g.");
