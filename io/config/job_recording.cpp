@@ -42,12 +42,15 @@ class RecordingReader {
     map.read("acceleration_at_standstill", recording.acceleration_at_standstill);
     map.read("score_initial_samples", recording.score_initial_samples);
     if (const auto set = map.optional("set")) read_overrides(*set, recording);
-    const auto time = map.required("time");
+    const auto times = read_clock(map);
     const auto signals = map.required("signals");
     const auto channels = map.optional("channels");
     const auto trim = map.optional("trim");
-    if (path && series_.open_own(*file, *path) && time && signals)
-      read_samples(*time, *signals, channels, trim, recording);
+    if (path && series_.open_own(*file, *path) && times && signals) {
+      times->rate ? series_.make_own_times(times->node, *times->rate)
+                  : series_.read_own_times(times->node);
+      read_samples(times->node, *signals, channels, trim, recording);
+    }
     if (rig_.model.structure.channels != nullptr && !channels)
       node.error(
           fmt::format("'{}' lacks the channels of the axis, or of the other recordings: name "
@@ -71,6 +74,24 @@ class RecordingReader {
 
   using Values = std::vector<double>;
 
+  /// The key that tells the times of the samples.
+  struct Clock {
+    ConfigNode node;
+    std::optional<double> rate;  ///< Hz; none: the node names a column
+  };
+
+  /// Nothing, with a diagnostic, where there is neither a column nor a rate, or both.
+  static std::optional<Clock> read_clock(ConfigMap& map) {
+    std::optional<double> rate;
+    const auto of_rate = map.read("rate", rate);
+    const auto time = of_rate ? map.optional("time") : map.required("time");
+    if (time && of_rate)
+      of_rate->error("give either the column of the times or the rate of the samples, not both");
+    if (time) return Clock{*time, {}};
+    if (of_rate && rate) return Clock{*of_rate, rate};
+    return std::nullopt;
+  }
+
   static Trim read_trim(const ConfigNode& node) {
     Trim trim;
     ConfigMap map(node, keys_below(recording_keys(), "trim"));
@@ -83,7 +104,6 @@ class RecordingReader {
   void read_samples(const ConfigNode& time_node, const ConfigNode& signals_node,
                     const std::optional<ConfigNode>& channels_node,
                     const std::optional<ConfigNode>& trim_node, Recording& recording) {
-    series_.read_own_times(time_node);
     const Trim trim = trim_node ? read_trim(*trim_node) : Trim();
     ConfigMap signals(signals_node, keys_below(recording_keys(), "signals"));
     auto input = read_input(signals_node, signals, rig_, series_, recording);

@@ -101,12 +101,26 @@ std::optional<std::vector<double>> read_column(const RecordingFile& file, const 
   return values;
 }
 
+bool repeats_row(const RecordingFile& file, std::size_t row) {
+  // Times alone would have nothing that agrees.
+  return row > 0 && file.columns().size() > 1 &&
+         std::ranges::all_of(file.columns(), [row](const Column& column) {
+           if (row >= column.values.size()) return true;
+           const double before = column.values[row - 1], now = column.values[row];
+           return before == now || (std::isnan(before) && std::isnan(now));
+         });
+}
+
 std::optional<std::vector<double>> read_times(const RecordingFile& file, const ConfigNode& node) {
   auto times = read_column(file, node, "s");
   double before = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; times && i < times->size(); ++i) {
-    const double time = (*times)[i];
+    double& time = (*times)[i];
     if (std::isnan(time)) continue;
+    if (time == before && repeats_row(file, i)) {
+      time = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
     if (time - before < kShortestStep) {
       node.error(
           time > before

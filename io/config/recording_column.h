@@ -1,6 +1,7 @@
 // A column of a recording as a configuration file describes it.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -23,8 +24,12 @@ std::optional<std::vector<double>> read_column(const RecordingFile& file, Config
 std::optional<std::vector<double>> read_column(const RecordingFile& file, const ConfigNode& node,
                                                std::string_view si_unit);
 
-/// The times of the samples, s, NaN where there is none; they must increase: nothing, with a
-/// diagnostic, otherwise.
+/// Whether a row says nothing but what the row before says, its time among it: loggers write some
+/// rows twice.
+bool repeats_row(const RecordingFile& file, std::size_t row);
+
+/// The times of the samples, s, NaN where there is none, and in rows that repeat the row before;
+/// they must increase: nothing, with a diagnostic, otherwise.
 std::optional<std::vector<double>> read_times(const RecordingFile& file, const ConfigNode& node);
 
 }  // namespace axisfit

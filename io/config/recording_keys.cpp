@@ -176,8 +176,12 @@ const Section& recording_keys() {
           "role",
           Choice{{{"fit", "its residuals are minimised"}, {"validate", "for validation only"}}},
           defaults.role, "how it is used"),
-      Key::required("time", Map{column_keys(), 0, false, "column"},
-                    "column of the sample times, which must increase"),
+      Key::optional("time", Map{column_keys(), 0, false, "column"},
+                    DefaultText{"required without a rate"},
+                    "column of the sample times, which must increase; a row that repeats the one "
+                    "before counts once"),
+      Key::optional("rate", NumberWithUnit{"Hz", 1e-3, 1e8}, DefaultText{"the time has a column"},
+                    "in place of `time`: the rows are samples at this rate, the first at 0 s"),
       Key::required("signals", Map{signal_keys()}, "columns of the input and the measured signals"),
       Key::optional("channels", keys_of_channels(), DefaultText{"none"},
                     "columns of what else was recorded and may act on the axis, such as "

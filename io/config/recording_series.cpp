@@ -47,6 +47,15 @@ void SeriesReader::read_own_times(const ConfigNode& node) {
   times_ = read_times(*file_, node);
 }
 
+void SeriesReader::make_own_times(const ConfigNode& node, double rate) {
+  time_node_ = node;
+  has_rate_ = true;
+  times_.emplace();
+  for (const Column& column : file_->columns())
+    while (times_->size() < column.values.size())
+      times_->push_back(static_cast<double>(times_->size()) / rate);
+}
+
 std::optional<Series> SeriesReader::read(const ConfigNode& node, ConfigMap& map,
                                          std::string_view unit) {
   std::optional<std::string> path;
@@ -57,6 +66,10 @@ std::optional<Series> SeriesReader::read(const ConfigNode& node, ConfigMap& map,
   map.read("offset", offset);
   const RecordingFile* const data = path ? open(*file, *path) : file_;
   if (data == nullptr) return std::nullopt;
+  if (path && !time && has_rate_) {
+    file->error("a column of another file needs a time of its own: the recording has none");
+    return std::nullopt;
+  }
   const auto values = read_column(*data, map, unit);
   series.own_clock = path || time || offset != 0.0;
   const auto times = path || time ? read_times(*data, time.value_or(*time_node_)) : times_;

@@ -52,6 +52,8 @@ class SeriesReader {
   bool open_own(const ConfigNode& node, const std::string& path);
   /// Reads the times of the recording from its own file.
   void read_own_times(const ConfigNode& node);
+  /// Times of its rows as samples at a rate, Hz, from 0 s; `node` is where that is said.
+  void make_own_times(const ConfigNode& node, double rate);
 
   /// Its own file, once it is open.
   const RecordingFile& file() const { return *file_; }
@@ -70,6 +72,7 @@ class SeriesReader {
   std::map<std::string, RecordingFile> files_;  ///< read already, by path
   const RecordingFile* file_ = nullptr;
   std::optional<ConfigNode> time_node_;
+  bool has_rate_ = false;  ///< there is no column of times
   std::optional<std::vector<double>> times_;
 };
 

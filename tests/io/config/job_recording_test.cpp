@@ -21,7 +21,8 @@ class JobRecordingTest : public ::testing::Test {
                       diagnostics);
   }
 
-  Recording read(const std::string& more, double begin = 0.0) {
+  Recording read(const std::string& more, double begin = 0.0,
+                 const std::string& clock = "time: {column: t, unit: s}\n") {
     Column time{"t", {}}, u{"u", {}}, v{"v", {}};
     for (int i = 0; i < 100; ++i) {
       time.values.push_back(begin + 0.01 * i);
@@ -30,12 +31,11 @@ class JobRecordingTest : public ::testing::Test {
     }
     const RecordingSources sources{{}, {{"run/a.csv", {"run/a.csv", {time, u, v}, {}}}}};
     Diagnostics diagnostics;
-    const auto node = ConfigNode::parse(
-        "file: run/a.csv\ntime: {column: t, unit: s}\n"
-        "signals: {command: {column: u, unit: V, sigma: 0 V}, "
-        "velocity: {column: v, unit: m/s, sigma: 1 mm/s}}\n" +
-            more,
-        "job.yaml", diagnostics);
+    const auto node = ConfigNode::parse("file: run/a.csv\n" + clock +
+                                            "signals: {command: {column: u, unit: V, sigma: 0 V}, "
+                                            "velocity: {column: v, unit: m/s, sigma: 1 mm/s}}\n" +
+                                            more,
+                                        "job.yaml", diagnostics);
     Recording recording = read_recording(*node, rig_, sources);
     said_.clear();
     for (const Diagnostic& d : diagnostics.sorted()) said_ += d.message + "\n";
@@ -45,6 +45,18 @@ class JobRecordingTest : public ::testing::Test {
   Rig rig_;
   std::string said_;
 };
+
+TEST_F(JobRecordingTest, SamplesMayHaveARateInsteadOfTimes) {
+  const Recording r = read("", 0.0, "rate: 0.2 kHz\n");
+  EXPECT_EQ(said_, "");
+  ASSERT_EQ(r.times.size(), 100u);
+  EXPECT_DOUBLE_EQ(r.times[10], 0.05);
+  EXPECT_EQ(r.command.times, (Samples{0.0, 0.25}));
+  read("", 0.0, "rate: 1 kHz\ntime: {column: t, unit: s}\n");
+  EXPECT_EQ(said_, "give either the column of the times or the rate of the samples, not both\n");
+  read("", 0.0, "");
+  EXPECT_NE(said_.find("time"), std::string::npos);
+}
 
 TEST_F(JobRecordingTest, IsCalledByItsFileUnlessItHasAName) {
   Recording r = read("");

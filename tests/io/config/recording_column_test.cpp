@@ -63,6 +63,25 @@ TEST(RecordingColumn, SaysWhyAColumnCannotBeUsed) {
             std::string::npos);
 }
 
+TEST(RecordingColumn, ARowThatIsRepeatedHasNoTime) {
+  const Table table{"b.csv", {{"t", {0.0, 1.0, 1.0, 2.0}}, {"x", {5.0, 6.0, 6.0, 7.0}}}, {}};
+  const auto times = [](const Table& of) {
+    const RecordingFile file(of);
+    return outcome("{column: t, unit: s}",
+                   [&](const ConfigNode& node) { return read_times(file, node); });
+  };
+  const Outcome merged = times(table);
+  ASSERT_TRUE(merged.values);
+  EXPECT_TRUE(std::isnan((*merged.values)[2]));
+  EXPECT_EQ((*merged.values)[3], 2.0);
+  Table different = table;
+  different.columns[1].values[2] = 6.5;
+  EXPECT_FALSE(times(different).values);
+  EXPECT_TRUE(repeats_row(RecordingFile(table), 2));
+  EXPECT_FALSE(repeats_row(RecordingFile(table), 0));
+  EXPECT_FALSE(repeats_row(RecordingFile(different), 2));
+}
+
 TEST(RecordingColumn, ColumnsWithoutNamesHaveNumbers) {
   const RecordingFile plain(Table{"b.csv", {{"", {1.0}}, {"", {2.0}}}, {}});
   const Outcome none = outcome("{column: x, unit: m/s}", [&](const ConfigNode& node) {
