@@ -37,6 +37,8 @@ void write_first_job(const FitArguments& arguments, std::optional<ProgressLine>&
   const fs::path folder = arguments.output.empty() ? "." : arguments.output;
   std::vector<ColumnAnswer> answers;
   for (const std::string& text : arguments.answers) answers.push_back(read_answer(text));
+  if (!arguments.rate.empty()) answers.push_back(read_rate(arguments.rate));
+  if (!arguments.motor.empty()) answers.push_back(motor_answer(arguments.motor));
   const bool is_machine = !arguments.machine.empty();
   MachineChoice choice;
   if (is_machine || !arguments.axis.empty() || arguments.gain)

@@ -141,11 +141,23 @@ void add_options(CLI::App& app, FitArguments& arguments) {
       ->type_name("K_f");
   app.add_option("--column", arguments.answers,
                  "with --init: what a column is, such as position=\"Geber [Ink]:um/8\"; may be "
-                 "given several times")
+                 "given several times; without a unit, this is inferred")
       ->needs(init)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("SIGNAL=COLUMN:UNIT");
+  app.add_option("--rate", arguments.rate,
+                 "with --init: samples a second, such as \"1 kHz\", of recordings without a column "
+                 "of times")
+      ->needs(init)
+      ->check(kNotEmpty)
+      ->type_name("RATE");
+  app.add_option("--motor", arguments.motor,
+                 "with --init: which of several axes in one file, by the number or word that the "
+                 "names of its columns have in common")
+      ->needs(init)
+      ->check(kNotEmpty)
+      ->type_name("NAME");
 
   app.option_defaults()->group("Results");
   auto* output = app.add_option("-o,--output", arguments.output,

@@ -21,6 +21,7 @@ struct FitArguments {
   std::string axis, machine;
   std::optional<double> gain;         ///< N/V
   std::vector<std::string> answers;   ///< what columns are
+  std::string rate, motor;            ///< of samples without times; which of several axes
   std::string profiles, compared;     ///< names with commas, as they were given
   std::vector<std::string> profiled;  ///< names of parameters
   std::vector<std::string> others;    ///< axis files to compare with

@@ -30,8 +30,12 @@ constexpr const char* kOnlyRatios = "a motion shows only ratios to it";
 /// Two clocks may differ to either side.
 void add_delay(JobDraft& draft) {
   const double interval = sampling(draft.recordings.front().guess.time.values).interval;
-  const double initial = draft.joined ? 0.0 : round_to_digits(interval, 2);
-  const double most = draft.joined ? kRoom : round_to_digits(20.0 * interval, 2);
+  // Twenty samples to either side are more than the quantity's own range where they are far apart.
+  const Quantity& delay = draft.quantity("T_d").quantity;
+  const double most =
+      draft.joined ? kRoom
+                   : std::min({round_to_digits(20.0 * interval, 2), delay.upper, -delay.lower});
+  const double initial = draft.joined ? 0.0 : std::min(round_to_digits(interval, 2), most);
   draft.parameters.push_back(
       {"T_d", fmt::format("{{initial: {}, bounds: [-{}, {}]}}", with_unit(initial, "s"),
                           with_unit(most, "s"), with_unit(most, "s"))});

@@ -44,7 +44,8 @@ void read_structure(JobDraft& draft) {
 }
 
 std::vector<std::string> names_of(const DraftRecording& recording) {
-  std::vector<std::string> names{recording.guess.time.column};
+  std::vector<std::string> names;
+  if (recording.guess.rate == 0.0) names.push_back(recording.guess.time.column);
   for (const GuessedColumn& c : recording.guess.columns) names.push_back(c.column);
   for (const std::string& name : recording.guess.unused)
     names.push_back(name + (std::ranges::count(recording.guess.constant, name) > 0
@@ -54,21 +55,49 @@ std::vector<std::string> names_of(const DraftRecording& recording) {
   return names;
 }
 
-void add(JobDraft& draft, const std::string& path) {
+void add(JobDraft& draft, const std::string& path, RecordingGuess guess) {
   DraftRecording recording{
-      fs::path(path).stem().string(),
-      draft.relative(path),
-      guess_recording(RecordingFile(path), path, draft.answers, draft.structure.joint),
-      {}};
+      fs::path(path).stem().string(), draft.relative(path), std::move(guess), {}};
   for (int n = 2; std::ranges::count(draft.recordings, recording.name, &DraftRecording::name) > 0;
        ++n)
     recording.name = fmt::format("{}-{}", fs::path(path).stem().string(), n);
   draft.recordings.push_back(std::move(recording));
 }
 
+/// Of one axis, that which the first shows, and in the same units: what one recording says only by
+/// how large its values are, the largest of all recordings tell.
+std::vector<RecordingGuess> guesses_of(const std::vector<std::string>& paths,
+                                       const JobDraft& draft) {
+  std::vector<RecordingFile> files;
+  GuessOptions options{draft.answers, draft.structure.joint, {}};
+  std::vector<RecordingGuess> guesses;
+  const auto guess_all = [&] {
+    guesses.clear();
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      guesses.push_back(guess_recording(files[i], paths[i], options));
+      if (const std::string& motor = guesses.front().motor; !motor.empty() && i == 0)
+        options.answers.push_back(motor_answer(motor));
+    }
+  };
+  for (const std::string& path : paths) files.emplace_back(path);
+  guess_all();
+  bool is_open = false;
+  for (const RecordingGuess& guess : guesses)
+    for (const GuessedColumn& column : guess.columns) {
+      double& most = options.ranges[column.column];
+      most = std::max(most, column.range);
+      is_open = is_open || column.sized_by_range;
+    }
+  const std::vector<std::string> notes = guesses.front().notes;
+  if (is_open && paths.size() > 1) guess_all();
+  guesses.front().notes = notes;
+  return guesses;
+}
+
 /// Every answer is about a column that is there.
 void check_answers(const JobDraft& draft) {
   for (const ColumnAnswer& answer : draft.answers) {
+    if (!answer.is_of_column()) continue;
     const auto found = [&](const GuessedColumn& c) { return c.answer == answer.column; };
     if (std::ranges::none_of(draft.recordings, [&](const DraftRecording& s) {
           return found(s.guess.time) || std::ranges::any_of(s.guess.columns, found);
@@ -157,21 +186,30 @@ void start_axis(JobDraft& draft) {
 
 /// For the user's eye, what the files mark: a column of several recordings once.
 void collect_guesses(JobDraft& draft) {
-  std::set<std::string> seen;
+  std::set<std::string> seen, unused;
   for (const DraftRecording& recording : draft.recordings) {
+    for (const std::string& note : recording.guess.notes) draft.guesses.push_back(sanitized(note));
+    for (const std::string& name : recording.guess.unused)
+      if (std::ranges::count(recording.guess.constant, name) == 0)
+        unused.insert(sanitized(shortened(name)));
     const auto list_guess = [&](const GuessedColumn& c) {
       if (!c.guessed) return;
       if (seen.insert(c.column).second)
         draft.guesses.push_back(
-            sanitized(fmt::format("{}: {}", c.column, fmt::join(c.reasons, "; "))));
+            sanitized(fmt::format("{}: {}", shortened(c.column), fmt::join(c.reasons, "; "))));
     };
     list_guess(recording.guess.time);
     for (const GuessedColumn& c : recording.guess.columns)
-      if (draft.is_measured(c) || &c == &recording.input_column()) list_guess(c);
+      if (draft.is_measured(c) || &c == &recording.input_column())
+        list_guess(c);
+      else if (!c.idle && c.kind != Kind::supply)
+        unused.insert(sanitized(shortened(c.column)));
     for (const std::string& name : recording.guess.constant)
       if (seen.insert(name).second)
         draft.guesses.push_back(sanitized(name + ": not used, for it never changes"));
   }
+  if (!unused.empty())
+    draft.guesses.push_back(fmt::format("not used: {}", fmt::join(unused, ", ")));
 }
 
 }  // namespace
@@ -189,8 +227,10 @@ InitialJob initial_job(const std::vector<std::string>& recordings, const std::st
         }))
       throw std::runtime_error(
           fmt::format("{} is given twice: a recording counts once", sanitized(*path)));
-    add(draft, *path);
   }
+  std::vector<RecordingGuess> guesses = guesses_of(recordings, draft);
+  for (std::size_t i = 0; i < recordings.size(); ++i)
+    add(draft, recordings[i], std::move(guesses[i]));
   check_answers(draft);
   join_files(draft);
   if (makes_axis) choose_drive(draft);
@@ -198,8 +238,10 @@ InitialJob initial_job(const std::vector<std::string>& recordings, const std::st
     write_units(recording.guess, draft.vocabulary());
   choose_inputs(draft);
   drop_recordings_without_input(draft);
+  refuse_unrelated(draft);
   correct_signs(draft);
   drop_idle_velocities(draft);
+  use_common_signals(draft);
   if (makes_axis) start_axis(draft);
   list_parameters(draft);
   choose_free(draft);
@@ -212,7 +254,7 @@ std::vector<std::string> machines_for(const std::vector<std::string>& recordings
                                       const std::vector<ColumnAnswer>& answers) {
   std::vector<std::string> names;
   const RecordingGuess first =
-      guess_recording(RecordingFile(recordings.front()), recordings.front(), answers);
+      guess_recording(RecordingFile(recordings.front()), recordings.front(), {answers});
   if (first.time.values.size() > kMostSamplesToTry || is_of_velocity_loop(first)) return names;
   const auto input = std::ranges::find_if(
       force_inputs(), [&](const InputColumn& i) { return has_changing_input(first, i); });

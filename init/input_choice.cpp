@@ -8,6 +8,7 @@
 #include <map>
 #include <span>
 
+#include "base/plain_text.h"
 #include "fit/data/noise.h"
 #include "fit/data/recording_check.h"
 #include "init/force_balance.h"
@@ -142,6 +143,53 @@ bool is_velocity_idle(const RecordingGuess& recording, const std::vector<double>
   const double noise =
       std::max(noise_from_differences(position->values), resolution_of(position->values) / kSlope);
   return noise_from_differences(velocity->values) > kClear * kSlope * noise * rate;
+}
+
+/// Whether the speed changes by half of its mean or more. At one speed a mass explains nothing:
+/// what is left is ripple.
+bool changes_speed(const RecordingGuess& recording) {
+  const GuessedColumn* position = recording.find(Kind::position);
+  if (position == nullptr) position = recording.find(Kind::velocity);
+  if (position == nullptr) return false;
+  constexpr std::size_t kStretches = 50;
+  const std::size_t n = position->values.size();
+  if (n < 4 * kStretches) return false;
+  std::vector<double> speeds;
+  for (std::size_t k = 0; k < kStretches; ++k) {
+    const std::size_t a = k * (n - 1) / kStretches, b = (k + 1) * (n - 1) / kStretches;
+    speeds.push_back(position->kind == Kind::velocity
+                         ? position->values[a]
+                         : (position->values[b] - position->values[a]) /
+                               (recording.time.values[b] - recording.time.values[a]));
+  }
+  double mean = 0.0;
+  for (const double v : speeds) mean += v / double(kStretches);
+  constexpr double kChange = 0.5;
+  return standard_deviation(speeds) > kChange * std::abs(mean);
+}
+
+/// The part of what drives a recording, about its mean, that a mass with friction explains. Nothing
+/// where that cannot be told.
+std::optional<double> explained_part(const DraftRecording& recording) {
+  const GuessedColumn *position = recording.guess.find(Kind::position),
+                      *velocity = recording.guess.find(Kind::velocity);
+  if (!changes_speed(recording.guess)) return std::nullopt;
+  const std::vector<double> none;
+  std::vector<double> input = recording.driving();
+  double mean = 0.0;
+  for (const double x : input) mean += x / static_cast<double>(input.size());
+  for (double& x : input) x -= mean;
+  const auto balance =
+      force_balance(recording.guess.time.values, position ? position->values : none,
+                    velocity ? velocity->values : none, input);
+  return balance ? std::optional(std::abs(balance->correlation)) : std::nullopt;
+}
+
+bool is_answered(const DraftRecording& recording) {
+  const GuessedColumn *position = recording.guess.find(Kind::position),
+                      *velocity = recording.guess.find(Kind::velocity);
+  const GuessedColumn* motion = position ? position : velocity;
+  return !recording.input_column().answer.empty() && motion && !motion->answer.empty();
 }
 
 }  // namespace
@@ -286,22 +334,86 @@ void correct_signs(JobDraft& draft) {
 }
 
 void drop_idle_velocities(JobDraft& draft) {
-  for (DraftRecording& recording : draft.recordings) {
-    const GuessedColumn& input = recording.input_column();
-    GuessedColumn* velocity = recording.guess.find(Kind::velocity);
-    if (velocity == nullptr || velocity == &input) continue;
-    const double late = lateness(recording.guess);
+  std::string reason;
+  const auto of_each = [&](auto&& use) {
+    for (DraftRecording& recording : draft.recordings) {
+      GuessedColumn* velocity = recording.guess.find(Kind::velocity);
+      if (velocity != nullptr && velocity != &recording.input_column()) use(recording, *velocity);
+    }
+  };
+  of_each([&](const DraftRecording& recording, GuessedColumn&) {
+    if (!reason.empty()) return;
+    const std::string in =
+        draft.recordings.size() > 1 ? fmt::format(" in {}", recording.name) : std::string();
     // The simulation of a direct drive follows the recording.
-    velocity->idle =
-        late > 0.0 || (draft.is_direct() && is_velocity_idle(recording.guess, input.values));
-    if (late > 0.0)
-      velocity->reasons.push_back(
-          fmt::format("not used: it comes {:.2g} ms behind the derivative of the position, as one "
-                      "that a filter has smoothed",
-                      1e3 * late));
-    else if (velocity->idle)
-      velocity->reasons.push_back("not used: the position tells the same more precisely");
+    if (const double late = lateness(recording.guess); late > 0.0)
+      reason = fmt::format(
+          "not used: it comes {:.2g} ms behind the derivative of the position{}, "
+          "as one that a filter has smoothed",
+          1e3 * late, in);
+    else if (draft.is_direct() &&
+             is_velocity_idle(recording.guess, recording.input_column().values))
+      reason = fmt::format("not used: the position tells the same more precisely{}", in);
+  });
+  if (reason.empty()) return;
+  // What is fitted and what validates are compared with the same signals.
+  of_each([&](DraftRecording& recording, GuessedColumn& velocity) {
+    if (recording.guess.find(Kind::position) == nullptr) return;
+    velocity.idle = true;
+    velocity.reasons.push_back(reason);
+  });
+}
+
+void use_common_signals(JobDraft& draft) {
+  const auto measured = [&](DraftRecording& recording, const GuessedColumn& like) {
+    GuessedColumn* column = recording.guess.find(like.kind, like.is_setpoint);
+    return column && column != &recording.input_column() && draft.is_measured(*column) ? column
+                                                                                       : nullptr;
+  };
+  const auto first_without = [&](const GuessedColumn& like) {
+    return std::ranges::find_if(draft.recordings, [&](DraftRecording& recording) {
+      return measured(recording, like) == nullptr;
+    });
+  };
+  std::vector<std::pair<GuessedColumn*, std::string>> partial;
+  bool any_common = false;
+  for (DraftRecording& recording : draft.recordings)
+    for (GuessedColumn& column : recording.guess.columns) {
+      if (measured(recording, column) != &column) continue;
+      const auto without = first_without(column);
+      if (without == draft.recordings.end())
+        any_common = true;
+      else
+        partial.emplace_back(&column, without->name);
+    }
+  if (!any_common) return;
+  for (auto& [column, name] : partial) {
+    column->idle = true;
+    column->reasons.push_back(fmt::format("not used: {} has none to compare with", name));
   }
+}
+
+void refuse_unrelated(const JobDraft& draft) {
+  if (!draft.is_force_driven()) return;
+  // Of noise four terms explain a seventh; of what drives an axis, a third even where most of it
+  // holds a load or overcomes what nobody knows.
+  constexpr double kLeast = 0.2;
+  double most = 0.0;
+  for (const DraftRecording& recording : draft.recordings) {
+    if (is_answered(recording)) return;
+    const auto part = explained_part(recording);
+    if (!part) return;
+    most = std::max(most, *part);
+  }
+  if (most >= kLeast || draft.recordings.empty()) return;
+  const DraftRecording& first = draft.recordings.front();
+  const GuessedColumn* motion = first.guess.find(Kind::position);
+  if (motion == nullptr) motion = first.guess.find(Kind::velocity);
+  throw std::runtime_error(sanitized(fmt::format(
+      "{}: {} explains nothing of how {} moves (correlation {:.2f}): they are hardly of the same "
+      "axis. If they are, say so by --column, once for each; otherwise name the right columns by "
+      "it",
+      first.guess.path, first.input_column().column, motion ? motion->column : "the axis", most)));
 }
 
 }  // namespace axisfit

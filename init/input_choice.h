@@ -33,7 +33,15 @@ void choose_inputs(JobDraft& draft);
 /// gravity on a joint, can look like a wrong sign.
 void correct_signs(JobDraft& draft);
 
-/// Leaves out velocities that say less than the position does.
+/// Leaves out velocities that say less than the position does, or come late: in all recordings
+/// where one shows it, for what is fitted and what validates have the same signals.
 void drop_idle_velocities(JobDraft& draft);
+
+/// Leaves out what was not measured in all recordings, unless they have nothing in common.
+void use_common_signals(JobDraft& draft);
+
+/// Throws std::runtime_error where what drives the axis goes with its motion in no recording, and
+/// the user has not named both.
+void refuse_unrelated(const JobDraft& draft);
 
 }  // namespace axisfit

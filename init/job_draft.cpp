@@ -39,6 +39,8 @@ std::optional<Signal> signal_of(Kind kind) {
       return Signal::motor_voltage;
     case Kind::force:
       return Signal::drive_force;
+    case Kind::load_position:
+      return Signal::load_position;
     default:
       return std::nullopt;
   }

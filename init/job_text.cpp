@@ -49,6 +49,10 @@ std::string column_map(const GuessedColumn& column, const std::string& unit,
     out << YAML::Key << "time" << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key
         << "column" << YAML::Value << column.clock << YAML::Key << "unit" << YAML::Value
         << column.clock_unit << YAML::EndMap;
+  if (!column.supply.empty())
+    out << YAML::Key << "supply" << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key
+        << "column" << YAML::Value << column.supply << YAML::Key << "unit" << YAML::Value
+        << column.supply_unit << YAML::EndMap;
   if (offset != 0.0)
     out << YAML::Key << "offset" << YAML::Value << with_unit(round_to_digits(offset, 6), "s");
   if (!more.first.empty()) out << YAML::Key << more.first << YAML::Value << more.second;
@@ -104,7 +108,9 @@ std::string input_text(const JobDraft& draft, const DraftRecording& recording,
   written.factor *= recording.input->gain;
   std::string unit = input.unit;
   const std::string_view taken = draft.command_unit();
-  if (recording.input->key == std::string_view("command") &&
+  const bool is_of_supply = !input.supply.empty() && taken == "V";
+  if (!is_of_supply) written.supply.clear();
+  if (!is_of_supply && recording.input->key == std::string_view("command") &&
       !std::holds_alternative<double>(unit_factor(unit, taken))) {
     // The job's command is in the unit of the drive, whatever was recorded.
     const auto factor = unit_factor(unit, unit_on(draft.vocabulary(), si_unit(input.kind)));
@@ -163,15 +169,17 @@ std::string recording_text(const JobDraft& draft, const DraftRecording& recordin
   text += initial_text(draft, guess);
   const Sampling found = sampling(guess.time.values);
   text += reasons_text(guess.time, 4);
-  text +=
-      fmt::format("    time: {}   # {:.4g} Hz, {:.4g} s\n", column_map(guess.time, guess.time.unit),
-                  1.0 / found.interval, found.duration);
+  text += guess.rate > 0.0
+              ? fmt::format("    rate: {:.10g} Hz   # {:.4g} s\n", guess.rate, found.duration)
+              : fmt::format("    time: {}   # {:.4g} Hz, {:.4g} s\n",
+                            column_map(guess.time, guess.time.unit), 1.0 / found.interval,
+                            found.duration);
   text += "    signals:\n";
   const GuessedColumn& input = recording.input_column();
   text += input_text(draft, recording, input);
   std::vector<std::string> unused = guess.unused;
   for (const GuessedColumn& c : guess.columns) {
-    if (&c == &input) continue;
+    if (&c == &input || c.kind == Kind::supply) continue;
     if (c.idle) {
       text += reasons_text(c, 6) +
               fmt::format("      # {}: {}\n", name_of(draft, c.kind), column_map(c, c.unit));

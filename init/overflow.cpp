@@ -42,23 +42,21 @@ int signed_bits_of(const Values& values) {
   return 0;
 }
 
-Values turns_of(std::string_view unit, const Values& values) {
-  if (unit == "deg") return {360.0};
-  if (unit == "rad") return {2.0 * std::numbers::pi};
-  if (unit == "rev") return {1.0};
-  if (!unit.empty() && unit != "counts") return {};
-  Values turns{2.0 * std::numbers::pi, 360.0};
-  if (are_whole(values)) {
-    for (const double turn : {3600.0, 36000.0, 360000.0}) turns.push_back(turn);
-    for (int bits = 8; bits <= 32; ++bits) turns.push_back(std::ldexp(1.0, bits));
-  }
+Values turns_of(std::optional<double> turn, std::string_view unit, const Values& values) {
+  Values turns;
+  if (turn) turns.push_back(*turn);
+  const bool is_open = !turn && (unit.empty() || is_raw(unit));
+  if (is_open) turns.insert(turns.end(), {2.0 * std::numbers::pi, 360.0});
+  if (!are_whole(values)) return turns;
+  if (is_open) turns.insert(turns.end(), {3600.0, 36000.0, 360000.0});
+  for (int bits = 8; bits <= 32; ++bits) turns.push_back(std::ldexp(1.0, bits));
   return turns;
 }
 
-double wraps_after(const Values& values, std::string_view unit) {
+double wraps_after(const Values& values, std::optional<double> known, std::string_view unit) {
   const auto [least, most] = std::ranges::minmax(values);
   const double range = most - least, step = largest_step(values);
-  for (const double turn : turns_of(unit, values)) {
+  for (const double turn : turns_of(known, unit, values)) {
     constexpr double kRounding = 1e-6;
     if (range > turn * (1.0 + kRounding) || range < 0.9 * turn || step < 0.5 * turn) continue;
     Values continuous = values;
@@ -75,13 +73,14 @@ void Overflow::undo(Values& values) const {
   if (wraps_after > 0.0) unwrap(values, wraps_after);
 }
 
-Overflow overflow_of(const Values& values, Kind kind, std::string_view unit) {
+Overflow overflow_of(const Values& values, Kind kind, std::optional<double> turn,
+                     std::string_view unit) {
   Overflow overflow;
   const Values known = there(values);
   if (known.size() < 2 || kind == Kind::time) return overflow;
   overflow.signed_bits = signed_bits_of(known);
-  if (overflow.signed_bits == 0 && kind == Kind::position)
-    overflow.wraps_after = wraps_after(known, unit);
+  const bool is_place = kind == Kind::position || kind == Kind::load_position;
+  if (overflow.signed_bits == 0 && is_place) overflow.wraps_after = wraps_after(known, turn, unit);
   return overflow;
 }
 

@@ -2,10 +2,11 @@
 // sign.
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <vector>
 
-#include "init/column_guess.h"
+#include "init/columns/units.h"
 
 namespace axisfit {
 
@@ -18,9 +19,11 @@ struct Overflow {
   void undo(std::vector<double>& values) const;
 };
 
-/// What the stored values show of it. A position wraps where it takes up a turn (of its unit, or of
-/// a power of two for whole numbers) and leaps by most of one, and by a small part at most
-/// otherwise.
-Overflow overflow_of(const std::vector<double>& values, Kind kind, std::string_view unit);
+/// What the stored values show of it. A position wraps where it takes up a turn and leaps by most
+/// of one, and by a small part at most otherwise. `turn` is how much of the stored values that is,
+/// where their unit tells it; whole numbers begin anew after a power of two, too. Where neither
+/// turn nor `unit` is known, it may be one of degrees or radians.
+Overflow overflow_of(const std::vector<double>& values, Kind kind, std::optional<double> turn,
+                     std::string_view unit = {});
 
 }  // namespace axisfit

@@ -22,5 +22,14 @@ TEST_F(FreeChoiceTest, WhatTheRecordingsLeaveOpenIsNotFree) {
   for (const FreeParameter& p : read().job.free) EXPECT_NE(quantity_list()[p.quantity].name, "V_L");
 }
 
+// Twenty samples at 10 Hz are more than a dead time may be.
+TEST_F(FreeChoiceTest, SlowSamplesGoWithADelay) {
+  make({AXISFIT_TESTDATA "/contact/ten-hertz.csv"});
+  const auto found = fitted(read());
+  // Straight lines between samples so far apart are a fifth off what drove the axis.
+  EXPECT_NEAR(found.at("M"), 200.0, 40.0);
+  EXPECT_NEAR(found.at("B_a"), 300.0, 60.0);
+}
+
 }  // namespace
 }  // namespace axisfit

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <matio.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -290,6 +291,65 @@ TEST_F(InitJobTest, SaysWhatIsMissing) {
       "If one of them does, say so by --column current=COLUMN:A, force=COLUMN:N or "
       "command=COLUMN:V; otherwise record that signal.");
   EXPECT_TRUE(folder_.names().count("job.yaml") == 0);
+}
+
+TEST_F(InitJobTest, NoMessageIsInTheFileAlone) {
+  Table table = renamed(
+      driven(), {{"t_s", 1.0}, {"i_A", 1.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"humidity", 1.0}});
+  folder_.write("a.csv", table);
+  EXPECT_EQ(std::ranges::count(make({"a.csv"}).guesses, "not used: humidity"), 1);
+}
+
+TEST_F(InitJobTest, AllRecordingsHaveTheSameUnits) {
+  // In mm, which one of them does not show: it moves by less than ten.
+  for (const auto& [name, size] : {std::pair("a.csv", 0.02), {"b.csv", 1.0}}) {
+    Table table = renamed(
+        driven(), {{"t_s", 1.0}, {"i_A", size}, {"pos", 1e3 * size}, {"x", 1.0}, {"dummy", 1.0}});
+    table.columns.resize(3);
+    for (double& t : table.columns.front().values) t += size * 1e-4;
+    folder_.write(name, table);
+  }
+  make({"a.csv", "b.csv"});
+  const std::string text = folder_.read("job.yaml");
+  EXPECT_EQ(text.find("unit: m}"), std::string::npos) << text;
+  EXPECT_NE(text.find("{column: pos, unit: mm}"), std::string::npos) << text;
+}
+
+TEST_F(InitJobTest, AxesOfOneFileAreAskedFor) {
+  Table table = renamed(driven(), {{"t_s", 1.0},
+                                   {"left_current_A", 1.0},
+                                   {"left_pos_m", 1.0},
+                                   {"v_mps", 1.0},
+                                   {"a_mps2", 1.0}});
+  const Table other = driven(2);
+  table.columns.resize(3);
+  table.columns.push_back({"right_current_A", other.columns[1].values});
+  table.columns.push_back({"right_pos_m", other.columns[2].values});
+  folder_.write("a.csv", table);
+  try {
+    make({"a.csv"});
+    ADD_FAILURE();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("the columns are of several axes: left (left_current_A, "
+                        "left_pos_m); right (right_current_A, right_pos_m). "
+                        "Say which by --motor"),
+              std::string::npos)
+        << error.what();
+  }
+  make({"a.csv"}, {}, 60.0, {motor_answer("right")});
+  EXPECT_NE(folder_.read("job.yaml").find("position: {column: right_pos_m, unit: m}"),
+            std::string::npos);
+  EXPECT_NE(folder_.read("job.yaml").find("command: {column: right_current_A, unit: A"),
+            std::string::npos);
+}
+
+// Made by a program of its own: M = 0.5 kg, B = 0.4 N s/m.
+TEST_F(InitJobTest, AReferenceIsNotFitted) {
+  make({AXISFIT_TESTDATA "/contact/q-and-q-des.csv"});
+  const auto found = fitted(read());
+  EXPECT_NEAR(found.at("M"), 0.5, 0.02);
+  EXPECT_NEAR(found.at("B_a"), 0.4, 0.04);
 }
 
 TEST_F(InitJobTest, TheEmpsAxisIsFoundFromItsFilesAlone) {

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -104,6 +107,67 @@ TEST_F(InputChoiceTest, AVelocityThatIsAskedForIsACommand) {
   EXPECT_EQ(made.guesses.size(), 2u);
   const Schedule command = read().job.recordings[0].command;
   EXPECT_NEAR(command.values.front(), 6.0, 1e-9);
+}
+
+TEST_F(InputChoiceTest, AVelocityIsLeftOutOfAllRecordingsOrOfNone) {
+  for (const char* name : {"a.csv", "b.csv"}) {
+    Table table =
+        renamed(driven(static_cast<std::uint64_t>(name[0])),
+                {{"t_s", 1.0}, {"iq [A]", 1.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
+    table.columns.pop_back();
+    // Late in the first alone.
+    std::vector<double>& v = table.columns[3].values;
+    if (name[0] == 'a')
+      std::shift_right(v.begin(), v.end(), 8);
+    else  // else it would be the same recording
+      for (double& t : table.columns.front().values) t += 1e-4;
+    folder_.write(name, table);
+  }
+  make({"a.csv", "b.csv"});
+  const std::string text = folder_.read("job.yaml");
+  const JobFile file = read();
+  for (const Recording& recording : file.job.recordings)
+    EXPECT_EQ(recording.measurements.size(), 1u) << text;
+  EXPECT_NE(text.find("ms behind the derivative of the position in a"), std::string::npos) << text;
+}
+
+TEST_F(InputChoiceTest, AllRecordingsUseTheSameSignals) {
+  for (const char* name : {"a.csv", "b.csv"}) {
+    Table table =
+        renamed(driven(static_cast<std::uint64_t>(name[0])),
+                {{"t_s", 1.0}, {"iq [A]", 1.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
+    if (name[0] == 'b') {
+      table.columns.pop_back();
+      for (double& t : table.columns.front().values) t += 1e-4;  // else it would be the same one
+    }
+    folder_.write(name, table);
+  }
+  make({"a.csv", "b.csv"});
+  EXPECT_NE(folder_.read("job.yaml").find("# acceleration: {column: a_mps2"), std::string::npos);
+  const JobFile file = read();
+  ASSERT_EQ(file.job.recordings[0].measurements.size(), file.job.recordings[1].measurements.size());
+  for (std::size_t i = 0; i < file.job.recordings[0].measurements.size(); ++i)
+    EXPECT_EQ(file.job.recordings[0].measurements[i].signal,
+              file.job.recordings[1].measurements[i].signal);
+}
+
+TEST_F(InputChoiceTest, APairingThatExplainsNothingIsRefused) {
+  Table table = renamed(
+      driven(), {{"t_s", 1.0}, {"iq [A]", 1.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
+  std::mt19937 random(4);
+  std::normal_distribution<double> noise;
+  for (double& current : table.columns[1].values) current = noise(random);
+  folder_.write("a.csv", table);
+  try {
+    make({"a.csv"});
+    ADD_FAILURE();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("iq [A] explains nothing of how x_m moves"),
+              std::string::npos)
+        << error.what();
+  }
+  EXPECT_EQ(folder_.names().count("job.yaml"), 0u);
+  make({"a.csv"}, {}, {}, {read_answer("current=2:A"), read_answer("position=3:m")});
 }
 
 }  // namespace

@@ -19,6 +19,8 @@ TEST(JobDraft, KindsOfColumnsAreSignals) {
   EXPECT_EQ(signal_of(Kind::current), Signal::motor_current);
   EXPECT_EQ(signal_of(Kind::force), Signal::drive_force);
   EXPECT_EQ(signal_of(Kind::position), Signal::position);
+  EXPECT_EQ(signal_of(Kind::load_position), Signal::load_position);
+  EXPECT_FALSE(signal_of(Kind::supply));
   EXPECT_FALSE(signal_of(Kind::command));
   EXPECT_FALSE(signal_of(Kind::time));
 }

@@ -56,5 +56,40 @@ TEST_F(JobTextTest, RecordingsOfOneNameGetDifferentOnes) {
   EXPECT_NE(file.job.recordings[0].name, file.job.recordings[1].name);
 }
 
+TEST_F(JobTextTest, SamplesWithoutTimesHaveARate) {
+  Table table = renamed(
+      driven(), {{"t_s", 1.0}, {"i_A", 1.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
+  table.columns.erase(table.columns.begin());
+  folder_.write("a.csv", table);
+  make({"a.csv"}, {}, {}, {read_rate("500 Hz")});
+  EXPECT_NE(folder_.read("job.yaml").find("    rate: 500 Hz   # "), std::string::npos);
+  expect_the_driven_mass(fitted(read()), 1.0 / 60.0);
+}
+
+TEST_F(JobTextTest, ADutyNamesItsSupply) {
+  Table table = renamed(
+      driven(), {{"t_s", 1.0}, {"duty [%]", 5.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
+  table.columns.push_back({"Vbat [V]", std::vector<double>(table.columns[0].values.size(), 20.0)});
+  folder_.write("a.csv", table);
+  make({"a.csv"});
+  const std::string text = folder_.read("job.yaml");
+  EXPECT_NE(text.find("supply: {column: \"Vbat [V]\", unit: V}"), std::string::npos) << text;
+  expect_the_driven_mass(fitted(read()), 1.0 / 60.0);
+}
+
+TEST_F(JobTextTest, TheLoadsEncoderIsASignalOfItsOwn) {
+  Table table =
+      renamed(driven(),
+              {{"t_s", 1.0}, {"i_A", 1.0}, {"motor_pos_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
+  std::vector<double> place = table.columns[2].values;
+  for (double& x : place) x *= 1e3;
+  table.columns.push_back({"load_pos_mm", place});
+  folder_.write("a.csv", table);
+  make({"a.csv"});
+  EXPECT_NE(folder_.read("job.yaml").find("load_position: {column: load_pos_mm, unit: mm}"),
+            std::string::npos)
+      << folder_.read("job.yaml");
+}
+
 }  // namespace
 }  // namespace axisfit

@@ -54,7 +54,7 @@ TEST(RecordingGuessTest, WhereNothingTellsTheUnitTheJointDoes) {
     const TempFolder folder;
     const std::string path = folder.write("a.csv", table);
     for (const Joint joint : {Joint::prismatic, Joint::revolute}) {
-      RecordingGuess guess = guess_recording(RecordingFile(path), path, {}, joint);
+      RecordingGuess guess = guess_recording(RecordingFile(path), path, {{}, joint, {}});
       EXPECT_EQ(is_of_angles(guess), joint == Joint::revolute);
       EXPECT_TRUE(has_motion_without_unit(guess));
       write_units(guess, joint);
@@ -82,7 +82,8 @@ TEST(RecordingGuessTest, AnAnswerComesBeforeNamesAndValues) {
   table.columns[1].name = "Status";
   const std::string path = folder.write("a.csv", table);
   const auto position = [&](const std::string& answer) {
-    const RecordingGuess guess = guess_recording(RecordingFile(path), path, {read_answer(answer)});
+    RecordingGuess guess = guess_recording(RecordingFile(path), path, {{read_answer(answer)}});
+    write_units(guess, Joint::prismatic);
     return *guess.find(Kind::position);
   };
   for (const char* answer : {"position=Status:um/8", "position=2:um/8"}) {
@@ -93,28 +94,6 @@ TEST(RecordingGuessTest, AnAnswerComesBeforeNamesAndValues) {
     EXPECT_FALSE(found.guessed);
   }
   EXPECT_DOUBLE_EQ(position("position=2:deg*0.5").factor, 0.5 * std::numbers::pi / 180.0);
-}
-
-TEST(ReadAnswer, SaysWhatIsWrong) {
-  const auto refusal = [](const char* text) {
-    try {
-      read_answer(text);
-    } catch (const std::runtime_error& error) {
-      return std::string(error.what());
-    }
-    return std::string("none");
-  };
-  const std::string how =
-      "; write SIGNAL=COLUMN:UNIT, such as position=3:mm, position=\"Geber [Ink]:um/8\" or "
-      "force=Torque:N*0.2";
-  EXPECT_EQ(refusal("position=x"),
-            "--column position=x: the signal, the column or the unit is missing" + how);
-  EXPECT_EQ(refusal("positon=x:mm").find("--column positon=x:mm: there is no signal 'positon'"),
-            0u);
-  EXPECT_EQ(refusal("force=x:N*0"),
-            "--column force=x:N*0: the factor must be a number other than zero" + how);
-  EXPECT_NE(refusal("force=x:mm").find("--column force=x:mm: "), std::string::npos);
-  EXPECT_EQ(refusal("velocity=a: b:mm/s"), "none");
 }
 
 TEST(RecordingGuessTest, ValuesTellWhatHasNoName) {
@@ -129,7 +108,129 @@ TEST(RecordingGuessTest, ValuesTellWhatHasNoName) {
   EXPECT_TRUE(guess.find(Kind::position)->guessed);
 }
 
-TEST(GuessRecording, AClockIsATimeWhateverItIsTheTimeOf) {
+TEST(RecordingGuessTest, AnAnswerKeepsTheTurnsThatWereFound) {
+  Table table = swing(1e3, 1.0);
+  table.columns.pop_back();
+  table.columns[2].name = "Geber";
+  std::vector<double>& counts = table.columns[2].values;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const double count = std::floor(4096.0 * (1.6 + 1.5 * std::sin(0.015 * double(i))));
+    counts[i] = count - 4096.0 * std::floor(count / 4096.0);
+  }
+  const TempFolder folder;
+  const std::string path = folder.write("a.csv", table);
+  for (const char* answer : {"position=Geber:rev/4096", "position=Geber"}) {
+    RecordingGuess guess = guess_recording(RecordingFile(path), path, {{read_answer(answer)}});
+    EXPECT_TRUE(is_of_angles(guess));
+    write_units(guess, Joint::revolute);
+    const GuessedColumn& position = *guess.find(Kind::position);
+    EXPECT_EQ(position.overflow.wraps_after, 4096.0) << answer;
+    EXPECT_EQ(position.unit, "rev");
+    EXPECT_DOUBLE_EQ(position.factor, 1.0 / 4096.0);
+    EXPECT_NEAR(position.values[100],
+                2.0 * std::numbers::pi * (1.6 + 1.5 * std::sin(1.5)) -
+                    2.0 * std::numbers::pi * std::floor(1.6),
+                2e-3);
+    EXPECT_EQ(position.guessed, answer == std::string("position=Geber"));
+  }
+}
+
+TEST(RecordingGuessTest, ANegativeFactorTurnsTheColumn) {
+  const TempFolder folder;
+  const std::string path = folder.write("a.csv", swing(1e3, 1e3));
+  RecordingGuess guess =
+      guess_recording(RecordingFile(path), path, {{read_answer("position=x:mm*-1")}});
+  write_units(guess, Joint::prismatic);
+  EXPECT_EQ(guess.find(Kind::position)->factor, -1.0);
+  EXPECT_NEAR(guess.find(Kind::position)->values[100], -0.1 * std::sin(1.5), 1e-12);
+  EXPECT_TRUE(guess.find(Kind::velocity)->negative) << "which must go with it";
+}
+
+TEST(RecordingGuessTest, ADutyIsAPartOfItsSupply) {
+  Table table = swing(1e3, 1e3);
+  table.columns[1].name = "pwm";
+  for (double& x : table.columns[1].values) x = std::round(250.0 * x);
+  std::vector<double> volts;
+  for (std::size_t i = 0; i < 400; ++i) volts.push_back(12.0 - 0.5 * std::sin(0.1 * double(i)));
+  for (const char* name : {"Vbat", "battery [V]", "voltage [V]"}) {
+    Table with = table;
+    with.columns.push_back({name, volts});
+    RecordingGuess guess = guess_of(with);
+    const GuessedColumn& duty = *guess.find(Kind::command);
+    EXPECT_EQ(duty.supply, name);
+    EXPECT_EQ(duty.supply_unit, "V");
+    EXPECT_DOUBLE_EQ(duty.factor, 1.0 / 255.0);
+    EXPECT_NEAR(duty.values[100], std::round(250.0 * std::cos(1.5)) / 255.0 * volts[100], 1e-9);
+    EXPECT_TRUE(guess.channels.empty());
+  }
+  const RecordingGuess without = guess_of(table);
+  EXPECT_EQ(without.find(Kind::command)->unit, "V");
+  EXPECT_TRUE(without.find(Kind::command)->guessed);
+}
+
+TEST(RecordingGuessTest, ASupplyIsWhatTheUserSays) {
+  Table table = swing(1e3, 1e3);
+  table.columns[1].name = "out";
+  table.columns.push_back({"ch7", std::vector<double>(400, 24000.0)});
+  const TempFolder folder;
+  const std::string path = folder.write("a.csv", table);
+  const std::vector<ColumnAnswer> answers{read_answer("duty=out:%"), read_answer("supply=ch7:mV")};
+  const RecordingGuess guess = guess_recording(RecordingFile(path), path, {answers});
+  EXPECT_EQ(guess.find(Kind::command)->supply, "ch7");
+  EXPECT_EQ(guess.find(Kind::command)->supply_unit, "mV");
+  EXPECT_NEAR(guess.find(Kind::command)->values[100], 0.01 * 24.0 * std::cos(1.5), 1e-12);
+}
+
+TEST(RecordingGuessTest, WithoutTimesTheRateTells) {
+  Table table = swing(1.0, 1e3);
+  table.columns.erase(table.columns.begin());
+  const TempFolder folder;
+  const std::string path = folder.write("a.csv", table);
+  EXPECT_THROW(guess_recording(RecordingFile(path), path), RecordingError);
+  const RecordingGuess guess = guess_recording(RecordingFile(path), path, {{read_rate("200 Hz")}});
+  EXPECT_EQ(guess.rate, 200.0);
+  EXPECT_EQ(guess.find(Kind::position)->unit, "mm");
+  EXPECT_FALSE(guess.find(Kind::position)->guessed);
+}
+
+RecordingGuess of_contact(const std::string& file, std::vector<ColumnAnswer> answers = {}) {
+  const std::string path = AXISFIT_TESTDATA "/contact/" + file;
+  return guess_recording(RecordingFile(path), path, {std::move(answers)});
+}
+
+TEST(RecordingGuessTest, AReferenceIsNotTheMeasurement) {
+  const RecordingGuess guess = of_contact("q-and-q-des.csv");
+  EXPECT_EQ(guess.find(Kind::position)->column, "q");
+  EXPECT_EQ(guess.find(Kind::position, true)->column, "q_des");
+  EXPECT_EQ(guess.find(Kind::velocity)->column, "dq");
+  EXPECT_EQ(guess.find(Kind::force)->column, "tau_meas");
+}
+
+TEST(RecordingGuessTest, APositionGoesWithItsOwnCurrent) {
+  const RecordingGuess guess = of_contact("two-motors.csv");
+  EXPECT_EQ(guess.find(Kind::position)->column, "Motor 1 Position");
+  EXPECT_EQ(guess.find(Kind::velocity)->column, "Motor 1 Velocity");
+  EXPECT_EQ(guess.find(Kind::current)->column, "Motor 1 Current");
+  EXPECT_EQ(guess.motor, "1");
+  ASSERT_EQ(guess.notes.size(), 1u);
+  EXPECT_EQ(of_contact("two-motors.csv", {motor_answer("0")}).find(Kind::current)->column,
+            "Motor 0 Current");
+}
+
+TEST(RecordingGuessTest, RepeatedStampsAreNamedWithTheirLines) {
+  try {
+    of_contact("repeated-stamps.csv");
+    ADD_FAILURE();
+  } catch (const RecordingError& error) {
+    EXPECT_NE(std::string(error.what()).find("timestamp_ms does not increase in 1 row: "),
+              std::string::npos)
+        << error.what();
+    EXPECT_NE(std::string(error.what()).find(":25 (3227, after 3227)"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(RecordingGuessTest, AClockIsATimeWhateverItIsTheTimeOf) {
   Table table = swing(1.0, 1.0);
   std::string text = "Timestamp,Key,Value\n";
   for (std::size_t i = 0; i < table.rows(); ++i)

@@ -1,13 +1,10 @@
 // Names of columns as rigs, drives and people write them.
-#include "init/column_guess.h"
+#include "init/columns/names.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
-#include <variant>
 #include <vector>
-
-#include "base/units.h"
 
 namespace axisfit {
 namespace {
@@ -90,6 +87,24 @@ TEST(ColumnGuessTest, UnderstandsTheNamesOfTheTrade) {
            {"cmd", command, "", true},
            {"u", command},
            {"vir", command},
+           {"velocityRadPerSec", velocity, "rad/s"},
+           {"PositionRad", position, "rad"},
+           {"AppliedVolts", motor_voltage, "V"},
+           {"CurrentAmps", current, "A"},
+           {"speed [rev/s]", velocity, "rev/s"},
+           {"angle_turns", position, "rev"},
+           {"torque_Nm", force, "N m"},
+           {"millis", time, "ms"},
+           {"micros", time, "us"},
+           {"power", command},
+           {"duty", command},
+           {"z_act/mm", position, "mm"},
+           {"z_set/mm", position, "mm", true},
+           {"act [mm/s]", velocity, "mm/s"},
+           {"q_des", position, "", true},
+           {"goal_current", current, "", true},
+           {"present_position", position},
+           {"speed [furlong/day]", velocity, "furlong/day"},
        }) {
     SCOPED_TRACE(c.name);
     const auto guess = guess_column(c.name);
@@ -103,7 +118,8 @@ TEST(ColumnGuessTest, UnderstandsTheNamesOfTheTrade) {
 TEST(ColumnGuessTest, SaysNothingOfOtherNames) {
   for (const std::string name :
        {"Temperatur", "status", "position error [mm]", "Schleppabweichung", "torque_enable",
-        "Freigabe Strom", "max speed", "sample", "data(:,2)", "pulses_N", "", "\n", "[mm]", "____"})
+        "Freigabe Strom", "max speed", "sample", "data(:,2)", "pulses_N", "motor power [W]",
+        "power_w", "", "\n", "[mm]", "____"})
     EXPECT_FALSE(guess_column(name)) << name;
 }
 
@@ -128,25 +144,30 @@ TEST(ColumnGuessTest, MeasuredComesBeforeUnsaid) {
   EXPECT_GT(guess_column("position [mm]")->rank, guess_column("position")->rank);
 }
 
-TEST(ColumnGuessTest, JobsCanWriteEveryUnitWithItsSize) {
-  for (int k = 0; k <= static_cast<int>(Kind::force); ++k) {
-    const Kind kind = static_cast<Kind>(k);
-    for (const StoredUnit& unit : stored_units(kind)) {
-      SCOPED_TRACE(unit.text);
-      const auto factor = unit_factor(unit.written, si_unit(kind));
-      ASSERT_TRUE(std::holds_alternative<double>(factor));
-      EXPECT_NEAR(std::get<double>(factor) * unit.factor / unit.size, 1.0, 1e-9);
-      EXPECT_EQ(stored_unit(kind, unit.text), &unit);
-    }
-  }
+TEST(ColumnGuessTest, TellsTheAxisTheSideAndTheDuty) {
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(guess_column("Motor 0 Position [mm]")->axis, Words{"0"});
+  EXPECT_EQ(guess_column("x_force_N")->axis, Words{"x"});
+  EXPECT_EQ(guess_column("/joint_states.position.elbow")->axis, Words{"elbow"});
+  EXPECT_EQ(guess_column("dq2")->axis, Words{"2"});
+  EXPECT_TRUE(guess_column("actual velocity raw")->axis.empty());
+  EXPECT_EQ(guess_column("motor angle [deg]")->side, Side::motor);
+  EXPECT_EQ(guess_column("link_position")->side, Side::load);
+  EXPECT_EQ(guess_column("position")->side, Side::unsaid);
+  EXPECT_TRUE(guess_column("pwm")->is_duty);
+  EXPECT_TRUE(guess_column("power [%]")->is_duty);
+  EXPECT_FALSE(guess_column("pwm [V]")->is_duty);
+  EXPECT_FALSE(guess_column("command")->is_duty);
 }
 
-TEST(ColumnGuessTest, SizesNeedNotBeExact) {
-  ASSERT_NE(unit_of_size(Kind::velocity, 0.00103), nullptr);
-  EXPECT_EQ(unit_of_size(Kind::velocity, 0.00103)->text, "mm/s");
-  EXPECT_EQ(unit_of_size(Kind::acceleration, 9.7)->text, "g");
-  EXPECT_EQ(unit_of_size(Kind::position, 0.4), nullptr);
-  EXPECT_EQ(unit_of_size(Kind::position, -1.0), nullptr);
+TEST(ColumnGuessTest, ScaledComesBeforeCounts) {
+  EXPECT_GT(guess_column("position [mm]")->rank, guess_column("position [counts]")->rank);
+  EXPECT_GT(guess_column("position")->rank, guess_column("position raw")->rank);
+}
+
+TEST(ColumnGuessTest, NamesAUnitThatIsNone) {
+  EXPECT_EQ(guess_column("position [ells]")->unknown_unit, "ells");
+  EXPECT_EQ(guess_column("q(:,2)")->unknown_unit, "");
 }
 
 }  // namespace
