@@ -50,6 +50,8 @@ TEST(FitArguments, SomeExcludeOthers) {
         {"job.yaml", "--resume"},
         {"job.yaml", "--within", "1mm"},
         {"job.yaml", "--axis", "a.yaml"},
+        {"job.yaml", "--rate", "1 kHz"},
+        {"job.yaml", "--motor", "0"},
         {"job.yaml", "--threads", "0"},
         {"job.yaml", "--time-limit", "0"},
         {"a.csv", "--init", "--machine", "loom"}})
