@@ -73,7 +73,7 @@ Job job_of(Rig rig, Scenario scenario, std::uint64_t seed) {
     friction.quantity = quantity_index("coulomb_friction.F_c");
     friction.upper = 1000.0;
     friction.initial = 1.0;
-    friction.logarithmic = false;
+    friction.scale = Scale::linear;
     job.free.push_back(friction);
   }
   if (scenario == Scenario::prior) {

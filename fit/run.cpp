@@ -105,7 +105,8 @@ void judge(RunResult& result) {
   if (result.grade.grade == Grade::explained && result.selection &&
       (!result.selection->verdict.undecided.empty() ||
        result.selection->verdict.kind == SelectionVerdict::Kind::none_passes))
-    result.grade = {.grade = Grade::usable, .reason = FitGrade::Reason::residual};
+    result.grade = {
+        .grade = Grade::usable, .reason = FitGrade::Reason::residual, .uses = result.grade.uses};
 }
 
 void design_experiments(RunResult& result, const RunContext& context) {

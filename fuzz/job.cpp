@@ -40,7 +40,8 @@ void check_job(const JobFile& file) {
   for (const FreeParameter& p : job.free) {
     require(p.lower <= p.initial && p.initial <= p.upper, "an initial value is out of bounds");
     require(std::isfinite(p.initial), "an initial value is not finite");
-    require(!p.logarithmic || p.lower > 0.0, "a logarithmic bound is not above zero");
+    require(p.scale != Scale::logarithmic || p.lower > 0.0,
+            "a logarithmic bound is not above zero");
     require(!p.prior || (std::isfinite(p.prior->mean) && p.prior->sigma > 0.0), "a prior is none");
     require(!p.recording || *p.recording < job.recordings.size(), "a recording is missing");
     require(is_used(quantity_list()[p.quantity], job.model.structure), "a free quantity is unused");

@@ -147,8 +147,20 @@ Json parameter_json(const Job& job, const ParameterResult& p, const FreeParamete
   parameter.update(Json{{"initial", free.initial},
                         {"lower", free.lower},
                         {"upper", free.upper},
-                        {"scale", free.logarithmic ? "log" : "linear"}});
+                        {"scale", scale_name(free.scale)}});
   return parameter;
+}
+
+/// What the model is good for.
+Json uses_json(const Job& job, const FitUses& uses) {
+  Json json;
+  json["missing_force_percent"] =
+      uses.missing_force_percent ? Json(*uses.missing_force_percent) : Json(nullptr);
+  json["recording"] =
+      uses.missing_force_percent ? Json(job.recordings[uses.force_recording].name) : Json(nullptr);
+  json["followed_for_s"] = uses.followed_for ? Json(*uses.followed_for) : Json(nullptr);
+  json["followed_to_the_end"] = uses.is_followed_to_the_end;
+  return json;
 }
 
 /// What is known of the parameters together.
@@ -560,6 +572,7 @@ Json result_json(const RunResult& run_result) {
             {"status", status_name(fit.verdict)},
             {"usable", run_result.grade.is_usable()},
             {"grade", grade_name(run_result.grade.grade)},
+            {"uses", uses_json(job, run_result.grade.uses)},
             {"interrupted", run_result.interrupted},
             {"time_limit_reached", run_result.time_limit.has_value()},
             {"verdict", grade_text(job, run_result.grade, fit)},

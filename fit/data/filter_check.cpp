@@ -122,8 +122,8 @@ bool follows_command(std::span<const double> values, std::span<const double> com
   // Above what is left of noise by chance, at any of the lags: an octave has about one value of
   // its own per period.
   constexpr double kAtLeast = 0.4, kByChance = 4.0;
-  const double limit =
-      std::max(kAtLeast, kByChance / std::sqrt(static_cast<double>(of_values.size() / period)));
+  const double periods = static_cast<double>(of_values.size()) / static_cast<double>(period);
+  const double limit = std::max(kAtLeast, kByChance / std::sqrt(periods));
   for (std::size_t lag = 0; lag <= 2 * period; lag += std::max<std::size_t>(1, stride / 2))
     if (std::abs(correlation_of_signs(of_values, of_command, lag)) > limit) return true;
   return false;

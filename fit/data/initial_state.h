@@ -21,8 +21,15 @@ LocalCourse local_course(const std::vector<double>& times, const std::vector<dou
                          std::size_t first, std::size_t count, std::size_t sample,
                          double noise = 0.0);
 
-/// Arm position and velocity at the first sample, from the recording's first `initial_samples` by
-/// cubic least squares: the velocity is that of the recorded velocity, or else the slope of the
+/// The course at the first sample, of a cubic through the first `count` samples, or through fewer
+/// of them, where a cubic leaves more than twice the noise: a drive that is switched on, or teeth
+/// that meet, make a corner that no cubic has. Where none goes through five, of the line through
+/// the first two.
+LocalCourse first_course(const std::vector<double>& times, const std::vector<double>& values,
+                         std::size_t count, double noise);
+
+/// Arm position and velocity at the first sample, from the recording's first `initial_samples`
+/// (first_course()): the velocity is that of the recorded velocity, or else the slope of the
 /// position. Adds them to the recording's overrides as initial.y0 and initial.y1, unless they are
 /// there. What was not recorded is not set.
 void initial_state_from_data(Recording& recording);

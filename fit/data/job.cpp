@@ -65,10 +65,17 @@ FreeParameter free_parameter(const QuantityEntry& entry, double initial) {
   FreeParameter p;
   p.quantity = entry.index;
   p.initial = initial;
-  p.logarithmic = initial > 0.0;
-  p.lower = p.logarithmic ? std::max(q.lower, initial / 100.0) : q.lower;
-  p.upper = p.logarithmic ? std::min(q.upper, initial * 100.0) : q.upper;
+  p.scale = scale_of(entry, initial);
+  p.lower = q.lower;
+  p.upper = q.upper;
   return p;
+}
+
+Scale scale_of(const QuantityEntry& entry, double initial) {
+  const Quantity& q = entry.quantity;
+  if (!entry.group.empty() || q.default_value == 0.0 || q.lower < 0.0 || !(initial > 0.0))
+    return Scale::linear;
+  return q.lower > 0.0 ? Scale::logarithmic : Scale::from_zero;
 }
 
 bool is_ignored(const QuantityEntry& entry, const Criterion& criterion) {

@@ -128,6 +128,16 @@ struct ParameterId {
   bool operator==(const ParameterId&) const = default;
 };
 
+/// The scale on which a quantity is estimated: a step of the fit is a part of the value on a
+/// logarithmic one, and an amount on a linear one.
+enum class Scale {
+  linear,
+  logarithmic,
+  /// Of what is no less than zero, and may be none: logarithmic far above a hundredth of the
+  /// initial value, linear below it, so that the fit reaches zero.
+  from_zero,
+};
+
 /// A quantity that is estimated.
 struct FreeParameter {
   std::size_t quantity = 0;              ///< index in quantity_list()
@@ -135,19 +145,23 @@ struct FreeParameter {
   double initial = 0.0;
   double lower = 0.0;  ///< lower <= initial <= upper
   double upper = 0.0;
-  bool logarithmic = true;  ///< estimated on a logarithmic scale; needs lower > 0
+  Scale scale = Scale::logarithmic;  ///< needs lower > 0, or from zero lower >= 0 and initial > 0
   std::optional<Prior> prior;
 
   ParameterId id() const { return {quantity, recording}; }
 };
 
-/// A free parameter shared by all recordings, with bounds a factor of a hundred from this initial
-/// value, but within the quantity's range; on a linear scale and within the whole range if the
-/// value is not positive.
+/// A free parameter shared by all recordings, within the quantity's range, on its scale of choice
+/// (scale_of()) if the initial value is above zero, and otherwise on a linear one.
 FreeParameter free_parameter(const QuantityEntry& entry, double initial);
 /// The same by the name that the sources use. Throws std::logic_error for a name that they do not
 /// know.
 FreeParameter free_parameter(std::string_view name, double initial);
+
+/// The scale on which a quantity is estimated where nobody says otherwise. What has no zero in its
+/// range, or is part of every axis, is estimated by its order of magnitude; frictions beyond the
+/// viscous one, biases, delays and initial states are not.
+Scale scale_of(const QuantityEntry& entry, double initial);
 
 /// Whether a fit by this criterion takes the quantity to be zero: the lag or delay of a position or
 /// velocity where the fit tracks. A simulation that tracks a late signal is late itself.

@@ -68,7 +68,12 @@ double noise_from_differences(std::span<const double> values) {
 }
 
 double noise_of_input(std::span<const double> values) {
-  return spread_of_differences(values, 1) > 0.0 ? noise_from_differences(values) : 0.0;
+  const double white = spread_of_differences(values, 1) / std::sqrt(kGain[0]);
+  if (!(white > 0.0)) return 0.0;
+  // The equal steps of a ramp are no rounding, which would make noise of their size.
+  constexpr double kRamp = 0.1;
+  const double rounding = resolution_of(values) / std::sqrt(12.0);
+  return white < kRamp * rounding ? white : noise_from_differences(values);
 }
 
 double standard_deviation(std::span<const double> values) {

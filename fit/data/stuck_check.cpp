@@ -257,8 +257,9 @@ EqualValues StuckCheck::stuck(const Measurement& measurement) const {
   return is_chance ? EqualValues() : longest;
 }
 
-/// How many samples at an end of the range nothing explains but that the sensor ends there.
-std::size_t StuckCheck::clipped_at(const Values& values, double limit) const {
+/// How many samples at an end of the range, of which `other` is the other end, nothing explains but
+/// that the sensor ends there.
+std::size_t StuckCheck::clipped_at(const Values& values, double limit, double other) const {
   std::size_t there = 0, commanded = 0, next = 0, contradicted = 0, equal = 0, pairs = 0;
   std::vector<double> beside;
   for (const EqualValues& run : runs_of(values.list)) {
@@ -266,6 +267,7 @@ std::size_t StuckCheck::clipped_at(const Values& values, double limit) const {
     const double distance = std::abs(values.at(run) - limit);
     if (distance > 0.0) {
       if (distance < 1.5 * values.resolution) next += run.size();
+      if (values.at(run) == other) continue;  // it may be clipped there, too
       equal += run.size() - 1;
       pairs += run.size();
       continue;
@@ -300,8 +302,8 @@ ClippedValues StuckCheck::clipped(const Measurement& measurement) const {
   ClippedValues found;
   // A constant signal stays at both.
   if (!(high > low)) return found;
-  for (const double limit : {low, high})
-    if (const std::size_t samples = clipped_at(values, limit); samples > found.samples)
+  for (const auto& [limit, other] : {std::pair(low, high), std::pair(high, low)})
+    if (const std::size_t samples = clipped_at(values, limit, other); samples > found.samples)
       found = {samples, limit};
   return found;
 }

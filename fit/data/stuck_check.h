@@ -46,7 +46,7 @@ class StuckCheck {
   bool agrees_with_position(const Values& values, const EqualValues& run) const;
   bool is_explained(const Values& values, const EqualValues& run) const;
   Values values_of(const Measurement& measurement) const;
-  std::size_t clipped_at(const Values& values, double limit) const;
+  std::size_t clipped_at(const Values& values, double limit, double other) const;
 
   const Recording& recording_;
   const std::vector<bool>& standstill_;

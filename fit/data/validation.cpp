@@ -350,10 +350,15 @@ class JobCheck {
   void check_bounds(const FreeParameter& p, const QuantityEntry& entry) {
     const Quantity& q = entry.quantity;
     const std::string lower = rounded(p.lower, q.unit), upper = rounded(p.upper, q.unit);
-    if (p.logarithmic && !(p.lower > 0.0 && p.initial > 0.0))
+    if (p.scale == Scale::logarithmic && !(p.lower > 0.0 && p.initial > 0.0))
       add(Rule::scale,
           fmt::format("{} on a logarithmic scale needs an initial value and a lower bound "
                       "above zero",
+                      entry.name));
+    else if (p.scale == Scale::from_zero && !(p.lower >= 0.0 && p.initial > 0.0))
+      add(Rule::scale,
+          fmt::format("{} on a scale from zero needs an initial value above zero and a "
+                      "lower bound of zero or above",
                       entry.name));
     else if (!(p.lower <= p.initial && p.initial <= p.upper))
       add(Rule::initial, fmt::format("the initial value {} of {} lies outside its bounds, {} to {}",

@@ -57,7 +57,7 @@ struct JobFault {
     quantity,      ///< is one of the axis
     recording,     ///< is one of the job's
     second_free,   ///< of the same quantity and recording there is not
-    scale,         ///< a logarithmic one is above zero
+    scale,         ///< a logarithmic one is above zero, one from zero not below
     initial,       ///< lies within the bounds
     bounds,        ///< are apart and within the range of the quantity
     prior_mean,    ///< is finite

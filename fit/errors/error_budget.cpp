@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/distributions.h"
 
@@ -48,29 +49,41 @@ Spread of_all_but_rivals(const ErrorBudget& budget, double value) {
 }
 
 /// A parameter's scale, on which its interval is symmetric.
-class Scale {
+class ParameterScale {
  public:
-  Scale(double value, const FreeParameter& free) : value_(value), free_(free) {}
+  ParameterScale(double value, const FreeParameter& free) : value_(value), free_(free) {}
 
-  double length(double in_unit) const { return free_.logarithmic ? in_unit / value_ : in_unit; }
+  double length(double in_unit) const { return is_logarithmic() ? in_unit / value_ : in_unit; }
   /// The value that is so far away, within the bounds.
   double value_at(double distance) const {
-    return std::clamp(free_.logarithmic ? std::exp(std::log(value_) + distance) : value_ + distance,
+    return std::clamp(is_logarithmic() ? std::exp(std::log(value_) + distance) : value_ + distance,
                       free_.lower, free_.upper);
   }
   bool is_lower_bound_nearer() const {
-    return free_.logarithmic ? value_ / free_.lower < free_.upper / value_
-                             : value_ - free_.lower < free_.upper - value_;
+    return is_logarithmic() ? value_ / free_.lower < free_.upper / value_
+                            : value_ - free_.lower < free_.upper - value_;
+  }
+  /// How large an error is: a part of the value, or of half the range of a linear scale.
+  double size_of(const Spread& spread) const {
+    return free_.scale == Scale::linear ? spread.half / (0.5 * (free_.upper - free_.lower))
+                                        : spread.error / value_;
+  }
+  /// Whether a value of at most so much is known to be small: beside what it was taken to be.
+  bool is_small(double most) const {
+    return free_.scale == Scale::from_zero && most < std::numbers::e * free_.initial;
   }
 
  private:
+  /// From zero, an interval is symmetric in the value: it must reach zero.
+  bool is_logarithmic() const { return free_.scale == Scale::logarithmic; }
+
   double value_;
   const FreeParameter& free_;
 };
 
 /// The interval of an estimate at a bound, as far inwards as the likelihood ratio is not
 /// significant.
-void set_one_sided(const SamplingError& sampling, double half, const Scale& scale,
+void set_one_sided(const SamplingError& sampling, double half, const ParameterScale& scale,
                    const FreeParameter& free, ParameterUncertainty& found) {
   const bool at_lower = scale.is_lower_bound_nearer();
   const double inwards = at_lower ? 1.0 : -1.0;
@@ -82,6 +95,9 @@ void set_one_sided(const SamplingError& sampling, double half, const Scale& scal
   const double other = scale.value_at(inwards * (whole > 0.0 ? variance / whole : 0.0));
   found.lower = at_lower ? free.lower : other;
   found.upper = at_lower ? other : free.upper;
+  // What has no zero in its range is as good as zero far below what it was taken to be.
+  constexpr double kAsGoodAsZero = 1e-4;
+  found.reaches_zero = at_lower && free.lower >= 0.0 && free.lower <= kAsGoodAsZero * free.initial;
 }
 
 }  // namespace
@@ -104,7 +120,7 @@ double error_within_groups(const ErrorBudget& budget, double value) {
 ParameterUncertainty combined(const ErrorBudget& budget, double value, const FreeParameter& free,
                               const ErrorOptions& options) {
   const SamplingError& sampling = budget.sampling;
-  const Scale scale(value, free);
+  const ParameterScale scale(value, free);
   const Spread noise = of_noise(budget);
   ParameterUncertainty found{.at_bound = sampling.at_bound, .inflation = sampling.inflation};
   if (!std::isfinite(noise.error)) return found;
@@ -116,9 +132,8 @@ ParameterUncertainty combined(const ErrorBudget& budget, double value, const Fre
     set_one_sided(sampling, noise.half, scale, free, found);
     return found;
   }
-  const double size =
-      free.logarithmic ? scale.length(noise.error) : noise.half / (0.5 * (free.upper - free.lower));
-  found.determined = size < options.largest_error;
+  const double size = scale.size_of(noise);
+  found.determined = size < options.largest_error || scale.is_small(value + noise.half);
   found.weak = found.determined && size > options.weak_error;
   if (!found.determined) {
     inflate(noise.error);
@@ -130,6 +145,7 @@ ParameterUncertainty combined(const ErrorBudget& budget, double value, const Fre
   const double half = scale.length(total.half);
   found.lower = scale.value_at(-half);
   found.upper = scale.value_at(half);
+  found.reaches_zero = free.lower == 0.0 && found.lower == 0.0;
   return found;
 }
 

@@ -20,7 +20,7 @@ std::vector<std::vector<GuessInfluence>> guess_influences(
     FreeParameter& guess = extended.free.emplace_back();
     guess.quantity = g;
     guess.initial = guess.lower = guess.upper = value;
-    guess.logarithmic = value > 0.0;
+    guess.scale = value > 0.0 ? Scale::logarithmic : Scale::linear;
     values.push_back(value);
   }
   std::vector<Eigen::Index> moving;

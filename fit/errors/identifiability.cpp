@@ -47,7 +47,7 @@ Identifiability identifiability(const ParameterSpace& space, const Eigen::Vector
     const bool shrinks = weak.parts[0].change < 0.0;
     for (WeakDirection::Part& p : weak.parts) {
       if (shrinks) p.change = -p.change;  // the largest grows
-      p.relative = space[p.parameter].logarithmic;
+      p.relative = space[p.parameter].scale != Scale::linear;
       const double tenth = 0.1 * p.change;
       p.tenth = p.relative ? std::expm1(tenth) : tenth * space.slope(p.parameter, 0.0);
     }

@@ -7,7 +7,8 @@ enum class ParameterVerdict {
   determined,
   weakly_determined,  ///< to no more than its order of magnitude
   not_determined,     ///< the data leave it open, alone or together with others
-  at_bound,           ///< the estimate is at a bound; it has no standard error
+  at_zero,            ///< not distinguishable from zero, where the quantity ends
+  at_bound,           ///< the estimate is at another bound; it has no standard error
   of_wrong_model,     ///< the model does not describe the machine: the value means nothing
 };
 
@@ -24,10 +25,15 @@ struct ParameterUncertainty {
   /// one-sided. Both zero where there is none.
   double lower = 0.0, upper = 0.0;
 
+  bool reaches_zero = false;  ///< the interval begins at zero, the natural end of the quantity
+
   bool has_interval() const { return lower != 0.0 || upper != 0.0; }
+  /// The estimate is as good as zero: the recordings show that it is small, or that it is none.
+  bool is_at_zero() const { return reaches_zero && (determined || at_bound); }
 
   ParameterVerdict verdict() const {
     if (of_wrong_model) return ParameterVerdict::of_wrong_model;
+    if (is_at_zero()) return ParameterVerdict::at_zero;
     if (at_bound) return ParameterVerdict::at_bound;
     if (!determined) return ParameterVerdict::not_determined;
     return weak ? ParameterVerdict::weakly_determined : ParameterVerdict::determined;

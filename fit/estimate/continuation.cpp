@@ -67,7 +67,8 @@ Eigen::VectorXd perturbed(const ParameterSpace& space, Eigen::VectorXd u, double
                           int number) {
   std::mt19937_64 generator(static_cast<std::uint64_t>(number));
   for (std::size_t i = 0; i < space.size(); ++i) {
-    if (!space[i].logarithmic) continue;  // linear ones have no factor, and converge by themselves
+    if (space[i].scale == Scale::linear)
+      continue;  // linear ones have no factor, and converge by themselves
     const double z = 2.0 * uniform(generator) - 1.0;
     double& x = u[static_cast<Eigen::Index>(i)];
     x = std::clamp(x + z * std::log(factor), space.internal(i, space[i].lower),

@@ -163,7 +163,7 @@ std::vector<double> draw_start(const Job& job, int start) {
     const double z = 2.0 * uniform(generator) - 1.0;
     double value = p.initial;
     if (start > 0) {
-      if (p.logarithmic)
+      if (p.scale != Scale::linear)
         value *= std::pow(job.options.spread, z);
       else  // one that begins at zero stays there: it has no size to draw from
         value += z * job.options.spread * std::abs(p.initial);

@@ -8,9 +8,10 @@ namespace {
 
 /// Whether the recordings tell anything of a parameter; of one at its bound, how far away it is.
 bool is_informed(const FreeParameter& free, const ParameterUncertainty& u, double part) {
+  if (u.is_at_zero()) return true;
   if (!u.at_bound) return u.determined;
   if (!u.has_interval()) return false;
-  const auto scale = [&](double x) { return free.logarithmic ? std::log(x) : x; };
+  const auto scale = [&](double x) { return free.scale == Scale::logarithmic ? std::log(x) : x; };
   return scale(u.upper) - scale(u.lower) < part * (scale(free.upper) - scale(free.lower));
 }
 
@@ -70,10 +71,53 @@ FitGrade worst_force(const Diagnosis& diagnosis) {
   return worst;
 }
 
-}  // namespace
+/// Whether a small missing force would show beside the noise.
+bool shows_force(const MissingForce& force, const GradeOptions& options) {
+  constexpr double kPerCent = 0.01;
+  return force.found && force.noise < kPerCent * options.small_force * force.drive_rms;
+}
 
-FitGrade grade_of(const Job& job, const FitResult& fit, const std::optional<Diagnosis>& diagnosis,
+/// Whether the mass may be none: the force that the observer adds to it is then none, whatever the
+/// model lacks.
+bool is_massless(const Job& job, const FitResult& fit) {
+  static const std::size_t kMass = quantity_index("M");
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i)
+    if (job.free[i].quantity == kMass && fit.parameters[i].uncertainty.is_at_zero()) return true;
+  return false;
+}
+
+bool shows_forces(const Job& job, const FitResult& fit, const Diagnosis& diagnosis,
                   const GradeOptions& options) {
+  return !is_massless(job, fit) && !diagnosis.forces.empty() &&
+         std::ranges::all_of(diagnosis.forces,
+                             [&](const auto& f) { return shows_force(f, options); });
+}
+
+/// Of a free run, the time from the beginning for which every signal stays within a hundredth of
+/// its range, beyond the noise. None where no signal moves.
+std::optional<double> followed_for(const Recording& recording, const SimulatedRecording& run) {
+  constexpr double kPart = 0.01, kNoise = 4.0;  // of the range; standard deviations
+  std::optional<std::size_t> samples;
+  if (!run.finished || run.simulated.size() != recording.measurements.size()) return std::nullopt;
+  for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
+    const Measurement& measured = recording.measurements[m];
+    const auto [low, high] = std::ranges::minmax(measured.values);
+    const double band = kPart * (high - low) + kNoise * measured.sigma;
+    if (!measured.fitted || !(high > low)) continue;
+    std::size_t i = 0;
+    while (i < run.simulated[m].size() &&
+           (!measured.counts(i) || std::abs(measured.values[i] - run.simulated[m][i]) <= band))
+      ++i;
+    samples = std::min(samples.value_or(i), i);
+  }
+  if (!samples) return std::nullopt;
+  const std::size_t last = std::min(std::max<std::size_t>(*samples, 1), recording.times.size()) - 1;
+  return recording.times[last] - recording.times.front();
+}
+
+FitGrade grade_without_uses(const Job& job, const FitResult& fit,
+                            const std::optional<Diagnosis>& diagnosis,
+                            const GradeOptions& options) {
   using enum FitGrade::Reason;
   const auto graded = [](Grade grade, FitGrade basis) {
     basis.grade = grade;
@@ -87,21 +131,21 @@ FitGrade grade_of(const Job& job, const FitResult& fit, const std::optional<Diag
         informed || is_informed(job.free[i], fit.parameters[i].uncertainty, options.informed_part);
   if (!informed) return graded(Grade::nothing_determined, {.reason = parameters});
   const FitGrade simulation_found = worst_simulation(job, fit, options);
-  if (kind == FitVerdict::Kind::signal_not_followed)
-    return graded(Grade::model_wrong, simulation_found.percent >= options.least_followed
-                                          ? FitGrade{.reason = simulation,
-                                                     .recording = fit.verdict.recording,
-                                                     .signal = fit.verdict.signal}
-                                          : simulation_found);
   const FitGrade force_found = diagnosis ? worst_force(*diagnosis) : FitGrade{};
   if (force_found.percent > options.largest_force) return graded(Grade::model_wrong, force_found);
-  if (!(simulation_found.percent >= options.least_followed)) {
-    const bool only_drifts = fit.observer_gain > 0.0 && diagnosis &&
-                             std::isfinite(simulation_found.percent) &&
+  const bool is_followed = kind != FitVerdict::Kind::signal_not_followed;
+  if (!is_followed || !(simulation_found.percent >= options.least_followed)) {
+    FitGrade found = simulation_found.percent >= options.least_followed
+                         ? FitGrade{.reason = simulation,
+                                    .recording = fit.verdict.recording,
+                                    .signal = fit.verdict.signal}
+                         : simulation_found;
+    // A mass under a recorded force drifts away however right it is.
+    const bool only_drifts = diagnosis && std::isfinite(found.percent) &&
+                             shows_forces(job, fit, *diagnosis, options) &&
                              force_found.percent < options.small_force;
-    FitGrade found = graded(only_drifts ? Grade::usable : Grade::model_wrong, simulation_found);
-    if (only_drifts) found.reason = tracking_only;
-    return found;
+    if (only_drifts) found.reason = drift;
+    return graded(only_drifts ? Grade::usable : Grade::model_wrong, found);
   }
   if (diagnosis && diagnosis->explained) return graded(Grade::explained, {.reason = none});
   FitGrade found{.grade = Grade::usable, .reason = residual};
@@ -113,6 +157,38 @@ FitGrade grade_of(const Job& job, const FitResult& fit, const std::optional<Diag
     found.percent = worst.unexplained_percent;
   }
   return found;
+}
+
+}  // namespace
+
+FitUses uses_of(const Job& job, const FitResult& fit, const std::optional<Diagnosis>& diagnosis,
+                const GradeOptions& options) {
+  FitUses uses;
+  const bool validates = std::ranges::count(job.recordings, Role::validate, &Recording::role) > 0;
+  for (std::size_t r = 0; r < job.recordings.size() && r < fit.recordings.size(); ++r) {
+    if (validates && job.recordings[r].role != Role::validate) continue;
+    if (diagnosis && !is_massless(job, fit) && r < diagnosis->forces.size() &&
+        shows_force(diagnosis->forces[r], options)) {
+      const double percent = percent_of_drive(diagnosis->forces[r]);
+      if (!(percent < uses.missing_force_percent.value_or(0.0))) {
+        uses.missing_force_percent = percent;
+        uses.force_recording = r;
+      }
+    }
+    const auto followed = followed_for(job.recordings[r], fit.recordings[r].free_running);
+    if (!followed || *followed >= uses.followed_for.value_or(INFINITY)) continue;
+    const Samples& times = job.recordings[r].times;
+    uses.followed_for = followed;
+    uses.is_followed_to_the_end = *followed >= times.back() - times.front();
+  }
+  return uses;
+}
+
+FitGrade grade_of(const Job& job, const FitResult& fit, const std::optional<Diagnosis>& diagnosis,
+                  const GradeOptions& options) {
+  FitGrade grade = grade_without_uses(job, fit, diagnosis, options);
+  grade.uses = uses_of(job, fit, diagnosis, options);
+  return grade;
 }
 
 }  // namespace axisfit

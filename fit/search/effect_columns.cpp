@@ -46,7 +46,7 @@ Eigen::MatrixXd per_unit(Eigen::MatrixXd columns, const ParameterSpace& space,
                          const Eigen::VectorXd& u) {
   for (std::size_t i = 0; i < space.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    if (!space[i].logarithmic) columns.col(k) /= space.slope(i, u[k]);
+    if (space[i].scale != Scale::logarithmic) columns.col(k) /= space.slope(i, u[k]);
   }
   return columns;
 }
@@ -234,7 +234,7 @@ Disturbances EffectColumns::disturbances(std::size_t place,
     for (std::size_t c = first; c < end; ++c) {
       quantities.push_back(columns[c].quantity);
       const auto p = std::ranges::find(job.free, columns[c].quantity, &FreeParameter::quantity);
-      scales.push_back(p->logarithmic ? p->initial : 1.0);
+      scales.push_back(p->scale == Scale::logarithmic ? p->initial : 1.0);
     }
     const ParameterSpace space(job);
     const Model<double> model =

@@ -55,7 +55,7 @@ FreeParameter free_strength(const Job& job, const Hypothesis& hypothesis, std::s
     p.quantity = entry.index;
     p.lower = entry.quantity.lower;
     p.upper = entry.quantity.upper;
-    p.logarithmic = false;
+    p.scale = Scale::linear;
   }
   p.initial = std::clamp(initial, p.lower, p.upper);
   return p;
@@ -66,15 +66,15 @@ FreeParameter free_shape(const Job& job, const Hypothesis& hypothesis, std::size
   const QuantityEntry& entry = job.entry(hypothesis.shapes[i]);
   if (hypothesis.kind == transmission) {
     FreeParameter p = free_parameter(entry, initial);
-    p.lower *= 1e-4;  // hardly any damping is as good as none, and no bound
+    if (p.scale == Scale::linear) p.scale = Scale::from_zero;
     return p;
   }
   const Quantity& q = entry.quantity;
   FreeParameter p;
   p.quantity = entry.index;
-  p.logarithmic = q.lower > 0.0;
-  std::tie(p.lower, p.upper) =
-      p.logarithmic ? std::pair(q.lower, q.upper) : range_of_place(q, hypothesis, i);
+  p.scale = q.lower > 0.0 ? Scale::logarithmic : Scale::linear;
+  std::tie(p.lower, p.upper) = p.scale == Scale::logarithmic ? std::pair(q.lower, q.upper)
+                                                             : range_of_place(q, hypothesis, i);
   if (!hypothesis.largest.empty()) p.upper = std::min(p.upper, hypothesis.largest[i]);
   p.initial = std::clamp(initial, p.lower, p.upper);
   return p;

@@ -109,7 +109,7 @@ class Scorer {
     const double most = options_.largest_log_step;
     for (std::size_t i = 0; i < space_.size(); ++i) {
       double& by = way[static_cast<Eigen::Index>(i)];
-      if (space_[i].logarithmic) by = std::clamp(by, -most, most);
+      if (space_[i].scale != Scale::linear) by = std::clamp(by, -most, most);
     }
     score.others = space_.values(u_ + way);
   }
@@ -135,8 +135,10 @@ class Scorer {
  private:
   static double moved_by(const Hypothesis& hypothesis, double value, double step) {
     if (std::isinf(value)) return 1.0 / step;
-    return hypothesis.kind == HypothesisKind::constant && value > 0.0 ? value * std::exp(step)
-                                                                      : value + step;
+    const QuantityEntry& entry = quantity_list()[hypothesis.strengths.front()];
+    const bool is_logarithmic =
+        hypothesis.kind == HypothesisKind::constant && scale_of(entry, value) == Scale::logarithmic;
+    return is_logarithmic ? value * std::exp(step) : value + step;
   }
 
   /// Candidates have no part in what is known of the free parameters.
@@ -244,10 +246,11 @@ void refine_shapes(const Job& fixed, const EffectColumns& columns, const Scorer&
       const std::size_t first = ranges.free.size() - shapes.size();
       for (std::size_t k = 0; k < shapes.size(); ++k) {
         const FreeParameter& p = ranges.free[first + k];
-        const double most = p.logarithmic ? options.largest_log_step
-                                          : options.largest_linear_step * (p.upper - p.lower);
+        const bool logarithmic = p.scale == Scale::logarithmic;
+        const double most = logarithmic ? options.largest_log_step
+                                        : options.largest_linear_step * (p.upper - p.lower);
         const double by = std::clamp((*way)[static_cast<Eigen::Index>(k)], -most, most);
-        const double value = p.logarithmic ? shapes[k] * std::exp(by) : shapes[k] + by;
+        const double value = logarithmic ? shapes[k] * std::exp(by) : shapes[k] + by;
         const auto [least, most_tried] = range_of_settings(hypothesis, k, options);
         shapes[k] = std::clamp(value, std::max(p.lower, least), std::min(p.upper, most_tried));
       }

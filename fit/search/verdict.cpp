@@ -7,23 +7,11 @@
 #include "fit/solve/parameters.h"
 
 namespace axisfit {
-namespace {
-
-/// At a bound that is not the natural end of the quantity, where it has no part in the axis.
-bool is_stuck(const Job& job, const FreeParameter& free, const ParameterResult& found) {
-  const double natural = job.entry(free.quantity).quantity.lower;
-  const bool none = free.lower == natural && natural == 0.0 &&
-                    found.value - free.lower < 0.5 * (free.upper - free.lower);
-  return found.uncertainty.at_bound && !none;
-}
-
-}  // namespace
-
 bool is_misfit(const SearchState& state, SelectionVerdict& verdict) {
   const Job& declared = state.chain.declared().job;
   const FittedModel& last = state.current();
   for (std::size_t i = 0; i < declared.free.size() && !verdict.at_bound; ++i)
-    if (is_stuck(declared, last.job.free[i], last.fit.parameters[i]))
+    if (last.fit.parameters[i].uncertainty.verdict() == ParameterVerdict::at_bound)
       verdict.at_bound = last.fit.parameters[i].id;
   for (std::size_t r = 0; r < last.job.recordings.size(); ++r) {
     const double percent = percent_of_drive(missing_force(last.job, last.fit, r));

@@ -125,9 +125,9 @@ Hash& operator<<(Hash& hash, const Recording& recording) {
 }
 
 Hash& operator<<(Hash& hash, const FreeParameter& parameter) {
-  const auto& [quantity, recording, initial, lower, upper, logarithmic, prior] = parameter;
+  const auto& [quantity, recording, initial, lower, upper, scale, prior] = parameter;
   hash << quantity << recording.has_value() << recording.value_or(0) << initial << lower << upper
-       << logarithmic << prior.has_value();
+       << static_cast<int>(scale) << prior.has_value();
   if (!prior) return hash;
   const auto& [mean, sigma] = *prior;
   return hash << mean << sigma;

@@ -226,6 +226,13 @@ class BoundConstraints {
     return changed;
   }
 
+  /// Fixes all that are pushed against their bounds, however often they came and went; returns
+  /// whether there are any that were free.
+  bool fix_at_bounds() {
+    changes_.assign(changes_.size(), 0);
+    return review();
+  }
+
   /// Makes the fixed ones constant; false when nothing is left to vary.
   bool apply() {
     std::vector<int> constant;
@@ -304,7 +311,10 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
   // gradient points inwards.
   BoundConstraints point(space, options.fixed, u, problem);
   if (point.any_at_bound()) point.review();
-  for (;;) {
+  // One that comes and goes is left free, and may creep along its bound until the iterations are
+  // spent. Then it is fixed there, and a few more find the rest.
+  constexpr int kLastIterations = 10;
+  for (bool is_last = false;;) {
     if (!point.apply()) {  // the point itself is the solution
       result.usable = result.converged =
           problem.Evaluate({}, &result.cost, nullptr, nullptr, nullptr);
@@ -312,7 +322,8 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
     }
     EarlyTermination end(point, space.size(), options.stop);
     solver.callbacks = {&end};
-    solver.max_num_iterations = std::max(1, options.max_iterations - result.iterations);
+    solver.max_num_iterations =
+        is_last ? kLastIterations : std::max(1, options.max_iterations - result.iterations);
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
     result.usable = summary.IsSolutionUsable();
@@ -321,8 +332,12 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
     result.cost = result.usable ? summary.final_cost : std::numeric_limits<double>::infinity();
     result.iterations += static_cast<int>(summary.iterations.size());
     result.message = summary.message;
-    if (!result.usable || !point.any_at_bound() || result.iterations > options.max_iterations)
-      break;
+    if (!result.usable || !point.any_at_bound() || is_last) break;
+    if (result.iterations > options.max_iterations) {
+      if (result.converged || !point.fix_at_bounds()) break;
+      is_last = true;
+      continue;
+    }
     const bool stopped = summary.termination_type == ceres::USER_SUCCESS;
     if (!point.review() && !stopped) break;
   }

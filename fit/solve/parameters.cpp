@@ -4,9 +4,27 @@
 #include <cmath>
 
 namespace axisfit {
+namespace {
+
+/// The bound that a value lies at but for the rounding of its scale, or else the value.
+double at_bound_or(double value, const FreeParameter& p) {
+  constexpr double kRounding = 1e-14;
+  for (const double bound : {p.lower, p.upper})
+    if (std::abs(value - bound) < kRounding * std::abs(bound)) return bound;
+  return value;
+}
+
+}  // namespace
 
 ParameterSpace::ParameterSpace(std::span<const FreeParameter> free) : free_(free) {
+  // Where a scale from zero becomes linear: of the initial value, and of the upper bound at least,
+  // so that no value is out of its reach.
+  constexpr double kPartFromZero = 0.01, kLeastPart = 1e-20;
   for (const FreeParameter& p : free_) {
+    if (p.scale == Scale::from_zero) {
+      magnitude_.push_back(std::max(kPartFromZero * p.initial, kLeastPart * p.upper));
+      continue;
+    }
     // Any size of the parameter's order will do; a zero start takes it from the bounds.
     double magnitude = std::abs(p.initial);
     if (magnitude == 0.0 && std::isfinite(p.upper - p.lower))
@@ -16,15 +34,39 @@ ParameterSpace::ParameterSpace(std::span<const FreeParameter> free) : free_(free
 }
 
 double ParameterSpace::value(std::size_t i, double u) const {
-  return free_[i].logarithmic ? std::exp(u) : u * magnitude_[i];
+  switch (free_[i].scale) {
+    case Scale::logarithmic:
+      return at_bound_or(std::exp(u), free_[i]);
+    case Scale::from_zero:
+      return at_bound_or(magnitude_[i] * std::sinh(u), free_[i]);
+    case Scale::linear:
+      break;
+  }
+  return magnitude_[i] * u;
 }
 
 double ParameterSpace::slope(std::size_t i, double u) const {
-  return free_[i].logarithmic ? std::exp(u) : magnitude_[i];
+  switch (free_[i].scale) {
+    case Scale::logarithmic:
+      return std::exp(u);
+    case Scale::from_zero:
+      return magnitude_[i] * std::cosh(u);
+    case Scale::linear:
+      break;
+  }
+  return magnitude_[i];
 }
 
 double ParameterSpace::internal(std::size_t i, double value) const {
-  return free_[i].logarithmic ? std::log(value) : value / magnitude_[i];
+  switch (free_[i].scale) {
+    case Scale::logarithmic:
+      return std::log(value);
+    case Scale::from_zero:
+      return std::asinh(value / magnitude_[i]);
+    case Scale::linear:
+      break;
+  }
+  return value / magnitude_[i];
 }
 
 Eigen::VectorXd ParameterSpace::internal(std::span<const double> values) const {

@@ -10,7 +10,8 @@
 namespace axisfit {
 
 /// Maps free parameters to the vector u that the solver works on: the logarithm of a logarithmic
-/// parameter, and a linear one divided by its magnitude.
+/// parameter, a linear one divided by its magnitude, and one from zero by the area hyperbolic sine
+/// of value / magnitude.
 class ParameterSpace {
  public:
   /// The parameters must outlive the space.

@@ -12,6 +12,9 @@
 namespace axisfit {
 namespace {
 
+/// In the order of the key's choices.
+constexpr Scale kScales[]{Scale::logarithmic, Scale::linear, Scale::from_zero};
+
 /// "0.56 ohm", for messages.
 std::string rounded(double value, std::string_view unit) {
   return with_unit(fmt::format("{:g}", value), unit);
@@ -19,23 +22,20 @@ std::string rounded(double value, std::string_view unit) {
 
 /// The keys for a free quantity, whose values are such amounts.
 Section free_keys(const NumberWithUnit& amount) {
-  return {
-      Key::optional("initial", amount, DefaultText{"value in the axis file or job"},
-                    "initial value of the fit"),
-      Key::optional("bounds", Bounds{amount},
-                    DefaultText{"on a log scale initial / 100 and initial * 100; on a linear scale "
-                                "the range of the quantity"},
-                    "bounds of the estimate, within the range of the quantity"),
-      Key::optional("scale", Choice{{{"log"}, {"linear"}}},
-                    DefaultText{"inferred from the bounds or the kind of quantity"},
-                    "the scale on which it is estimated"),
-      Key::optional(
-          "prior",
-          Map{{Key::required("mean", amount, "its expected value"),
-               Key::required("sigma", sigma_form(amount.unit), "its standard deviation")}},
-          DefaultText{"none"}, "Gaussian prior"),
-      Key::optional("per_recording", Boolean{}, false,
-                    "`true`: a separate value for each recording with the role `fit`")};
+  return {Key::optional("initial", amount, DefaultText{"value in the axis file or job"},
+                        "initial value of the fit"),
+          Key::optional("bounds", Bounds{amount}, DefaultText{"the range of the quantity"},
+                        "bounds of the estimate, within the range of the quantity"),
+          Key::optional("scale", Choice{{{"log"}, {"linear"}, {"from_zero"}}},
+                        DefaultText{"inferred from the bounds or the kind of quantity"},
+                        "the scale on which it is estimated"),
+          Key::optional(
+              "prior",
+              Map{{Key::required("mean", amount, "its expected value"),
+                   Key::required("sigma", sigma_form(amount.unit), "its standard deviation")}},
+              DefaultText{"none"}, "Gaussian prior"),
+          Key::optional("per_recording", Boolean{}, false,
+                        "`true`: a separate value for each recording with the role `fit`")};
 }
 
 void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job& job) {
@@ -72,22 +72,18 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
   }
   map.finish();
 
-  // What has no zero in its range, or is part of every axis, is estimated by its order of
-  // magnitude; frictions, biases, delays and initial states may be zero and are not.
-  const bool positive =
-      entry.group.empty() && quantity.default_value != 0.0 && quantity.lower >= 0.0;
-  parameter.logarithmic =
-      scale ? *scale == 0 : (bounds ? bounds->first > 0.0 : positive && parameter.initial > 0.0);
   const auto add = [&](double initial, std::optional<std::size_t> recording) {
     FreeParameter p = parameter;
     p.initial = initial;
     p.recording = recording;
     p.lower = bounds ? bounds->first : quantity.lower;
     p.upper = bounds ? bounds->second : quantity.upper;
-    if (!bounds && p.logarithmic) {
-      p.lower = std::max(p.lower, initial / 100.0);
-      p.upper = std::min(p.upper, initial * 100.0);
-    }
+    p.scale = scale                           ? kScales[*scale]
+              : bounds && bounds->first > 0.0 ? Scale::logarithmic
+              : bounds && bounds->first < 0.0 ? Scale::linear
+                                              : scale_of(entry, initial);
+    // The least of a logarithmic scale, where the quantity has none.
+    if (!bounds && p.scale == Scale::logarithmic && !(p.lower > 0.0)) p.lower = initial / 100.0;
     job.free.push_back(p);
   };
   if (!per_recording) {

@@ -500,8 +500,9 @@ Html ReportCharts::profile(const Profile& profile) {
   for (const ProfilePoint& point : profile.points) {
     x.push_back(point.value);
     deviance.push_back(point.deviance);
-    const double distance =
-        free.logarithmic ? p.value * std::log(point.value / p.value) : point.value - p.value;
+    const double distance = free.scale == Scale::logarithmic
+                                ? p.value * std::log(point.value / p.value)
+                                : point.value - p.value;
     parabola.push_back(std::pow(distance / p.uncertainty.standard_error, 2));
   }
   const auto at = columns_.add_coarse(std::move(x));

@@ -220,7 +220,8 @@ class Page {
   Html interval_bar(std::size_t i) const {
     const FreeParameter& free = as_specified(run_result_, i);
     const ParameterResult& p = fit_.parameters[i];
-    const auto on_scale = [&](double v) { return free.logarithmic ? std::log(v) : v; };
+    const ParameterSpace space(std::span(&free, 1));
+    const auto on_scale = [&](double v) { return space.internal(0, v); };
     const double low = on_scale(free.lower), high = on_scale(free.upper);
     constexpr double kFrom = 4.0, kTo = 156.0;
     const auto place = [&](double v) {
@@ -246,6 +247,7 @@ class Page {
       switch (u.verdict()) {
         case ParameterVerdict::at_bound:
           return "bound";
+        case ParameterVerdict::at_zero:
         case ParameterVerdict::not_determined:
         case ParameterVerdict::of_wrong_model:
           return "open";

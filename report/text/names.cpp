@@ -26,4 +26,16 @@ std::string name_of(const Job& job, const Combination& combination) {
   return fmt::format("{} {}^{:.2g}", first, second, combination.exponent);
 }
 
+std::string_view scale_name(Scale scale) {
+  switch (scale) {
+    case Scale::logarithmic:
+      return "log";
+    case Scale::from_zero:
+      return "from_zero";
+    case Scale::linear:
+      break;
+  }
+  return "linear";
+}
+
 }  // namespace axisfit

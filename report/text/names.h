@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "fit/run.h"
 
@@ -13,6 +14,9 @@ std::string name_of(const Job& job, const FreeParameter& free);
 
 /// With unit and meaning on the job's axis.
 const Quantity& quantity_of(const Job& job, ParameterId id);
+
+/// As a job has it: "log", "linear" or "from_zero".
+std::string_view scale_name(Scale scale);
 
 /// "k_g / M", "k_g M", "k_g M^0.5"
 std::string name_of(const Job& job, const Combination& combination);

@@ -204,6 +204,20 @@ const char* grade_name(Grade grade) {
   return "";
 }
 
+/// What a model is good for, the forces first; empty where nothing tells.
+std::string uses_text(const Job& job, const FitUses& uses) {
+  std::vector<std::string> parts;
+  if (uses.missing_force_percent)
+    parts.push_back(fmt::format(
+        "the model leaves {:.2g} % of the {} of {} unexplained", *uses.missing_force_percent,
+        words_on(job.vocabulary(), "drive force"), job.recordings[uses.force_recording].name));
+  if (uses.followed_for)
+    parts.push_back(fmt::format("a free run stays within 1 % of the range {}{:.2g} s",
+                                uses.is_followed_to_the_end ? "to the end, " : "for ",
+                                *uses.followed_for));
+  return parts.empty() ? "" : fmt::format("{}.", fmt::join(parts, "; "));
+}
+
 std::string grade_text(const Job& job, const FitGrade& grade, const FitResult& fit, bool colour) {
   const Vocabulary vocabulary = job.vocabulary();
   const std::string heading = grade_heading(grade, colour);
@@ -240,18 +254,20 @@ std::string grade_text(const Job& job, const FitGrade& grade, const FitResult& f
           "{}: the {} that the model lacks in {} is {:.3g} % of the drive's. Check the units and "
           "signs of the columns and what the axis file declares.",
           heading, words_on(vocabulary, "force"), recording(), grade.percent);
-    case tracking_only:
+    case drift:
       return fmt::format(
-          "{} while it tracks recordings: the free-running simulation {}. The parameters describe "
-          "the {}; do not simulate with them for long.",
-          heading, followed_text(grade.percent, signal()), words_on(vocabulary, "forces"));
+          "{} for {}: {} The free-running simulation {}: do not simulate with it for long.",
+          heading, words_on(vocabulary, "forces"), uses_text(job, grade.uses),
+          followed_text(grade.percent, signal()));
     case residual:
     case none:
       break;
   }
-  std::string text = fmt::format(
-      "{}: reduced chi-square {:.4g} on the fitted data{}", heading, fit.reduced_chi_square,
-      grade.reason == none ? ", and no signal shows more than its noise." : ".");
+  const std::string uses = uses_text(job, grade.uses);
+  std::string text =
+      fmt::format("{}: {}{} chi-square {:.4g} on the fitted data{}", heading, uses,
+                  uses.empty() ? "reduced" : " Reduced", fit.reduced_chi_square,
+                  grade.reason == none ? ", and no signal shows more than its noise." : ".");
   std::vector<std::string> undetermined;
   for (const ParameterId& id : fit.verdict.undetermined) undetermined.push_back(name_of(job, id));
   if (!undetermined.empty())
@@ -507,6 +523,8 @@ std::string_view verdict_name(ParameterVerdict verdict) {
       return "weakly determined";
     case ParameterVerdict::not_determined:
       return "not determined";
+    case ParameterVerdict::at_zero:
+      return "not distinguishable from zero";
     case ParameterVerdict::at_bound:
       return "at bound";
     case ParameterVerdict::of_wrong_model:

@@ -41,6 +41,7 @@ TEST(ResultTest, JsonHasItsDocumentedKeys) {
                                                   "status",
                                                   "usable",
                                                   "grade",
+                                                  "uses",
                                                   "interrupted",
                                                   "time_limit_reached",
                                                   "verdict",
@@ -151,9 +152,9 @@ TEST(ResultTest, JsonSaysWhatTheFitFound) {
   EXPECT_EQ(damping.at("confidence_interval"),
             Json::array({found.uncertainty.lower, found.uncertainty.upper}));
   EXPECT_EQ(damping.at("initial"), 100.0);
-  EXPECT_EQ(damping.at("lower"), 1.0);
-  EXPECT_EQ(damping.at("upper"), 10000.0);
-  EXPECT_EQ(damping.at("scale"), "log");
+  EXPECT_EQ(damping.at("lower"), 0.0);
+  EXPECT_EQ(damping.at("upper"), 1e6);
+  EXPECT_EQ(damping.at("scale"), "from_zero");
   EXPECT_EQ(damping.at("verdict"), "determined");
   // The truth, by which the recording was made.
   EXPECT_NEAR(found.value, 200.0, 5.0 * found.uncertainty.standard_error);
@@ -455,6 +456,7 @@ TEST(ResultTest, NoExperimentIsSuggestedWhereNoneIsSafe) {
   const auto told = [&] { return on_one_line(suggestion_text(run_result)); };
   EXPECT_NE(told().find("no motion that was tried stays within the limits"), std::string::npos);
   run_result.first.parameters[0].uncertainty = {.at_bound = true};
+  run_result.baseline.free[0].upper = run_result.first.parameters[0].value;
   EXPECT_NE(told().find("none is suggested, for M is at its bound"), std::string::npos) << told();
   run_result.grade = {.grade = Grade::model_wrong};
   EXPECT_NE(told().find("the simulation does not show what the machine would do"),
@@ -470,6 +472,7 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
                                                   "status",
                                                   "usable",
                                                   "grade",
+                                                  "uses",
                                                   "interrupted",
                                                   "time_limit_reached",
                                                   "verdict",

@@ -82,6 +82,31 @@ TEST(LocalCourse, OfFewerThanFourSamplesIsTheSample) {
   EXPECT_EQ(course.slope_error, 0.0);
 }
 
+// A drive that is switched on in the n-th sample makes a corner there.
+TEST(FirstCourse, EndsBeforeACorner) {
+  const std::vector<double> times = every_millisecond(40);
+  for (const std::size_t corner : {1u, 3u, 8u, 15u}) {
+    std::vector<double> values;
+    Normal normal(corner);
+    for (std::size_t i = 0; i < times.size(); ++i)
+      values.push_back(5.0 + 30.0 * std::max(0.0, times[i] - times[corner]) + 1e-4 * normal());
+    const LocalCourse course = first_course(times, values, 20, 1e-4);
+    EXPECT_NEAR(course.value, 5.0, 5e-4) << corner;
+    EXPECT_NEAR(course.slope, 0.0, 5.0 * course.slope_error) << corner;
+    if (corner == 15) continue;
+    EXPECT_GT(std::abs(local_course(times, values, 0, 20, 0, 1e-4).value - 5.0), 1e-3) << corner;
+  }
+}
+
+TEST(FirstCourse, TakesAllSamplesOfASmoothMotion) {
+  const std::vector<double> times = every_millisecond(40);
+  std::vector<double> values = cubic_at(times);
+  Normal normal(7);
+  for (double& x : values) x += 0.01 * normal();
+  EXPECT_EQ(first_course(times, values, 20, 0.01).value,
+            local_course(times, values, 0, 20, 0, 0.01).value);
+}
+
 /// Of position and velocity, which disagree so that they can be told apart.
 Recording recording() {
   Recording r;

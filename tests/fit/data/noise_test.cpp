@@ -77,6 +77,15 @@ TEST(Noise, OfAConstantIsZero) {
   EXPECT_EQ(noise_from_differences(std::vector<double>{1.0, 2.0, 1.0}), 0.0);
 }
 
+// Its steps are equal, as those of a grid, but nothing was rounded to them.
+TEST(Noise, OfARampIsThatOfItsDigits) {
+  std::vector<double> ramp(500);
+  for (std::size_t i = 0; i < ramp.size(); ++i)
+    ramp[i] = std::round(2.5e-3 * static_cast<double>(i) * 1e6) / 1e6 + (i % 3 == 0 ? 1e-6 : 0.0);
+  EXPECT_LT(noise_of_input(ramp), 3e-6);
+  EXPECT_GT(noise_from_differences(ramp), 5e-4) << "of an encoder it could be";
+}
+
 TEST(Noise, OfAnInputIsNoneWhereSomebodyChoseItsValues) {
   std::vector<double> levels(1000);
   for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = i / 100 % 2 == 0 ? 5.0 : -5.0;

@@ -221,7 +221,7 @@ std::vector<Broken> broken() {
          job.free[1].recording = 0;
        }},
       of_parameter(Rule::scale, [](FreeParameter& p) { p.lower = 0.0; }),
-      of_parameter(Rule::initial, [](FreeParameter& p) { p.initial = 1e4; }),
+      of_parameter(Rule::initial, [](FreeParameter& p) { p.initial = 1e6; }),
       of_parameter(Rule::initial, [](FreeParameter& p) { p.upper = kNan; }),
       of_parameter(Rule::bounds, [](FreeParameter& p) { p.lower = p.upper = p.initial; }),
       of_parameter(Rule::bounds, [](FreeParameter& p) { p.upper = 1e6; }),
@@ -275,7 +275,7 @@ TEST(Validation, KeepsARunFromABrokenJob) {
   Job job = good_job();
   job.recordings[1].measurements[1].sigma = 0.0;
   job.recordings[0].held_out = {true};
-  job.free[1].logarithmic = false;
+  job.free[1].scale = Scale::linear;
   job.free[1].initial = -1.0;
   job.options.starts = 0;
   try {
@@ -287,8 +287,8 @@ TEST(Validation, KeepsARunFromABrokenJob) {
                  "are 200\n"
                  "recording 'check', velocity: sigma must be above zero: residuals are divided by "
                  "it\n"
-                 "free B_a: the initial value -1 N s/m of B_a lies outside its bounds, 0.2 N s/m "
-                 "to 2000 N s/m\n"
+                 "free B_a: the initial value -1 N s/m of B_a lies outside its bounds, 0 N s/m "
+                 "to 1e+06 N s/m\n"
                  "starts must be at least 1, not 0");
   }
 }

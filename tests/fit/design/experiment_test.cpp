@@ -105,7 +105,7 @@ TEST(SuggestExperiment, TrustsNoParameterAtItsBound) {
   Job job = slow_job(5);
   job.limits = kLimits;
   FitResult fit = estimate(job);
-  fit.parameters[1].value = job.free[1].upper;
+  fit.parameters[1].value = job.free[1].upper = 1e4;
   fit.parameters[1].uncertainty = {.at_bound = true};
   for (const double u : {0.5, 1.0, 5.0, 10.0})
     EXPECT_FALSE(reach_of({StepMotion{u, 0.0}, 2.5}, job, fit, {-0.05, 0.05, 0.1, 10.0})) << u;
@@ -123,7 +123,7 @@ TEST(SuggestExperiment, DoesNotDependOnWhereTheFitStarted) {
   Job job = slow_job(5);
   job.limits = kLimits;
   FreeParameter& mass = job.free[0];
-  mass.logarithmic = false;
+  mass.scale = Scale::linear;
   const FitResult fit = estimate(job);
   const auto expected = suggest_experiment(job, fit);
   mass.initial *= 3.0;

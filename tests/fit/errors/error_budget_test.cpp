@@ -15,7 +15,7 @@ FreeParameter between(double lower, double upper, bool logarithmic) {
   FreeParameter free;
   free.lower = lower;
   free.upper = upper;
-  free.logarithmic = logarithmic;
+  free.scale = logarithmic ? Scale::logarithmic : Scale::linear;
   return free;
 }
 
@@ -109,6 +109,50 @@ TEST(ErrorBudget, AnIntervalOnALogarithmicScaleIsAFactor) {
   found = combined(budget, 10.0, kLogarithmic);
   EXPECT_DOUBLE_EQ(found.standard_error, 1.25);
   EXPECT_NEAR(found.lower, 10.0 * std::exp(-0.125 * kOfEight), 1e-10);
+}
+
+/// A friction that was taken to be ten.
+FreeParameter from_zero() {
+  FreeParameter free = between(0.0, 1e6, false);
+  free.scale = Scale::from_zero;
+  free.initial = 10.0;
+  return free;
+}
+
+TEST(ErrorBudget, AnIntervalFromZeroIsSymmetricAndReachesZero) {
+  const ParameterUncertainty far = combined(sampling(1.0), 10.0, from_zero());
+  EXPECT_EQ(far.verdict(), ParameterVerdict::determined);
+  EXPECT_NEAR(far.lower, 10.0 - kOfEight, 1e-10);
+  EXPECT_NEAR(far.upper, 10.0 + kOfEight, 1e-10);
+  const ParameterUncertainty near = combined(sampling(3.0), 4.0, from_zero());
+  EXPECT_EQ(near.verdict(), ParameterVerdict::at_zero);
+  EXPECT_EQ(near.standard_error, 3.0);
+  EXPECT_EQ(near.lower, 0.0);
+  EXPECT_NEAR(near.upper, 4.0 + 3.0 * kOfEight, 1e-10);
+}
+
+TEST(ErrorBudget, WhatIsNeitherKnownNorSmallIsOpen) {
+  EXPECT_EQ(combined(sampling(20.0), 4.0, from_zero()).verdict(), ParameterVerdict::not_determined);
+  EXPECT_EQ(combined(sampling(8.0), 12.0, from_zero()).verdict(), ParameterVerdict::at_zero);
+  EXPECT_EQ(combined(sampling(20.0), 12.0, from_zero()).verdict(),
+            ParameterVerdict::not_determined);
+}
+
+TEST(ErrorBudget, AtZeroIsNotAtABound) {
+  ErrorBudget budget = sampling(3.0);
+  budget.sampling.at_bound = true;
+  EXPECT_EQ(combined(budget, 0.0, from_zero()).verdict(), ParameterVerdict::at_zero);
+  EXPECT_EQ(combined(budget, 0.0, between(0.0, 100.0, false)).verdict(), ParameterVerdict::at_zero);
+  EXPECT_EQ(combined(budget, 100.0, between(0.0, 100.0, false)).verdict(),
+            ParameterVerdict::at_bound);
+  EXPECT_EQ(combined(budget, 5.0, between(5.0, 100.0, false)).verdict(),
+            ParameterVerdict::at_bound);
+  FreeParameter inertia = between(1e-9, 1e5, true);
+  inertia.initial = 0.04;
+  EXPECT_EQ(combined(budget, 1e-9, inertia).verdict(), ParameterVerdict::at_zero)
+      << "it has no zero, but this is as good as none";
+  inertia.initial = 1e-6;
+  EXPECT_EQ(combined(budget, 1e-9, inertia).verdict(), ParameterVerdict::at_bound);
 }
 
 TEST(ErrorBudget, AnIntervalEndsAtTheBounds) {

@@ -17,7 +17,7 @@ class IdentifiabilityTest : public ::testing::Test {
   IdentifiabilityTest() {
     for (const char* name : {"B_a", "b_g", "k_g"}) {
       FreeParameter p = free_parameter(name, 1.0);
-      p.logarithmic = false;
+      p.scale = Scale::linear;
       job_.free.push_back(p);
     }
     linear_.finite = true;
@@ -54,7 +54,7 @@ TEST_F(IdentifiabilityTest, ADirectionIsWeakFromAnErrorOfOne) {
 }
 
 TEST_F(IdentifiabilityTest, NamesWhatIsSeenOfTwoParameters) {
-  for (const std::size_t i : {0u, 1u}) job_.free[i].logarithmic = true;
+  for (const std::size_t i : {0u, 1u}) job_.free[i].scale = Scale::logarithmic;
   linear_.jacobian.col(1) = -linear_.jacobian.col(0);
   const Identifiability seen = known({std::log(6.0), std::log(2.0), 0.0});
   ASSERT_EQ(seen.weak.size(), 1u);
@@ -74,7 +74,7 @@ TEST_F(IdentifiabilityTest, NamesWhatIsSeenOfTwoParameters) {
 
 // Where neither the ratio nor the product is seen, none is claimed.
 TEST_F(IdentifiabilityTest, ClaimsNoCombinationThatAnotherWeakDirectionHides) {
-  for (const std::size_t i : {0u, 1u}) job_.free[i].logarithmic = true;
+  for (const std::size_t i : {0u, 1u}) job_.free[i].scale = Scale::logarithmic;
   linear_.jacobian.col(1) = -linear_.jacobian.col(0);
   linear_.jacobian.leftCols(2) *= 1e-6 * kWhite;
   const Identifiability seen = known({std::log(6.0), std::log(2.0), 0.0});

@@ -22,7 +22,7 @@ class RivalErrorsTest : public ::testing::Test {
     job_.model = slide();
     for (const char* name : {"B_a", "M", "added_mass.dM"}) {
       FreeParameter free = free_parameter(name, 1.0);
-      free.logarithmic = false;
+      free.scale = Scale::linear;
       free.lower = -1e3;
       free.upper = 1e3;
       job_.free.push_back(free);

@@ -29,7 +29,7 @@ class UncertaintyTest : public ::testing::Test {
     job_.recordings.resize(1);
     for (const char* name : {"B_a", "b_g", "k_g"}) {
       FreeParameter p = free_parameter(name, 1.0);
-      p.logarithmic = false;
+      p.scale = Scale::linear;
       p.lower = -1e6;
       p.upper = 1e6;
       job_.free.push_back(p);
@@ -135,7 +135,7 @@ TEST_F(UncertaintyTest, AMinimumBeyondABoundLeavesLessInside) {
 
 TEST_F(UncertaintyTest, IntervalOfALogarithmIsAFactor) {
   linear_.jacobian.col(0) *= 10.0 * kWhite;
-  job_.free[0] = free_parameter("B_a", 200.0);
+  job_.free[0] = free_parameter("M", 200.0);
   const ParameterUncertainty p = found({std::log(200.0), 1, 1}).parameters[0];
   EXPECT_NEAR(p.standard_error, 20.0, 0.6);
   const double factor = std::exp(1.9605 * p.standard_error / 200.0);
@@ -145,7 +145,7 @@ TEST_F(UncertaintyTest, IntervalOfALogarithmIsAFactor) {
 
 TEST_F(UncertaintyTest, AFactorOfSomeSizeIsWeak) {
   linear_.jacobian.col(0) *= 2.0 * kWhite;
-  job_.free[0] = free_parameter("B_a", 200.0);
+  job_.free[0] = free_parameter("M", 200.0);
   const ParameterUncertainty p = found({std::log(200.0), 1, 1}).parameters[0];
   EXPECT_TRUE(p.determined);
   EXPECT_TRUE(p.weak);

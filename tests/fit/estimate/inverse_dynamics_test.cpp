@@ -31,8 +31,6 @@ struct Slide {
     Job job =
         two_recordings(truth, declared, {"M", "B_a", "coulomb_friction.F_c", "constant_force.F_0"},
                        3.0, signals, seed);
-    for (FreeParameter& p : job.free)
-      if (p.logarithmic) p.lower = 1e-3, p.upper = 1e5;
     return job;
   }
 

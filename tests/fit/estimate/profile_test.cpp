@@ -79,7 +79,7 @@ TEST(Profile, OfWhatStandsAtItsBoundHasOneSide) {
   Job job = slide_job();
   job.model.structure.effects.set(*effect_named("coulomb_friction"));
   FreeParameter friction = free_parameter("coulomb_friction.F_c", 1.0);
-  friction.logarithmic = false;
+  friction.scale = Scale::linear;
   friction.lower = 0.0;
   job.free.push_back(friction);
   // Noise decides on which side of zero the friction would end: take one that ends below.

@@ -32,7 +32,7 @@ TEST(Comparison, PrefersWhatPredictsAndElseWhatIsSimple) {
   for (std::size_t r = 1; r < 3; ++r) job.recordings[r].role = Role::validate;
   add_effect<QuadraticDrag>(job.model);
   FreeParameter drag = free_parameter("quadratic_drag.c", 1.0);
-  drag.logarithmic = false;
+  drag.scale = Scale::linear;
   drag.lower = -100.0;
   drag.initial = 0.0;
   job.free.push_back(drag);

@@ -20,7 +20,7 @@ Eigen::MatrixXd by_itself(const Job& job, const EffectSetting& setting, double r
   Eigen::MatrixXd columns = linearize(with, space, u, rate).jacobian;
   for (std::size_t i = 0; i < space.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    if (!space[i].logarithmic) columns.col(k) /= space.slope(i, u[k]);
+    if (space[i].scale != Scale::logarithmic) columns.col(k) /= space.slope(i, u[k]);
   }
   return columns;
 }

@@ -64,9 +64,9 @@ TEST_F(WithHypothesis, AddsItsStrengthsAndShapesAndNothingElse) {
       const FreeParameter& p = job.free[2 + i];
       EXPECT_EQ(p.quantity, c.strengths[i]);
       EXPECT_EQ(p.initial, strengths[i]);
-      EXPECT_EQ(p.logarithmic,
-                c.kind == HypothesisKind::constant &&
-                    free_parameter(quantity_list()[p.quantity].name, 1.0).logarithmic);
+      EXPECT_EQ(p.scale, c.kind == HypothesisKind::constant
+                             ? free_parameter(quantity_list()[p.quantity].name, 1.0).scale
+                             : Scale::linear);
       EXPECT_FALSE(p.recording.has_value());
       EXPECT_LE(p.lower, p.initial);
       EXPECT_GE(p.upper, p.initial);
@@ -78,7 +78,7 @@ TEST_F(WithHypothesis, AddsItsStrengthsAndShapesAndNothingElse) {
       const FreeParameter& p = job.free[2 + strengths.size() + i];
       EXPECT_EQ(p.quantity, c.shapes[i]);
       EXPECT_EQ(p.initial, c.settings.back()[i]);
-      EXPECT_EQ(p.logarithmic, quantity_list()[c.shapes[i]].quantity.lower > 0.0);
+      EXPECT_EQ(p.scale == Scale::logarithmic, quantity_list()[c.shapes[i]].quantity.lower > 0.0);
       EXPECT_LE(p.lower, p.initial);
       EXPECT_GE(p.upper, p.initial);
     }
@@ -103,7 +103,7 @@ TEST_F(WithHypothesis, SeeksAPlaceWhereItsSettingsLie) {
   const Job job = with_hypothesis(job_, c, values, {strengths, c.settings[0]});
   const FreeParameter& from = job.free[job.free.size() - 2];
   const FreeParameter& to = job.free.back();
-  EXPECT_FALSE(from.logarithmic);
+  EXPECT_EQ(from.scale, Scale::linear);
   EXPECT_NEAR(from.lower, -0.15, 1e-15);
   EXPECT_NEAR(from.upper, 0.45, 1e-15);
   EXPECT_EQ(from.initial, -0.1);

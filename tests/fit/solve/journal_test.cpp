@@ -169,7 +169,7 @@ TEST(JournalTest, TheKeyDependsOnAllThatTheSolutionFollowsFrom) {
       [](Problem& p) { p.job.free[0].initial *= 2.0; },
       [](Problem& p) { p.job.free[0].lower *= 2.0; },
       [](Problem& p) { p.job.free[0].upper *= 2.0; },
-      [](Problem& p) { p.job.free[0].logarithmic = false; },
+      [](Problem& p) { p.job.free[0].scale = Scale::linear; },
       [](Problem& p) {
         p.job.free[0].prior = Prior{1.0, 2.0};
       },

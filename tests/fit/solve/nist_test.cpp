@@ -175,11 +175,12 @@ class Nist : public testing::TestWithParam<Case> {
     for (const Problem::Parameter& p : problem_.parameters) {
       FreeParameter& f = free_.emplace_back();
       f.initial = p.starts[GetParam().start - 1];
-      f.logarithmic = GetParam().logarithmic && std::ranges::min(p.starts) > 0.0;
+      const bool logarithmic = GetParam().logarithmic && std::ranges::min(p.starts) > 0.0;
+      f.scale = logarithmic ? Scale::logarithmic : Scale::linear;
       // Wide enough for the farthest start. Without any bounds the solver does not shorten its
       // steps, and the first one of BoxBOD leads to where b2 has no effect any more.
       constexpr double kFactor = 1e3;
-      f.lower = f.logarithmic ? f.initial / kFactor : -kFactor * std::abs(f.initial);
+      f.lower = logarithmic ? f.initial / kFactor : -kFactor * std::abs(f.initial);
       f.upper = kFactor * std::abs(f.initial);
     }
   }
@@ -191,7 +192,7 @@ class Nist : public testing::TestWithParam<Case> {
   /// A logarithm with an error of one or more says nothing: that of b2 of MGH09.
   bool is_known(std::size_t i) const {
     const Problem::Parameter& p = problem_.parameters[i];
-    return !free_[i].logarithmic || p.standard_error < p.value;
+    return free_[i].scale == Scale::linear || p.standard_error < p.value;
   }
   Costs costs(const ParameterSpace& space, double noise) const {
     Costs list;

@@ -14,7 +14,7 @@ namespace {
 /// On a linear scale, without bounds.
 FreeParameter linear(const char* name, double initial) {
   FreeParameter p = free_parameter(name, initial);
-  p.logarithmic = false;
+  p.scale = Scale::linear;
   p.lower = -std::numeric_limits<double>::infinity();
   p.upper = std::numeric_limits<double>::infinity();
   return p;
@@ -55,6 +55,30 @@ TEST(ParameterSpace, IsLogarithmicOrRelativeToTheMagnitude) {
   EXPECT_DOUBLE_EQ(values[0], kM);
   EXPECT_DOUBLE_EQ(values[1], kB_a);
   EXPECT_DOUBLE_EQ(values[2], kK_f);
+}
+
+// Far above a hundredth of the initial value a step is a part of the value; at zero it is an
+// amount.
+TEST(ParameterSpace, FromZeroReachesZero) {
+  Job job;
+  job.free = {free_parameter("B_a", 50.0)};
+  ASSERT_EQ(job.free[0].scale, Scale::from_zero);
+  const ParameterSpace space(job);
+  EXPECT_EQ(space.internal(0, 0.0), 0.0);
+  EXPECT_EQ(space.value(0, 0.0), 0.0);
+  EXPECT_EQ(space.slope(0, 0.0), 0.5);
+  EXPECT_NEAR(space.internal(0, 50.0 * std::exp(1.0)) - space.internal(0, 50.0), 1.0, 1e-4);
+  for (const double value : {0.0, 1e-3, 0.5, 50.0, 1e6})
+    EXPECT_NEAR(space.value(0, space.internal(0, value)), value, 1e-12 * (1.0 + value));
+}
+
+TEST(ParameterSpace, NoBoundIsOutOfReach) {
+  std::vector<FreeParameter> free{free_parameter("B_a", 1e-300), free_parameter("M", 10.0),
+                                  free_parameter("B_a", 50.0)};
+  const ParameterSpace space(free);
+  for (std::size_t i = 0; i < free.size(); ++i)
+    for (const double bound : {free[i].lower, free[i].upper})
+      EXPECT_EQ(space.value(i, space.internal(i, bound)), bound) << i;
 }
 
 TEST(ParameterSpace, SlopeIsThatOfDifferences) {

@@ -108,7 +108,7 @@ TEST(RecordingCost, JacobianIsThatOfDifferencesForAnyNumberOfParameters) {
       p.initial = 0.0;
       p.lower = -1.0;
       p.upper = 1.0;
-      p.logarithmic = false;
+      p.scale = Scale::linear;
     }
     job.free.push_back(p);
     const ParameterSpace space(job);

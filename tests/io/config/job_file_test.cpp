@@ -188,9 +188,10 @@ TEST_F(JobFileTest, ReadsTheShippedPaperJob) {
     const FreeParameter& p = job.free[i];
     EXPECT_EQ(p.quantity, quantity_index(free[i].first));
     EXPECT_DOUBLE_EQ(p.initial, free[i].second);
-    EXPECT_DOUBLE_EQ(p.lower, free[i].second / 100.0);
-    EXPECT_DOUBLE_EQ(p.upper, free[i].second * 100.0);
-    EXPECT_TRUE(p.logarithmic);
+    const Quantity& quantity = quantity_list()[p.quantity].quantity;
+    EXPECT_EQ(p.lower, quantity.lower);
+    EXPECT_EQ(p.upper, quantity.upper);
+    EXPECT_EQ(p.scale, quantity.lower > 0.0 ? Scale::logarithmic : Scale::from_zero);
     EXPECT_FALSE(p.recording.has_value());
     EXPECT_FALSE(p.prior.has_value());
   }
@@ -634,23 +635,27 @@ TEST_F(JobFileTest, ScalesAndBoundsOfFreeParameters) {
   struct Case {
     const char* text;
     double initial, lower, upper;
-    bool logarithmic;
+    Scale scale;
   };
+  using enum Scale;
   for (const Case& c : std::vector<Case>{
-           {"M: {}", 4.0, 0.04, 400.0, true},
-           {"M: {initial: 200 g}", 0.2, 0.002, 20.0, true},
-           {"M: {initial: 2 g}", 0.002, 0.001, 0.2, true},  // no less than the least sensible mass
-           {"M: {bounds: [3 kg, 5 kg]}", 4.0, 3.0, 5.0, true},
-           {"M: {bounds: [3 kg, 5 kg], scale: linear}", 4.0, 3.0, 5.0, false},
-           {"M: {scale: linear}", 4.0, 1e-3, 1e5, false},
-           {"B_a: {bounds: [0 N s/m, 9 N s/m]}", 8.0, 0.0, 9.0, false},
-           {"B_a: {initial: 0 N s/m}", 0.0, 0.0, 1e6, false},
-           {"F_s: {}", 0.0, 0.0, 1e5, false},
-           {"F_s: {initial: 3 N, scale: log, bounds: [1 N, 9 N]}", 3.0, 1.0, 9.0, true},
-           {"coulomb_friction.F_c: {}", 1.0, 0.0, 1e5, false},
-           {"velocity.gain: {}", 1.0, -1e6, 1e6, false},
-           {"initial.y1: {bounds: [-1 m/s, 1 m/s]}", 0.0, -1.0, 1.0, false},
-           {"T_d: {initial: 2 ms, bounds: [0 s, 9 ms]}", 0.002, 0.0, 0.009, false},
+           {"M: {}", 4.0, 1e-3, 1e5, logarithmic},
+           {"M: {initial: 200 g}", 0.2, 1e-3, 1e5, logarithmic},
+           {"M: {bounds: [3 kg, 5 kg]}", 4.0, 3.0, 5.0, logarithmic},
+           {"M: {bounds: [3 kg, 5 kg], scale: linear}", 4.0, 3.0, 5.0, linear},
+           {"M: {scale: linear}", 4.0, 1e-3, 1e5, linear},
+           {"B_a: {}", 8.0, 0.0, 1e6, from_zero},
+           {"B_a: {bounds: [0 N s/m, 9 N s/m]}", 8.0, 0.0, 9.0, from_zero},
+           {"B_a: {bounds: [1 N s/m, 9 N s/m]}", 8.0, 1.0, 9.0, logarithmic},
+           {"B_a: {scale: log}", 8.0, 0.08, 1e6, logarithmic},
+           {"B_a: {initial: 0 N s/m}", 0.0, 0.0, 1e6, linear},
+           {"F_s: {}", 0.0, 0.0, 1e5, linear},
+           {"F_s: {initial: 3 N, scale: log, bounds: [1 N, 9 N]}", 3.0, 1.0, 9.0, logarithmic},
+           {"F_s: {initial: 3 N, scale: from_zero}", 3.0, 0.0, 1e5, from_zero},
+           {"coulomb_friction.F_c: {}", 1.0, 0.0, 1e5, linear},
+           {"velocity.gain: {}", 1.0, -1e6, 1e6, linear},
+           {"initial.y1: {bounds: [-1 m/s, 1 m/s]}", 0.0, -1.0, 1.0, linear},
+           {"T_d: {initial: 2 ms, bounds: [0 s, 9 ms]}", 0.002, 0.0, 0.009, linear},
        }) {
     SCOPED_TRACE(c.text);
     ASSERT_LT(c.upper, infinity);
@@ -658,7 +663,7 @@ TEST_F(JobFileTest, ScalesAndBoundsOfFreeParameters) {
     EXPECT_DOUBLE_EQ(p.initial, c.initial);
     EXPECT_DOUBLE_EQ(p.lower, c.lower);
     EXPECT_DOUBLE_EQ(p.upper, c.upper);
-    EXPECT_EQ(p.logarithmic, c.logarithmic);
+    EXPECT_EQ(p.scale, c.scale);
   }
 }
 
@@ -914,7 +919,7 @@ TEST_F(JobFileTest, EveryMistakeIsNamedWithItsPlace) {
            {"M: {}", "M: {bounds: [1 kg, 5 m]}",
             "9:22: entry 2 of bounds: 'm' cannot be converted to 'kg'; use for example 'kg'"},
            {"M: {}", "M: {scale: logarithmic}",
-            "9:14: scale must be one of log, linear, not 'logarithmic'"},
+            "9:14: scale must be one of log, linear, from_zero, not 'logarithmic'"},
            {"M: {}", "B_a: {scale: log, bounds: [0 N s/m, 9 N s/m]}",
             "9:8: B_a on a logarithmic scale needs an initial value and a lower bound above zero"},
            {"M: {}", "M: {per_recording: each}",

@@ -38,28 +38,29 @@ class FreeTest : public ::testing::Test {
   std::string said_;
 };
 
-TEST_F(FreeTest, WhatEveryAxisHasIsLogarithmicWithinAHundred) {
+TEST_F(FreeTest, WhatEveryAxisHasIsEstimatedByItsOrderOfMagnitude) {
   const FreeParameter p = free("{B_a: }").at(0);
   EXPECT_EQ(p.initial, 200.0);
-  EXPECT_TRUE(p.logarithmic);
-  EXPECT_EQ(p.lower, 2.0);
-  EXPECT_EQ(p.upper, 20000.0);
+  EXPECT_EQ(p.scale, Scale::from_zero) << "it may be none";
+  EXPECT_EQ(p.lower, 0.0);
+  EXPECT_EQ(p.upper, range("B_a", true));
   EXPECT_FALSE(p.prior);
   EXPECT_FALSE(p.recording);
   const FreeParameter mass = free("{M: {initial: 50 t}}").at(0);
-  EXPECT_EQ(mass.lower, 500.0);
-  EXPECT_EQ(mass.upper, range("M", true)) << "no further than it makes sense";
+  EXPECT_EQ(mass.scale, Scale::logarithmic);
+  EXPECT_EQ(mass.lower, range("M", false));
+  EXPECT_EQ(mass.upper, range("M", true));
 }
 
 TEST_F(FreeTest, WhatMayBeZeroIsLinearInItsRange) {
   const FreeParameter p = free("{F_s: }").at(0);
-  EXPECT_FALSE(p.logarithmic);
+  EXPECT_EQ(p.scale, Scale::linear);
   EXPECT_EQ(p.lower, range("F_s", false));
   EXPECT_EQ(p.upper, range("F_s", true));
-  EXPECT_TRUE(free("{F_s: {initial: 2 N, bounds: [1 N, 5 N]}}").at(0).logarithmic)
+  EXPECT_EQ(free("{F_s: {initial: 2 N, bounds: [1 N, 5 N]}}").at(0).scale, Scale::logarithmic)
       << "where the bounds leave out zero";
-  EXPECT_FALSE(free("{F_s: {initial: 2 N, bounds: [0 N, 5 N]}}").at(0).logarithmic);
-  EXPECT_FALSE(free("{B_a: {scale: linear}}").at(0).logarithmic);
+  EXPECT_EQ(free("{F_s: {initial: 2 N, bounds: [0 N, 5 N]}}").at(0).scale, Scale::linear);
+  EXPECT_EQ(free("{B_a: {scale: linear}}").at(0).scale, Scale::linear);
 }
 
 TEST_F(FreeTest, APriorHasAMeanAndASigma) {

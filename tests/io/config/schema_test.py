@@ -123,7 +123,6 @@ WRONG = [
     ("axis", "pendulum.yaml", "joint: revolute", "joint: prismatic"),
     # a required key that is missing
     ("job", "paper.yaml", "axis: ../axes/x.yaml\n", ""),
-    ("job", "paper.yaml", "    time: {column: time_s, unit: s}\n", ""),
     ("job", "paper.yaml", "{column: time_s, unit: s}", "{column: time_s}"),
     ("job", "paper.yaml", "free:", "effects: {coulomb_friction: {}}\nfree:"),
     ("job", "paper.yaml", "{initial: 60 N s/m}", "{prior: {mean: 60 N s/m}}"),

@@ -45,14 +45,19 @@ TEST(WordsTest, OfTheGradeOfAFit) {
       "units and signs of the columns and what the axis file declares.");
   FitGrade drifts = badly;
   drifts.grade = Grade::usable;
-  drifts.reason = Reason::tracking_only;
+  drifts.reason = Reason::drift;
+  drifts.uses = {.missing_force_percent = 3.21, .force_recording = 1};
   EXPECT_EQ(grade_text(job, drifts, fit),
-            "Usable while it tracks recordings: the free-running simulation follows the "
-            "acceleration of step to only 23 %. The parameters describe the forces; do not "
-            "simulate with them for long.");
+            "Usable for forces: the model leaves 3.2 % of the drive force of step unexplained. The "
+            "free-running simulation follows the acceleration of step to only 23 %: do not "
+            "simulate with it for long.");
   fit.reduced_chi_square = 1.00251;
   EXPECT_EQ(grade_text(job, {Grade::usable, Reason::residual, 1}, fit),
             "Usable: reduced chi-square 1.003 on the fitted data.");
+  const FitUses both{2.0, 1, 0.83};
+  EXPECT_EQ(grade_text(job, {Grade::usable, Reason::residual, 1, {}, 0.0, both}, fit),
+            "Usable: the model leaves 2 % of the drive force of step unexplained; a free run stays "
+            "within 1 % of the range for 0.83 s. Reduced chi-square 1.003 on the fitted data.");
   fit.verdict.undetermined = {{quantity_index("V_L")}, {quantity_index("k_g"), 1}};
   EXPECT_EQ(grade_text(job, {Grade::explained, Reason::none}, fit),
             "Explained: reduced chi-square 1.003 on the fitted data, and no signal shows more than "
