@@ -32,7 +32,8 @@ std::string tried_text(const MachineChoice& choice) {
 
 }  // namespace
 
-void write_first_job(const FitArguments& arguments, std::optional<ProgressLine>& line) {
+void write_first_job(const FitArguments& arguments, const StopFlag& stop,
+                     std::optional<ProgressLine>& line) {
   namespace fs = std::filesystem;
   const fs::path folder = arguments.output.empty() ? "." : arguments.output;
   std::vector<ColumnAnswer> answers;
@@ -40,14 +41,15 @@ void write_first_job(const FitArguments& arguments, std::optional<ProgressLine>&
   if (!arguments.rate.empty()) answers.push_back(read_rate(arguments.rate));
   if (!arguments.motor.empty()) answers.push_back(motor_answer(arguments.motor));
   const bool is_machine = !arguments.machine.empty();
+  const RunContext context{.stop = &stop,
+                           .progress = [&](const Progress& progress) { line->update(progress); }};
   MachineChoice choice;
   if (is_machine || !arguments.axis.empty() || arguments.gain)
     choice.job = initial_job(arguments.files, is_machine ? arguments.machine : arguments.axis,
-                             folder.string(), arguments.gain, answers, is_machine);
+                             folder.string(), arguments.gain, answers, is_machine, context);
   else
-    choice =
-        choose_machine(arguments.files, folder.string(), answers,
-                       {.progress = [&](const Progress& progress) { line->update(progress); }});
+    choice = choose_machine(arguments.files, folder.string(), answers, context,
+                            arguments.threads.value_or(0));
   const InitialJob& created = choice.job;
   const auto path = [&](const std::string& name) {
     return (folder / name).lexically_normal().string();
@@ -65,6 +67,10 @@ void write_first_job(const FitArguments& arguments, std::optional<ProgressLine>&
   std::string text;
   for (const auto& [name, contents] : created.files) text += fmt::format("Wrote {}\n", path(name));
   text += tried_text(choice);
+  if (!choice.is_explained)
+    text +=
+        "None of them explains the recordings to within ten times their noise: one mass was taken, "
+        "for want of anything better\n";
   if (!created.guesses.empty()) text += "Guessed, please check\n";
   for (const std::string& guess : created.guesses) text += paragraph(guess, 2);
   const std::string job = path(created.files.back().first);

@@ -296,7 +296,7 @@ int run_command(const FitArguments& arguments) {
   begin_line(arguments, line);
   line->update({"reading the recordings"});
   if (arguments.init) {
-    write_first_job(arguments, line);
+    write_first_job(arguments, stop_flag, line);
     return kUsable;
   }
   if (arguments.files.size() > 1)
@@ -332,7 +332,7 @@ int main(int argc, char** argv) {
   add_options(app, arguments);
   return run_program(app, kFitShortHelp, argc, argv, [&] {
     complete(app, argc, argv, arguments);
-    stop_flag = arguments.init || arguments.check;  // there is nothing to keep
+    stop_flag = arguments.check;  // there is nothing to keep
     stop_on_signals();
     if (arguments.time_limit) stop_after(*arguments.time_limit);
     try {

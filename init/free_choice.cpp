@@ -13,7 +13,6 @@
 #include "fit/data/noise.h"
 #include "fit/data/recording_check.h"
 #include "fit/design/forecast.h"
-#include "fit/estimate/estimate.h"
 #include "init/job_text.h"
 #include "io/config/diagnostics.h"
 #include "io/config/job_file.h"
@@ -27,37 +26,15 @@ namespace fs = std::filesystem;
 constexpr double kRoom = 0.01;  ///< s, of the delay between two clocks, to either side
 constexpr const char* kOnlyRatios = "a motion shows only ratios to it";
 
-/// Two clocks may differ to either side.
-void add_delay(JobDraft& draft) {
-  const double interval = sampling(draft.recordings.front().guess.time.values).interval;
-  // Twenty samples to either side are more than the quantity's own range where they are far apart.
-  const Quantity& delay = draft.quantity("T_d").quantity;
-  const double most =
-      draft.joined ? kRoom
-                   : std::min({round_to_digits(20.0 * interval, 2), delay.upper, -delay.lower});
-  const double initial = draft.joined ? 0.0 : std::min(round_to_digits(interval, 2), most);
-  draft.parameters.push_back(
-      {"T_d", fmt::format("{{initial: {}, bounds: [-{}, {}]}}", with_unit(initial, "s"),
-                          with_unit(most, "s"), with_unit(most, "s"))});
-}
-
-/// The job as the reader takes it, which is also the proof that it does.
-Job read_job(const JobDraft& draft) {
-  try {
-    return read_job_draft(job_files(draft), fs::absolute(draft.folder).string()).job;
-  } catch (const ConfigError& error) {
-    // The places are of a file that the user never sees.
-    std::set<std::string> messages;
-    for (const Diagnostic& d : error.diagnostics()) messages.insert(d.message);
-    throw std::runtime_error(
-        fmt::format("no job can be created from these recordings:\n{}", fmt::join(messages, "\n")));
-  }
-}
-
 /// With the effects at that part of their initial strengths. False: it cannot be told.
-bool take_out_open(JobDraft& draft, double strength) {
+bool take_out_open(JobDraft& draft, double strength, const StopFlag* stop) {
   for (;;) {
-    const Job job = read_job(draft);
+    if (is_set(stop)) {
+      draft.guesses.emplace_back(
+          "what the recordings determine was not looked at, since the run was stopped");
+      return false;
+    }
+    const Job job = draft_job(draft);
     const std::vector<double> start = draw_start(job, 0);
     std::vector<double> values = start;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -97,6 +74,18 @@ bool take_out_open(JobDraft& draft, double strength) {
 
 }  // namespace
 
+Job draft_job(const JobDraft& draft) {
+  try {
+    return read_job_draft(job_files(draft), fs::absolute(draft.folder).string()).job;
+  } catch (const ConfigError& error) {
+    // The places are of a file that the user never sees.
+    std::set<std::string> messages;
+    for (const Diagnostic& d : error.diagnostics()) messages.insert(d.message);
+    throw std::runtime_error(
+        fmt::format("no job can be created from these recordings:\n{}", fmt::join(messages, "\n")));
+  }
+}
+
 void list_parameters(JobDraft& draft) {
   // What no data sheet tells, the most wanted first. A gain of the drive last: what it scales
   // has precedence.
@@ -114,9 +103,7 @@ void list_parameters(JobDraft& draft) {
   };
   for (const std::string& name : kWanted) {
     if (name == "F_s" && draft.is_force_driven()) continue;
-    const Quantity& q = draft.quantity(name).quantity;
-    const double least = draft.vocabulary().joint == Joint::prismatic ? 1e-3 : 1e-6;
-    add(name, any_gain ? bounds(std::max(q.lower, least), q.upper, q.unit) : "{}");
+    add(name);
   }
   for (const QuantityEntry& entry : quantity_list()) {
     if (!entry.effect || !is_used(entry, draft.structure) || entry.quantity.shape) continue;
@@ -127,7 +114,9 @@ void list_parameters(JobDraft& draft) {
     add(entry.name, force ? bounds(q.lower < 0.0 ? -most : 0.0, most, q.unit) : "{}");
   }
   if (draft.starter && !draft.is_force_driven()) add("K_1");
-  if (draft.joined) add_delay(draft);
+  if (draft.joined)  // two clocks may differ to either side
+    draft.parameters.push_back(
+        {"T_d", fmt::format("{{initial: 0 s, bounds: [-{0}, {0}]}}", with_unit(kRoom, "s"))});
   // An encoder that rounds down reads half a step low.
   const RecordingGuess& first = draft.recordings.front().guess;
   const GuessedColumn* position = first.find(Kind::position);
@@ -142,45 +131,9 @@ void list_parameters(JobDraft& draft) {
   if (draft.starter || draft.is_machine) draft.parameters.back().reason_not_free = kOnlyRatios;
 }
 
-void choose_free(JobDraft& draft) {
+void choose_free(JobDraft& draft, const StopFlag* stop) {
   constexpr double kHardly = 1e-3;
-  if (take_out_open(draft, 1.0)) take_out_open(draft, kHardly);
-}
-
-void try_timing(JobDraft& draft) {
-  const std::vector<double>& times = draft.recordings.front().guess.time.values;
-  if (!draft.is_force_driven() || draft.joined || times.size() > kMostSamplesToTry) return;
-  const auto fitted = [&] {
-    Job job = read_job(draft);
-    job.options.starts = 1;
-    return estimate(job);
-  };
-  constexpr double kLeastFall = 2.0, kLeastSamples = 0.5;
-  FitResult without = fitted();
-  const auto swap_holds = [&] {
-    for (DraftRecording& recording : draft.recordings)
-      recording.has_other_hold = !recording.has_other_hold;
-  };
-  swap_holds();
-  FitResult swapped = fitted();
-  if (swapped.verdict.has_minimum() &&
-      kLeastFall * swapped.reduced_chi_square < without.reduced_chi_square)
-    without = std::move(swapped);
-  else
-    swap_holds();
-  add_delay(draft);
-  const FitResult with = fitted();
-  const double delay = with.parameters.back().value;
-  if (with.verdict.has_minimum() && std::abs(delay) > kLeastSamples * sampling(times).interval &&
-      kLeastFall * with.reduced_chi_square < without.reduced_chi_square) {
-    draft.guesses.push_back(
-        fmt::format("T_d is free: the motion {} what drives it by {:.2g} ms, with which the "
-                    "chi-square falls from {:.3g} to {:.3g}; it is the time lag of drive or log",
-                    delay > 0.0 ? "follows" : "is logged before", 1e3 * std::abs(delay),
-                    without.reduced_chi_square, with.reduced_chi_square));
-  } else {
-    draft.parameters.pop_back();
-  }
+  if (take_out_open(draft, 1.0, stop)) take_out_open(draft, kHardly, stop);
 }
 
 }  // namespace axisfit

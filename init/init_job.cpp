@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/plain_text.h"
+#include "init/draft_look.h"
 #include "init/free_choice.h"
 #include "init/input_choice.h"
 #include "init/job_text.h"
@@ -171,10 +172,9 @@ void start_axis(JobDraft& draft) {
   seen.is_force = first.drives_in_newtons();
   seen.largest_input = largest(first.driving());
   if (velocity) seen.largest_speed = largest(velocity->values);
-  seen.balance = draft.balance_of(first);
+  seen.look = draft.look;
   seen.gain = draft.gain;
   seen.structure = draft.structure;
-  seen.has_gravity = seen.balance && seen.balance->gravity_sine != 0.0;
   draft.starter = mass_starter(first.file, seen);
   draft.structure = draft.starter->structure;
   draft.axis_text = draft.starter->text;
@@ -216,7 +216,8 @@ void collect_guesses(JobDraft& draft) {
 
 InitialJob initial_job(const std::vector<std::string>& recordings, const std::string& axis,
                        const std::string& folder, std::optional<double> gain,
-                       const std::vector<ColumnAnswer>& answers, bool is_machine) {
+                       const std::vector<ColumnAnswer>& answers, bool is_machine,
+                       const RunContext& context) {
   JobDraft draft{axis, is_machine, folder, gain, answers};
   const bool makes_axis = axis.empty();
   if (!makes_axis) read_structure(draft);
@@ -228,6 +229,7 @@ InitialJob initial_job(const std::vector<std::string>& recordings, const std::st
       throw std::runtime_error(
           fmt::format("{} is given twice: a recording counts once", sanitized(*path)));
   }
+  context.report({.phase = "reading the recordings"});
   std::vector<RecordingGuess> guesses = guesses_of(recordings, draft);
   for (std::size_t i = 0; i < recordings.size(); ++i)
     add(draft, recordings[i], std::move(guesses[i]));
@@ -239,15 +241,18 @@ InitialJob initial_job(const std::vector<std::string>& recordings, const std::st
   choose_inputs(draft);
   drop_recordings_without_input(draft);
   refuse_unrelated(draft);
+  context.report({.phase = "a first look at the forces"});
+  draft.look = look_at(draft);
   correct_signs(draft);
   drop_idle_velocities(draft);
   use_common_signals(draft);
   if (makes_axis) start_axis(draft);
   list_parameters(draft);
-  choose_free(draft);
-  if (makes_axis || is_machine) try_timing(draft);
+  context.report({.phase = "what the recordings determine"});
+  choose_free(draft, context.stop);
+  if (makes_axis || is_machine) set_timing(draft);
   collect_guesses(draft);
-  return {job_files(draft), std::move(draft.guesses)};
+  return {job_files(draft), std::move(draft.guesses), draft.look};
 }
 
 std::vector<std::string> machines_for(const std::vector<std::string>& recordings,
@@ -255,7 +260,7 @@ std::vector<std::string> machines_for(const std::vector<std::string>& recordings
   std::vector<std::string> names;
   const RecordingGuess first =
       guess_recording(RecordingFile(recordings.front()), recordings.front(), {answers});
-  if (first.time.values.size() > kMostSamplesToTry || is_of_velocity_loop(first)) return names;
+  if (is_of_velocity_loop(first)) return names;
   const auto input = std::ranges::find_if(
       force_inputs(), [&](const InputColumn& i) { return has_changing_input(first, i); });
   const auto is_driven_by = [&](const Capabilities& has) {

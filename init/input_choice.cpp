@@ -1,17 +1,15 @@
 #include "init/input_choice.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <span>
 
 #include "base/plain_text.h"
 #include "fit/data/noise.h"
 #include "fit/data/recording_check.h"
-#include "init/force_balance.h"
+#include "init/draft_look.h"
 
 namespace axisfit {
 namespace {
@@ -48,33 +46,21 @@ std::vector<double> at_times(const std::vector<double>& times, const std::vector
   return result;
 }
 
+/// By how much later, or earlier, than if both had begun together.
 double best_offset(const DraftRecording& motion, const std::vector<double>& clock,
                    const std::vector<double>& values) {
-  const RecordingGuess& guess = motion.guess;
-  const GuessedColumn *position = guess.find(Kind::position),
-                      *velocity = guess.find(Kind::velocity);
-  const std::vector<double> none;
-  const std::vector<double>& times = guess.time.values;
-  const auto agreement = [&](double offset) {
-    const auto balance =
-        force_balance(times, position ? position->values : none, velocity ? velocity->values : none,
-                      at_times(times, clock, values, offset));
-    return balance ? std::abs(balance->correlation) : 0.0;
-  };
-  // As if both began together, and from there half of the shorter one to either side, in steps
-  // that become finer.
-  double best = times.front() - clock.front();
-  double step = 0.5 * std::min(times.back() - times.front(), clock.back() - clock.front()) / 50.0;
-  double found = agreement(best);
-  for (int range = 50; step > 1e-4; range = 10, step /= 5.0) {
-    const double middle = best;
-    for (int k = -range; k <= range; ++k)
-      if (const double here = agreement(middle + k * step); here > found) {
-        found = here;
-        best = middle + k * step;
-      }
+  const std::vector<double>& times = motion.guess.time.values;
+  double offset = times.front() - clock.front();
+  // Half of the shorter one to either side, and then what a first look tells more closely.
+  double reach = 0.5 * std::min(times.back() - times.front(), clock.back() - clock.front());
+  for (int look = 0; look < 3; ++look, reach *= 0.02) {
+    const std::vector<double> input = at_times(times, clock, values, offset);
+    const DrivenMotion driven = driven_motion(motion.guess, input);
+    const auto found =
+        first_look(std::span(&driven, 1), {.least_delay = -reach, .longest_delay = reach});
+    if (found) offset += found->delay.value;
   }
-  return best;
+  return offset;
 }
 
 /// The job takes a part of a rating as it is, where the drive does.
@@ -87,19 +73,6 @@ void write_rating(const JobDraft& draft, DraftRecording& recording) {
   for (double& x : input.values) x *= kPercent;
   std::erase_if(input.reasons, [](const std::string& r) { return r.starts_with(kInPercent); });
   input.guessed = false;
-}
-
-/// How the input of a recording goes with the motion: near one where it drives it, near minus one
-/// where it is recorded with the other sign.
-std::optional<double> agreement(const JobDraft& draft, const DraftRecording& recording) {
-  if (draft.is_force_driven()) {
-    const auto balance = draft.balance_of(recording);
-    return balance ? std::optional(balance->correlation) : std::nullopt;
-  }
-  const GuessedColumn* position = recording.guess.find(Kind::position);
-  if (position == nullptr || recording.input->key != std::string_view("command")) return {};
-  const auto found = rate_ratio(recording.guess.time.values, position->values, recording.driving());
-  return found ? std::optional(found->correlation) : std::nullopt;
 }
 
 /// By how much the velocity comes behind the derivative of the position, s, where it clearly does
@@ -126,7 +99,8 @@ double lateness(const RecordingGuess& recording) {
       best = samples;
     }
   constexpr double kClear = 0.5;
-  return best >= 2 && least < kClear * now
+  constexpr double kMatters = 1e-3;  // of the velocity's mean square: less is what digits leave
+  return best >= 2 && now > kMatters && least < kClear * now
              ? static_cast<double>(best) * sampling(recording.time.values).interval
              : 0.0;
 }
@@ -171,18 +145,15 @@ bool changes_speed(const RecordingGuess& recording) {
 /// The part of what drives a recording, about its mean, that a mass with friction explains. Nothing
 /// where that cannot be told.
 std::optional<double> explained_part(const DraftRecording& recording) {
-  const GuessedColumn *position = recording.guess.find(Kind::position),
-                      *velocity = recording.guess.find(Kind::velocity);
   if (!changes_speed(recording.guess)) return std::nullopt;
-  const std::vector<double> none;
   std::vector<double> input = recording.driving();
   double mean = 0.0;
   for (const double x : input) mean += x / static_cast<double>(input.size());
   for (double& x : input) x -= mean;
-  const auto balance =
-      force_balance(recording.guess.time.values, position ? position->values : none,
-                    velocity ? velocity->values : none, input);
-  return balance ? std::optional(std::abs(balance->correlation)) : std::nullopt;
+  const DrivenMotion motion = driven_motion(recording.guess, input);
+  const auto look = first_look(std::span(&motion, 1));
+  if (!look) return std::nullopt;
+  return look->shows_anything() ? look->explained() : 0.0;
 }
 
 bool is_answered(const DraftRecording& recording) {
@@ -298,41 +269,6 @@ void choose_inputs(JobDraft& draft) {
   for (DraftRecording& recording : draft.recordings) write_rating(draft, recording);
 }
 
-void correct_signs(JobDraft& draft) {
-  constexpr double kClear = 0.8, kSome = 0.5;
-  std::map<std::string, std::vector<std::pair<DraftRecording*, double>>> of_column;
-  for (DraftRecording& recording : draft.recordings)
-    of_column[recording.input_column().column].emplace_back(
-        &recording, agreement(draft, recording).value_or(0.0));
-  for (auto& column : of_column) {
-    auto& found = column.second;
-    const auto any = [&](auto&& holds) {
-      return std::ranges::any_of(found, [&](const auto& f) { return holds(f.second); });
-    };
-    if (!any([&](double c) { return c < -kSome; })) continue;
-    const bool turned =
-        any([&](double c) { return c < -kClear; }) && !any([&](double c) { return c > kClear; });
-    std::vector<std::string> each;
-    for (const auto& [recording, correlation] : found)
-      each.push_back(draft.recordings.size() > 1
-                         ? fmt::format("{:.2f} in {}", correlation, recording->name)
-                         : fmt::format("{:.2f}", correlation));
-    const std::string reason =
-        fmt::format("the axis {} in the opposite direction (correlation {}): {}",
-                    draft.is_force_driven() ? "accelerates" : "moves", fmt::join(each, ", "),
-                    turned ? "its sign was inverted" : "is its sign right? It was left as it is");
-    for (auto& [recording, correlation] : found) {
-      GuessedColumn& input = recording->input_column();
-      if (turned) {
-        input.negative = !input.negative;
-        for (double& x : input.values) x = -x;
-      }
-      input.reasons.push_back(reason);
-      input.guessed = true;
-    }
-  }
-}
-
 void drop_idle_velocities(JobDraft& draft) {
   std::string reason;
   const auto of_each = [&](auto&& use) {
@@ -395,8 +331,8 @@ void use_common_signals(JobDraft& draft) {
 
 void refuse_unrelated(const JobDraft& draft) {
   if (!draft.is_force_driven()) return;
-  // Of noise four terms explain a seventh; of what drives an axis, a third even where most of it
-  // holds a load or overcomes what nobody knows.
+  // Of what drives an axis a third is explained even where most of it holds a load or overcomes
+  // what nobody knows; and friction or mass show.
   constexpr double kLeast = 0.2;
   double most = 0.0;
   for (const DraftRecording& recording : draft.recordings) {

@@ -28,11 +28,6 @@ void join_files(JobDraft& draft);
 /// at best one that changes in all, or else the first of them. Recordings without it have none.
 void choose_inputs(JobDraft& draft);
 
-/// A column has one sign in all recordings. It is turned if some clearly say so and none clearly
-/// the contrary; what is not clear is asked. A force that nobody recorded, such as that of
-/// gravity on a joint, can look like a wrong sign.
-void correct_signs(JobDraft& draft);
-
 /// Leaves out velocities that say less than the position does, or come late: in all recordings
 /// where one shows it, for what is fitted and what validates have the same signals.
 void drop_idle_velocities(JobDraft& draft);

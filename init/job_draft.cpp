@@ -11,14 +11,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::optional<ForceBalance> balance_with(const DraftRecording& recording, bool with_gravity) {
-  const GuessedColumn *position = recording.guess.find(Kind::position),
-                      *velocity = recording.guess.find(Kind::velocity);
-  const std::vector<double> none;
-  return force_balance(recording.guess.time.values, position ? position->values : none,
-                       velocity ? velocity->values : none, recording.driving(), with_gravity);
-}
-
 }  // namespace
 
 std::optional<Signal> signal_of(Kind kind) {
@@ -94,15 +86,6 @@ bool JobDraft::is_rounded_away(const GuessedColumn& position,
                                const RecordingGuess& recording) const {
   return !is_direct() && recording.find(Kind::velocity) &&
          noise_from_differences(position.values) < resolution_of(position.values);
-}
-
-std::optional<ForceBalance> JobDraft::balance_of(const DraftRecording& recording) const {
-  constexpr double kLeft = 0.6;
-  const auto left = [](const ForceBalance& b) { return 1.0 - b.correlation * b.correlation; };
-  auto plain = balance_with(recording, false);
-  if (vocabulary().joint != Joint::revolute) return plain;
-  const auto with = balance_with(recording, true);
-  return with && (!plain || left(*with) < kLeft * left(*plain)) ? with : plain;
 }
 
 }  // namespace axisfit

@@ -16,8 +16,6 @@ namespace axisfit {
 
 inline constexpr const char* kJobName = "job.yaml";
 inline constexpr const char* kAxisName = "axis.yaml";
-/// Of recordings that short fits are made to.
-inline constexpr std::size_t kMostSamplesToTry = 50000;
 
 /// What drives a recording: the key in the job, and the column.
 struct InputColumn {
@@ -33,8 +31,9 @@ struct DraftRecording {
   std::optional<InputColumn> input;
   std::string input_file = {};  ///< of what drives the axis, where it is not `file`
   double input_offset = 0.0;    ///< s, added to the times of that
-  /// Whether the motion goes better with the other hold than what its kind suggests.
-  bool has_other_hold = false;
+  /// What tells whether each value of the input holds until the next; empty: its kind does.
+  std::string hold_reason = {};
+  bool is_held = false;  ///< by that
 
   /// Once the input is known.
   const GuessedColumn& input_column() const;
@@ -43,6 +42,8 @@ struct DraftRecording {
   std::vector<double> driving() const;
   /// Whether what drives the axis was measured, not commanded.
   bool has_measured_input() const;
+  /// Whether each of its values holds until the next, as those of a command do.
+  bool holds_input() const { return hold_reason.empty() ? !has_measured_input() : is_held; }
   bool drives_in_newtons() const;
 };
 
@@ -62,6 +63,7 @@ struct JobDraft {
   bool joined = false;         ///< of two files: their clocks may differ
   std::vector<DraftRecording> recordings = {};
   Structure structure = {};
+  std::optional<FirstLook> look = {};       ///< at what a force drives, see first_look.h
   std::optional<StarterAxis> starter = {};  ///< none where an axis file is given
   std::vector<DraftParameter> parameters = {};
   std::vector<std::string> guesses = {};  ///< what the user should look at
@@ -82,9 +84,6 @@ struct JobDraft {
   /// the same motion. Steps are no noise: at rest they are an offset. A direct drive needs the
   /// position all the same, for what the velocity says little of: slow friction.
   bool is_rounded_away(const GuessedColumn& position, const RecordingGuess& recording) const;
-  /// The force balance of a recording, with gravity where that leaves clearly less of the force
-  /// unbalanced.
-  std::optional<ForceBalance> balance_of(const DraftRecording& recording) const;
 };
 
 /// The signal that a kind is measured as.

@@ -122,16 +122,15 @@ std::string input_text(const JobDraft& draft, const DraftRecording& recording,
           taken, draft.quantity("K_f").quantity.unit));
   }
   std::pair<std::string, std::string> hold;
-  const bool in_newtons = recording.drives_in_newtons(),
-             is_linear = recording.has_measured_input() != recording.has_other_hold;
+  const bool in_newtons = recording.drives_in_newtons(), is_linear = !recording.holds_input();
   if (is_linear != in_newtons)  // else the default of the key
     hold = {"hold", is_linear ? "linear" : "zero_order"};
-  if (!hold.first.empty() || recording.has_other_hold)
+  if (!hold.first.empty() || !recording.hold_reason.empty())
     written.reasons.push_back(std::string(is_linear ? "it goes straight from one sample to the next"
                                                     : "each value holds until the next") +
-                              (recording.has_other_hold ? ": so the motion goes better with it"
-                               : is_linear              ? ", as what is measured does"
-                                                        : ", as what is commanded does"));
+                              (!recording.hold_reason.empty() ? recording.hold_reason
+                               : is_linear                    ? ", as what is measured does"
+                                                              : ", as what is commanded does"));
   return reasons_text(written, 6) +
          fmt::format("      {}: {}\n", draft.say(recording.input->key),
                      column_map(written, unit, hold, recording.input_file, recording.input_offset));

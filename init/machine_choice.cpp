@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/deadline.h"
 #include "fit/judge/series.h"
 #include "init/starter_axis.h"
 #include "io/config/job_file.h"
@@ -51,6 +52,10 @@ void mark_examples(InitialJob& created, const JobFile& read) {
                   fmt::join(names, ", ")));
 }
 
+/// Of processors. What explains a recording does so at once; a stiff gear that does not would take
+/// minutes.
+constexpr double kSecondsOfATrial = 2.0, kSecondsOfAnother = 8.0;
+
 struct Trial {
   std::size_t place;  ///< in the order of trials: one mass first
   TriedAxis result;
@@ -63,55 +68,92 @@ struct Trial {
     context.report({.phase = "trying " + result.name});
     Job tried = read;
     tried.options.attempts = attempts;
-    result.error = error_of(tried, estimate(tried, context.quiet()));
+    const Deadline deadline(context.stop, attempts > 1 ? kSecondsOfAnother : kSecondsOfATrial);
+    RunContext within = context.quiet();
+    within.stop = deadline.flag();
+    try {
+      result.error = error_of(tried, estimate(tried, within));
+    } catch (const Interrupted&) {  // no fit within that time
+      if (is_set(context.stop)) throw;
+    }
   }
 };
 
 }  // namespace
 
 MachineChoice choose_machine(const std::vector<std::string>& recordings, const std::string& folder,
-                             const std::vector<ColumnAnswer>& answers, const RunContext& context) {
-  const std::vector<std::string> machines = machines_for(recordings, answers);
-  if (machines.empty()) return {initial_job(recordings, {}, folder, {}, answers), {}};
-  std::vector<Trial> trials;
-  std::string refusal;
-  std::vector<std::string> names{kMass};
-  names.insert(names.end(), machines.begin(), machines.end());
+                             const std::vector<ColumnAnswer>& answers, const RunContext& context,
+                             int threads) {
+  constexpr std::size_t kMostSamples = 20000;  // of fits that take seconds
+  constexpr double kExplained = 0.02;          // of the input
   MachineChoice choice;
-  for (const std::string& name : names) {
+  std::string refusal;
+  try {
+    choice.job = initial_job(recordings, {}, folder, {}, answers, false, context);
+  } catch (const std::runtime_error& error) {
+    // Columns that do not suit one mass may suit another axis.
+    refusal = error.what();
+  }
+  // Where the sign of the input is open, no machine can be told from another.
+  const bool is_told = refusal.empty() && choice.job.look &&
+                       (choice.job.look->unexplained < kExplained ||
+                        choice.job.look->direction == FirstLook::Direction::open);
+  if (is_told) return choice;
+  const std::vector<std::string> machines = machines_for(recordings, answers);
+  std::vector<Trial> trials;
+  const auto try_axis = [&](const std::string& name, InitialJob made) {
+    Trial trial{trials.size(), {name, {}, 0}, std::move(made), {}};
+    const JobFile read = read_job_draft(trial.job.files, folder);
+    if (name != kMass) mark_examples(trial.job, read);
+    trial.read = read.job;
+    trial.read.options.threads = threads;
+    trial.result.parameters = read.job.free.size();
     try {
-      const bool is_machine = name != kMass;
-      Trial trial{trials.size(),
-                  {name, {}, 0},
-                  initial_job(recordings, is_machine ? name : "", folder, {}, answers, is_machine),
-                  {}};
-      const JobFile read = read_job_draft(trial.job.files, folder);
-      if (is_machine) mark_examples(trial.job, read);
-      trial.read = read.job;
-      trial.result.parameters = read.job.free.size();
       trial.fit(1, context);
-      choice.is_validated = read.job.recordings.size() > 1;
-      trials.push_back(std::move(trial));
+    } catch (const Interrupted&) {
+      trial.job.guesses.emplace_back(
+          "which kind of axis it is was not looked at, since the run was stopped");
+    }
+    choice.is_validated = read.job.recordings.size() > 1;
+    trials.push_back(std::move(trial));
+  };
+  const auto samples_of = [&](const InitialJob& made) {
+    std::size_t samples = 0;
+    for (const Recording& r : read_job_draft(made.files, folder).job.recordings)
+      samples += r.times.size();
+    return samples;
+  };
+  if (machines.empty() || (refusal.empty() && samples_of(choice.job) > kMostSamples)) {
+    if (!refusal.empty()) throw std::runtime_error(refusal);
+    return choice;
+  }
+  if (refusal.empty()) try_axis(kMass, choice.job);
+  for (const std::string& name : machines) {
+    if (is_set(context.stop)) break;
+    try {
+      try_axis(name, initial_job(recordings, name, folder, {}, answers, true, context));
     } catch (const std::runtime_error& error) {
-      // Columns that do not suit one axis may suit another.
       if (refusal.empty()) refusal = error.what();
     }
   }
   if (trials.empty()) throw std::runtime_error(refusal);
-  const auto best = [&] { return std::ranges::min_element(trials, {}, &Trial::error)->error(); };
   // What explains the recordings does so at once, but for axes whose valleys are narrow.
   constexpr double kExplains = 3.0;
   for (Trial& t : trials)
-    if (t.read.options.starts > 1 && best() > kExplains) t.fit(t.read.options.attempts, context);
-  constexpr double kAsGood = 1.05;
+    if (t.read.options.starts > 1 && !is_set(context.stop) &&
+        std::ranges::min_element(trials, {}, &Trial::error)->error() > kExplains)
+      t.fit(t.read.options.attempts, context);
+  constexpr double kAsGood = 1.05, kFits = 10.0;
   std::ranges::stable_sort(trials, {}, &Trial::error);
-  const auto as_good = [&](const Trial& t) {
-    return t.error() <= kAsGood * trials.front().error();
-  };
-  const auto end = std::ranges::find_if_not(trials, as_good);
-  const auto chosen = std::ranges::min_element(trials.begin(), end, {}, [](const Trial& t) {
-    return std::pair(t.result.parameters, t.place);
-  });
+  choice.is_explained = trials.front().error() <= kFits;
+  const auto mass = std::ranges::find(trials, kMass, [](const Trial& t) { return t.result.name; });
+  const auto end = std::ranges::find_if_not(
+      trials, [&](const Trial& t) { return t.error() <= kAsGood * trials.front().error(); });
+  const auto chosen = !choice.is_explained && mass != trials.end()
+                          ? mass
+                          : std::ranges::min_element(trials.begin(), end, {}, [](const Trial& t) {
+                              return std::pair(t.result.parameters, t.place);
+                            });
   std::rotate(trials.begin(), chosen, chosen + 1);
   choice.job = std::move(trials.front().job);
   for (Trial& t : trials) choice.tried.push_back(std::move(t.result));

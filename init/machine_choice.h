@@ -22,17 +22,21 @@ struct TriedAxis {
 struct MachineChoice {
   InitialJob job;
   std::vector<TriedAxis> tried;  ///< those that the columns suit, the chosen one first
+  bool is_explained = true;      ///< the chosen one leaves less than ten times the noise
   bool is_validated = false;     ///< the errors are of a recording that was not fitted
 };
 
-/// As initial_job() without an axis, but that it fits every machine which the columns suit, and one
-/// mass, and takes the one with the smallest error: of those within a twentieth of it that with
-/// the fewest parameters. Recordings of more than 50000 samples and those of a velocity loop are
-/// not tried: tried is then empty.
+/// As initial_job() without an axis. Where the first look leaves more of the force than one mass
+/// with friction may, and tells the sign of the input, it also fits every machine which the columns
+/// suit, and takes the one with the smallest error: of those within a twentieth of it that with the
+/// fewest parameters. One that leaves more than ten times the noise is no better than one mass.
+/// Recordings of more than 20000 samples and those of a velocity loop are not tried: tried is then
+/// empty.
 ///
-/// Throws std::runtime_error where the recordings make no job, and Interrupted.
+/// When the stop flag is set, it is one of those that were tried, or one mass. Throws
+/// std::runtime_error where the recordings make no job.
 MachineChoice choose_machine(const std::vector<std::string>& recordings, const std::string& folder,
                              const std::vector<ColumnAnswer>& answers = {},
-                             const RunContext& context = {});
+                             const RunContext& context = {}, int threads = 0);
 
 }  // namespace axisfit

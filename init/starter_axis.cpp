@@ -80,14 +80,21 @@ StarterAxis velocity_loop_starter(const std::string& recording) {
 }
 
 StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
-  const bool sound = seen.balance && seen.balance->mass > 0.0 && seen.balance->correlation > 0.3;
+  const bool sound = seen.look && seen.look->shows_mass();
   const Vocabulary vocabulary = vocabulary_of(seen.structure);
   const bool turns = vocabulary.joint == Joint::revolute;
-  const ForceBalance balance = sound ? *seen.balance : ForceBalance{.mass = turns ? 0.01 : 1.0};
+  // A mass that does not show takes little of the input.
+  constexpr double kLittle = 0.1;
+  FirstLook look = seen.look.value_or(FirstLook{});
+  if (!seen.look)
+    look.mass.value = turns ? 0.01 : 1.0;
+  else if (!sound)
+    look.mass.value = kLittle * look.largest_mass;
+  const bool has_gravity = look.gravity_sine.value != 0.0 || look.gravity_cosine.value != 0.0;
   const bool gain_guessed = !seen.is_force && !seen.gain;
   double gain = seen.gain.value_or(1.0);
   if (gain_guessed && !turns)
-    while (balance.mass * gain < 0.1 && gain < 1e6) gain *= 10.0;
+    while (look.mass.value * gain < 0.1 && gain < 1e6) gain *= 10.0;
   const double input = seen.largest_input > 0.0 ? seen.largest_input : 1.0;
 
   StarterAxis starter;
@@ -98,7 +105,7 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
   const auto quantity = [&](const char* name) -> const Quantity& {
     return quantity_list(vocabulary)[quantity_index(name)].quantity;
   };
-  if (sound && seen.has_gravity) starter.structure.effects.set(*effect_named("pendulum_gravity"));
+  if (has_gravity) starter.structure.effects.set(*effect_named("pendulum_gravity"));
   const double most = starter.largest_force =
       std::min(round_to_digits(input * gain, 2), quantity("constant_force.F_0").upper);
   const auto within = [](double value, double lower, double upper) {
@@ -114,9 +121,9 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
     return fmt::format("{}: {}", q.symbol, with_unit(within(value, lower, most), q.unit));
   };
   const auto say = [&](const char* text) { return words_on(vocabulary, text); };
-  // A fit on a logarithmic scale must not start at zero.
-  const double viscous = balance.viscous > 0.0 ? balance.viscous * gain
-                                               : 0.1 * most / std::max(seen.largest_speed, 1e-3);
+  // The scale of the fit goes by the initial value, which must not be next to nothing.
+  const double viscous =
+      std::max(look.viscous.value * gain, 0.01 * most / std::max(seen.largest_speed, 1e-3));
   starter.text = fmt::format(
       "{}# One {} with viscous and Coulomb friction, driven by a {}: the simplest model\n# of an "
       "axis. fit-params reports what it lacks, and --close-loop adds it. All\n# keys: "
@@ -128,16 +135,16 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
       drive_name(seen.structure.drive, vocabulary.joint), sanitized(seen.column), say("arm"),
       gain_guessed ? "guessed: [K_f]   # delete this line when it is that of a data sheet\n" : "",
       gain_comment(seen), with_unit(gain, quantity("K_f").unit),
-      sound ? "Fitted by the job; initial values from an impulse balance."
-            : "GUESSED, because no impulse balance could be computed; fitted by the job.",
-      initial("M", balance.mass * gain), initial("B_a", viscous),
-      force("coulomb_friction.F_c", std::max(balance.coulomb * gain, 0.01 * most), 0.0),
-      say("constant_force"), force("constant_force.F_0", -balance.constant * gain, -most));
-  if (sound && seen.has_gravity)
+      seen.look ? "Fitted by the job; initial values from the balance of forces."
+                : "GUESSED, because no balance of forces could be computed; fitted by the job.",
+      initial("M", look.mass.value * gain), initial("B_a", viscous),
+      force("coulomb_friction.F_c", std::max(look.coulomb.value * gain, 0.01 * most), 0.0),
+      say("constant_force"), force("constant_force.F_0", -look.constant.value * gain, -most));
+  if (has_gravity)
     starter.text += fmt::format(
         "  pendulum_gravity: {{{}, {}}}   # weight times lever; where it hangs is found\n",
-        force("pendulum_gravity.G_s", balance.gravity_sine * gain, -most),
-        force("pendulum_gravity.G_c", balance.gravity_cosine * gain, -most));
+        force("pendulum_gravity.G_s", look.gravity_sine.value * gain, -most),
+        force("pendulum_gravity.G_c", look.gravity_cosine.value * gain, -most));
   return starter;
 }
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "init/force_balance.h"
+#include "fit/first_look/first_look.h"
 #include "sim/model.h"
 
 namespace axisfit {
@@ -36,15 +36,14 @@ struct DrivenMass {
   bool is_force = false;       ///< the column is the force itself
   double largest_input = 0.0;  ///< either way
   double largest_speed = 1.0;  ///< m/s
-  std::optional<ForceBalance> balance;
+  std::optional<FirstLook> look;
   std::optional<double> gain{};  ///< K_f, of an input that is no force, where the user knows it
-  bool has_gravity = false;      ///< the balance has it
 };
 
 /// A force source that moves one mass with viscous and Coulomb friction and a constant force. Where
 /// the input is no force and its gain not known, that is the power of ten, at least 1 N/V, that
 /// makes the mass 0.1 kg or more: motion does not show the gain. On a revolute joint it is 1 N m/V,
-/// and the axis has the gravity that the balance has.
+/// and the axis has the gravity that the first look has.
 StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen);
 
 }  // namespace axisfit

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "fit/data/recording_check.h"
-#include "init/force_balance.h"
+#include "fit/first_look/first_look.h"
 
 namespace axisfit {
 namespace {
@@ -43,11 +43,13 @@ std::optional<Inferred> find_driver(const Values& times, const Values& position,
   std::optional<Inferred> driver;
   double best = 0.0;
   for (const auto& [c, values] : free) {
-    const auto balance = force_balance(times, position, velocity, values);
-    if (!balance || balance->correlation <= best) continue;
-    best = balance->correlation;
+    const DrivenMotion motion{times, position, velocity, values};
+    const auto look = first_look(std::span(&motion, 1));
+    if (!look || look->direction != FirstLook::Direction::along || look->explained() <= best)
+      continue;
+    best = look->explained();
     driver = Inferred{c, Kind::command,
-                      fmt::format("no column has a name; this one goes with the acceleration "
+                      fmt::format("no column has a name; this one goes with the motion "
                                   "(correlation {:.2f}), as what drives the axis does",
                                   best)};
   }

@@ -66,11 +66,11 @@ TEST_F(InputChoiceTest, TheSignOfAColumnIsThatOfAllRecordings) {
   folder_.write("b.csv", back);
   const auto sign_guess = [&] {
     for (const std::string& text : make({"a.csv", "b.csv"}).guesses)
-      if (text.find("opposite direction") != std::string::npos) return text;
+      if (text.find("the power that friction takes") != std::string::npos) return text;
     return std::string();
   };
   std::string text = sign_guess();
-  EXPECT_NE(text.find(" in a, -"), std::string::npos) << text;
+  EXPECT_NE(text.find("comes out as -"), std::string::npos) << text;
   EXPECT_NE(text.find(": its sign was inverted"), std::string::npos) << text;
   expect_the_driven_mass(fitted(read()), 1.0 / 60.0);
   // One of them says the contrary.

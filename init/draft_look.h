@@ -1,0 +1,28 @@
+// The first look at the recordings of a draft, and what a job takes from it.
+#pragma once
+
+#include <span>
+
+#include "fit/first_look/first_look.h"
+#include "init/job_draft.h"
+
+namespace axisfit {
+
+/// A recording as a first look takes it, with what drives it. Both must outlive the result.
+DrivenMotion driven_motion(const RecordingGuess& recording, std::span<const double> input);
+
+/// At all recordings together; with gravity on a joint where that leaves clearly less of the input.
+/// None for drives that are no source of force, and where too little moves.
+std::optional<FirstLook> look_at(const JobDraft& draft);
+
+/// The input has one sign in all recordings. It is turned if the axis would have to be driven by
+/// its own friction otherwise, or by a mass below zero; where neither tells, it is asked. Of a
+/// velocity loop the motion goes the way of the input.
+void correct_signs(JobDraft& draft);
+
+/// Takes the hold of the input, and the time by which the motion follows it, from the first look:
+/// that time is free where it is clearly more than half a sample. What was commanded is held, and
+/// so is what stays in steps; what was measured is not, unless that makes the time as good as zero.
+void set_timing(JobDraft& draft);
+
+}  // namespace axisfit

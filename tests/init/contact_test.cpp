@@ -1,0 +1,111 @@
+// Recordings on which --init once went wrong, of machines that were simulated by programs that
+// share nothing with this project (testdata/README.md): what is true of them is found without an
+// edit.
+#include <gtest/gtest.h>
+
+#include "tests/init/made_job.h"
+
+namespace axisfit {
+namespace {
+
+class ContactTest : public InitJobTest {
+ protected:
+  InitialJob contact(const std::vector<std::string>& files, std::optional<double> gain = {}) {
+    std::vector<std::string> paths;
+    for (const std::string& file : files) paths.push_back(AXISFIT_TESTDATA "/contact/" + file);
+    return make(paths, {}, gain);
+  }
+  /// The fit of the job that was made.
+  FitResult fit() {
+    job_ = read().job;
+    return estimate(job_);
+  }
+  const ParameterResult& of(const FitResult& result, const std::string& name) const {
+    for (const ParameterResult& p : result.parameters)
+      if (job_.entry(p.id.quantity).name == name) return p;
+    throw std::logic_error("not free: " + name);
+  }
+  static void expect_within(const ParameterResult& found, double truth, double errors = 4.0) {
+    EXPECT_NEAR(found.value, truth, errors * found.uncertainty.standard_error);
+    EXPECT_LT(found.uncertainty.standard_error, 0.1 * std::abs(truth));
+  }
+
+  Job job_;
+};
+
+// The mass comes out below zero, since friction that is stored looks like one; the work that
+// friction takes does not.
+TEST_F(ContactTest, ATorqueIsNotTurnedForAMassThatIsNoise) {
+  const InitialJob made = contact({"joint-friction-dominated.csv"});
+  ASSERT_TRUE(made.look);
+  EXPECT_LT(made.look->mass.value, 0.0);
+  EXPECT_EQ(made.look->direction, FirstLook::Direction::along);
+  EXPECT_GT(made.look->dissipation.distance(), 10.0);
+  const FitResult found = fit();
+  ASSERT_TRUE(found.is_usable()) << found.message;
+  EXPECT_NEAR(of(found, "B_a").value, 0.06, 0.02);
+  EXPECT_NEAR(of(found, "coulomb_friction.T_c").value, 0.22, 0.02);
+  EXPECT_EQ(of(found, "J").uncertainty.verdict(), ParameterVerdict::at_zero);
+}
+
+TEST_F(ContactTest, AFrictionThatIsNoneIsZero) {
+  contact({"no-viscous-friction.csv"});
+  const FitResult found = fit();
+  ASSERT_TRUE(found.is_usable()) << found.message;
+  EXPECT_NEAR(of(found, "J").value, 2.2e-4, 1e-6);
+  EXPECT_NEAR(of(found, "coulomb_friction.T_c").value, 0.02, 2e-4);
+  const ParameterResult& viscous = of(found, "B_a");
+  EXPECT_EQ(viscous.uncertainty.verdict(), ParameterVerdict::at_zero);
+  EXPECT_LT(viscous.uncertainty.upper, 1e-5);
+  // The velocity reads 2 ms late, and the torque holds for a sample.
+  EXPECT_NEAR(of(found, "T_d").value, 0.0015, 1e-4);
+}
+
+TEST_F(ContactTest, TenHertzAreEnough) {
+  contact({"ten-hertz.csv"});
+  const FitResult found = fit();
+  ASSERT_TRUE(found.is_usable()) << found.message;
+  EXPECT_NEAR(of(found, "M").value, 200.0, 30.0);
+  EXPECT_NEAR(of(found, "coulomb_friction.F_c").value, 15.0, 2.0);
+}
+
+TEST_F(ContactTest, AMotorGoesWithItsOwnCurrent) {
+  contact({"two-motors.csv"}, 1.0);
+  const FitResult found = fit();
+  ASSERT_TRUE(found.is_usable()) << found.message;
+  EXPECT_LT(found.reduced_chi_square, 1.2);
+}
+
+TEST_F(ContactTest, TheReferenceIsNotFitted) {
+  contact({"q-and-q-des.csv"});
+  const FitResult found = fit();
+  ASSERT_TRUE(found.is_usable()) << found.message;
+  EXPECT_NEAR(of(found, "M").value, 0.5, 1e-3);
+  EXPECT_NEAR(of(found, "B_a").value, 0.4, 0.01);
+}
+
+TEST_F(ContactTest, AVoltageThatStaysInStepsIsHeld) {
+  contact({"elevator-quasistatic-forward.csv", "elevator-dynamic-forward.csv",
+           "elevator-dynamic-reverse.csv", "elevator-quasistatic-reverse.csv"},
+          1.0);
+  const FitResult found = fit();
+  ASSERT_TRUE(found.is_usable()) << found.message;
+  for (const Recording& r : job_.recordings) EXPECT_EQ(r.command.hold, Hold::zero_order);
+  EXPECT_NEAR(of(found, "M").value, 0.327, 0.003);
+  EXPECT_NEAR(of(found, "B_a").value, 3.060, 0.003);
+  EXPECT_NEAR(of(found, "coulomb_friction.F_c").value, 1.01, 0.003);
+  EXPECT_NEAR(std::abs(of(found, "constant_force.F_0").value), 0.211, 0.003);
+}
+
+// Steps of one size show friction only together with the gain: what they do not tell is not said.
+TEST_F(ContactTest, AStepInTheFirstSampleIsNoSpeed) {
+  contact({"step-at-start-a.csv", "step-at-start-b.csv"}, 1.0);
+  const FitResult found = fit();
+  ASSERT_TRUE(found.is_usable()) << found.message;
+  for (const Recording& r : job_.recordings)
+    for (const auto& [quantity, value] : r.overrides)
+      EXPECT_NEAR(value, 0.0, 1e-6) << "the axis begins at rest";
+}
+
+}  // namespace
+}  // namespace axisfit
