@@ -170,8 +170,8 @@ void set_timing(JobDraft& draft) {
   const auto try_hold = [&](bool is_held, const std::string& reason) {
     const double before = chi_square_of(draft);
     set_hold(is_held, reason);
-    constexpr double kClearly = 0.5;
-    if (chi_square_of(draft) < kClearly * before) return true;
+    constexpr double kBetter = 0.99;  // thousands of samples make less than that by chance
+    if (chi_square_of(draft) < kBetter * before) return true;
     set_hold(false, {});
     return false;
   };

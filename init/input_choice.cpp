@@ -46,19 +46,30 @@ std::vector<double> at_times(const std::vector<double>& times, const std::vector
   return result;
 }
 
-/// By how much later, or earlier, than if both had begun together.
+/// What is added to the clock of the input for the motion to follow it.
 double best_offset(const DraftRecording& motion, const std::vector<double>& clock,
                    const std::vector<double>& values) {
   const std::vector<double>& times = motion.guess.time.values;
-  double offset = times.front() - clock.front();
-  // Half of the shorter one to either side, and then what a first look tells more closely.
-  double reach = 0.5 * std::min(times.back() - times.front(), clock.back() - clock.front());
-  for (int look = 0; look < 3; ++look, reach *= 0.02) {
-    const std::vector<double> input = at_times(times, clock, values, offset);
+  double offset = times.front() - clock.front(), least = INFINITY;
+  const auto look_at = [&](double from, double reach) {
+    const std::vector<double> input = at_times(times, clock, values, from);
     const DrivenMotion driven = driven_motion(motion.guess, input);
     const auto found =
-        first_look(std::span(&driven, 1), {.least_delay = -reach, .longest_delay = reach});
-    if (found) offset += found->delay.value;
+        first_look(std::span(&driven, 1),
+                   {.least_delay = -reach, .longest_delay = reach, .by_evidence = true});
+    if (!found || !(found->unexplained < least)) return;
+    least = found->unexplained;
+    offset = from + found->delay.value;
+  };
+  // As if both had begun together, and from there half of the shorter one to either side.
+  constexpr int kLooks = 12;
+  const double step =
+      0.5 * std::min(times.back() - times.front(), clock.back() - clock.front()) / kLooks;
+  const double begin = offset;
+  for (int k = -kLooks; k <= kLooks; ++k) look_at(begin + k * step, 0.6 * step);
+  for (const double reach : {0.2 * step, 0.02 * step}) {
+    least = INFINITY;
+    look_at(offset, reach);
   }
   return offset;
 }

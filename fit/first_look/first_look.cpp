@@ -25,7 +25,9 @@ constexpr std::size_t kShortestWindow = 8, kLongestWindow = 4096;  // samples
 constexpr std::size_t kWindowsPerMotion = 8;                       // at least
 constexpr std::size_t kMostWindows = 4000;  // of a recording, which bounds the time
 constexpr std::size_t kOverlap = 4;         // windows over each sample
-constexpr std::size_t kMostDelays = 120;    // of the first search
+/// Logarithm of the likelihood ratio, beyond which a delay is one.
+constexpr double kClearlyMore = 10.0;
+constexpr std::size_t kMostDelays = 120;  // of the first search
 /// Part of a window that may be at rest, where friction has any value.
 constexpr double kMostRest = 0.3;
 /// Of the highest speed, that counts as rest.
@@ -364,6 +366,7 @@ double best_delay(const Balance& balance, const Regression& regression,
       best = delay;
     }
   };
+  const double at_once = least;
   for (double delay = step; delay <= highest; delay += step) look_at(delay);
   for (double delay = -step; delay >= lowest; delay -= step) look_at(delay);
   for (; step > 0.02 * interval; step *= 0.5) {
@@ -371,7 +374,9 @@ double best_delay(const Balance& balance, const Regression& regression,
     look_at(middle - 0.5 * step);
     look_at(middle + 0.5 * step);
   }
-  return best;
+  // A delay that explains hardly more than none does is none: what the model lacks may prefer any.
+  const double independent = static_cast<double>(balance.terms.rows()) / (2.0 * kOverlap);
+  return independent * std::log(at_once / least) > kClearlyMore ? best : 0.0;
 }
 
 FirstLook::Direction direction_of(const FirstLook& look) {
@@ -474,6 +479,10 @@ std::optional<FirstLook> look_through(const std::vector<Grid>& grids, std::size_
   look.unexplained = left.norm() / inputs.norm();
   look.window = static_cast<double>(samples) * interval;
   look.direction = direction_of(look);
+  if (options.by_evidence) {
+    information = -static_cast<double>(left.size()) * std::log(std::max(1e-6, look.unexplained));
+    return look;
+  }
   // What the balance does not have may explain all of the input.
   information = 0.0;
   for (Index place = 0; place < 4; ++place) {
@@ -492,8 +501,11 @@ bool changes(std::span<const double> values) {
 
 std::optional<FirstLook> first_look(std::span<const DrivenMotion> motions,
                                     const FirstLookOptions& options) {
-  std::optional<FirstLook> best;
-  double most = -INFINITY;
+  struct Look {
+    FirstLook found;
+    double information;
+  };
+  std::vector<Look> looks;
   for (const bool of_position : {true, false}) {
     std::vector<Grid> grids;
     std::size_t longest = 0;
@@ -508,11 +520,20 @@ std::optional<FirstLook> first_look(std::span<const DrivenMotion> motions,
     for (std::size_t samples = kShortestWindow;
          samples <= std::min(kLongestWindow, longest / kWindowsPerMotion); samples *= 2) {
       double information = 0.0;
-      const auto look = look_through(grids, samples, of_position, options, information);
-      if (!look || !(information > most)) continue;
-      most = information;
-      best = look;
+      if (const auto look = look_through(grids, samples, of_position, options, information))
+        looks.push_back({*look, information});
     }
+  }
+  // Where short windows, or the other signal, leave clearly more, they show what a mass is not.
+  constexpr double kClearly = 1.15, kHardlyAnything = 0.02;
+  double least = INFINITY, most = -INFINITY;
+  for (const Look& look : looks) least = std::min(least, look.found.unexplained);
+  std::optional<FirstLook> best;
+  for (const Look& look : looks) {
+    const bool is_clearly_worse = look.found.unexplained > kClearly * least + kHardlyAnything;
+    if ((is_clearly_worse && !options.by_evidence) || !(look.information > most)) continue;
+    most = look.information;
+    best = look.found;
   }
   return best;
 }

@@ -36,6 +36,9 @@ struct FirstLookOptions {
   bool with_gravity = false;    ///< on a joint; needs positions
   double least_delay = -0.02;   ///< s, from which delays are tried, within half a recording ...
   double longest_delay = 0.25;  ///< s, ... to which
+  /// The length of the windows is that which explains the most, not that which tells the most: for
+  /// a delay that may be anything, since short windows tell a lot of what is not there.
+  bool by_evidence = false;
 };
 
 /// Forces are in units of the input.

@@ -7,11 +7,23 @@
 #include "fit/solve/parameters.h"
 
 namespace axisfit {
+namespace {
+
+/// At a bound that is not the lower end of the quantity, where it has as good as no part in the
+/// axis.
+bool is_stuck(const Job& job, const FreeParameter& free, const ParameterResult& found) {
+  const double end = job.entry(free.quantity).quantity.lower;
+  const bool is_at_end = end >= 0.0 && free.lower == end && found.value == end;
+  return found.uncertainty.verdict() == ParameterVerdict::at_bound && !is_at_end;
+}
+
+}  // namespace
+
 bool is_misfit(const SearchState& state, SelectionVerdict& verdict) {
   const Job& declared = state.chain.declared().job;
   const FittedModel& last = state.current();
   for (std::size_t i = 0; i < declared.free.size() && !verdict.at_bound; ++i)
-    if (last.fit.parameters[i].uncertainty.verdict() == ParameterVerdict::at_bound)
+    if (is_stuck(declared, last.job.free[i], last.fit.parameters[i]))
       verdict.at_bound = last.fit.parameters[i].id;
   for (std::size_t r = 0; r < last.job.recordings.size(); ++r) {
     const double percent = percent_of_drive(missing_force(last.job, last.fit, r));
