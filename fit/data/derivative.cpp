@@ -10,13 +10,14 @@
 
 namespace axisfit {
 
-std::vector<double> on_even_grid(std::span<const double> times, std::vector<double> values) {
+std::vector<double> on_even_grid(std::span<const double> times, std::span<const double> values,
+                                 double delay) {
   const double interval = mean_interval(times);
   std::vector<double> even;
   even.reserve(values.size());
   std::size_t k = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const double t = times.front() + static_cast<double>(i) * interval;
+    const double t = times.front() + static_cast<double>(i) * interval - delay;
     while (k + 2 < values.size() && times[k + 1] < t) ++k;
     const double share = std::clamp((t - times[k]) / (times[k + 1] - times[k]), 0.0, 1.0);
     even.push_back(values[k] + share * (values[k + 1] - values[k]));

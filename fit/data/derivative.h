@@ -6,9 +6,10 @@
 
 namespace axisfit {
 
-/// Values (at `times`, s, increasing) at the instants of an even grid of as many, linear in
-/// between.
-std::vector<double> on_even_grid(std::span<const double> times, std::vector<double> values);
+/// Values (at `times`, s, increasing, two or more) at the instants of an even grid of as many,
+/// `delay` (s) before each: linear in between, constant beyond both ends.
+std::vector<double> on_even_grid(std::span<const double> times, std::span<const double> values,
+                                 double delay = 0.0);
 
 /// Derivative per second of values `interval` (s) apart; zero at both ends.
 std::vector<double> central_differences(const std::vector<double>& values, double interval);

@@ -92,7 +92,7 @@ std::optional<std::vector<double>> truth_of(const Recording& recording, const Mo
   if (!std::ranges::all_of(values, [](double x) { return std::isfinite(x); })) return std::nullopt;
   const double late =
       (instrument.lag + instrument.delay) / mean_interval(recording.times) + delay_of(m->filter);
-  values = on_even_grid(recording.times, std::move(values));
+  values = on_even_grid(recording.times, values);
   return late > 0.0 ? advanced(values, late) : values;
 }
 

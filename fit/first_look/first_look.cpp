@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "base/linear_algebra.h"
+#include "fit/data/derivative.h"
 #include "fit/data/noise.h"
+#include "sim/sampling.h"
 
 namespace axisfit {
 namespace {
@@ -63,33 +65,17 @@ struct Window {
   std::vector<double> value, slope, bend;  ///< times the interval, so that sums are integrals
 };
 
-/// Linear between samples, constant beyond.
-std::vector<double> on_grid(std::span<const double> times, std::span<const double> values,
-                            double interval, std::size_t count, double delay) {
-  std::vector<double> result(count);
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double t = times.front() + static_cast<double>(i) * interval - delay;
-    if (i == 0 || times[k] > t) k = 0;
-    while (k + 2 < times.size() && times[k + 1] <= t) ++k;
-    const double part = std::clamp((t - times[k]) / (times[k + 1] - times[k]), 0.0, 1.0);
-    result[i] = values[k] + part * (values[k + 1] - values[k]);
-  }
-  return result;
-}
-
 /// One recording on an even grid.
 class Grid {
  public:
   Grid(const DrivenMotion& motion, bool of_position) : motion_(motion), of_position_(of_position) {
     count_ = motion.times.size();
-    interval_ = (motion.times.back() - motion.times.front()) / static_cast<double>(count_ - 1);
+    interval_ = mean_interval(motion.times);
     const std::span<const double> readings = of_position ? motion.position : motion.velocity;
-    values_ = on_grid(motion.times, readings, interval_, count_, 0.0);
+    values_ = on_even_grid(motion.times, readings);
     // What a column says of a motion that it was rounded to is no better than its steps.
     noise_ = std::max(noise_from_differences(readings), resolution_of(readings) / std::sqrt(12.0));
-    if (!motion.position.empty())
-      positions_ = on_grid(motion.times, motion.position, interval_, count_, 0.0);
+    if (!motion.position.empty()) positions_ = on_even_grid(motion.times, motion.position);
   }
 
   double interval() const { return interval_; }
@@ -122,7 +108,7 @@ class Grid {
   }
 
   std::vector<double> input(double delay) const {
-    return on_grid(motion_.times, motion_.input, interval_, count_, delay);
+    return on_even_grid(motion_.times, motion_.input, delay);
   }
   const std::vector<double>& values() const { return values_; }
   const std::vector<double>& positions() const { return positions_; }

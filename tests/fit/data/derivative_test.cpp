@@ -45,7 +45,10 @@ TEST(Derivative, LetsThroughLittleNoise) {
 
 TEST(EvenGrid, InterpolatesBetweenTimes) {
   const std::vector<double> times{0.0, 1.0, 4.0};
-  EXPECT_EQ(on_even_grid(times, {1.0, 2.0, 5.0}), (std::vector<double>{1.0, 3.0, 5.0}));
+  const std::vector<double> values{1.0, 2.0, 5.0};
+  EXPECT_EQ(on_even_grid(times, values), (std::vector<double>{1.0, 3.0, 5.0}));
+  // Earlier by a delay; constant before the first.
+  EXPECT_EQ(on_even_grid(times, values, 1.0), (std::vector<double>{1.0, 2.0, 4.0}));
 }
 
 }  // namespace
