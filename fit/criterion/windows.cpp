@@ -31,7 +31,8 @@ WindowStart start_at(const Recording& recording, std::size_t sample) {
   const std::size_t first = sample - std::min(sample, kAround);
   const std::size_t count = std::min(2 * kAround + 1, recording.times.size() - first);
   const auto around = [&](const Measurement& m) {
-    return local_course(recording.times, m.values, first, count, sample, m.sigma);
+    return sample == 0 ? first_course(recording.times, m.values, recording.initial_samples, m.sigma)
+                       : local_course(recording.times, m.values, first, count, sample, m.sigma);
   };
   if (const Measurement* position = recording.find(Signal::position)) {
     const LocalCourse course = around(*position);
@@ -63,16 +64,20 @@ Partition windows_of(const Recording& recording, double length) {
 std::vector<WindowStart> window_starts(const Job& job, std::size_t index) {
   const Recording& recording = job.recordings[index];
   std::vector<WindowStart> starts;
-  const double length = window_length(job.options.criterion);
+  // The model's own state, from which it begins, may be known.
+  const bool knows_start =
+      recording.initial_state == InitialState::given || estimates_initial_state(job, index);
+  const double length = std::holds_alternative<FreeRun>(job.options.criterion) && !knows_start
+                            ? std::numeric_limits<double>::infinity()
+                            : window_length(job.options.criterion);
   if (!(length > 0.0) || recording.command.meaning == Meaning::reference ||
       (recording.find(Signal::position) == nullptr && recording.find(Signal::velocity) == nullptr))
     return starts;
   const Partition windows = windows_of(recording, length);
   for (std::size_t k = 0; k < windows.parts(); ++k)
     starts.push_back(start_at(recording, windows.first(k)));
-  // The model's own state, from which it begins, may be known.
-  if (recording.initial_state == InitialState::given || estimates_initial_state(job, index))
-    starts.front() = {};
+  if (knows_start || recording.knows_position) starts.front().position = {};
+  if (knows_start || recording.knows_velocity) starts.front().velocity = {};
   return starts;
 }
 

@@ -8,6 +8,9 @@
 // out of the Jacobian (variable projection; G. H. Golub and V. Pereyra, SIAM J. Numer. Anal. 10
 // (1973), in the form of L. Kaufman, BIT 15 (1975), whose gradient is exact). All other states go
 // on from window to window. H. G. Bock (1981) has the method for differential equations.
+//
+// A free run whose initial state is unknown is one such window: the samples at its start tell the
+// state only roughly, and what they err by adds up.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,9 +37,9 @@ struct WindowStart {
 Partition windows_of(const Recording& recording, double length);
 
 /// The windows of a recording by the job's criterion, with states from the samples around each
-/// start, unset where not recorded. None where the simulation runs through: by another criterion,
-/// under a controller (whose loop forgets by itself), and where neither position nor velocity was
-/// recorded.
+/// start, unset where not recorded. None where the simulation runs through from a known state: by
+/// another criterion, under a controller (whose loop forgets by itself), and where neither position
+/// nor velocity was recorded.
 std::vector<WindowStart> window_starts(const Job& job, std::size_t recording);
 
 /// How many states of windows a fit of the job estimates besides its parameters.

@@ -63,12 +63,15 @@ LocalCourse first_course(const std::vector<double>& times, const std::vector<dou
 }
 
 void initial_state_from_data(Recording& recording) {
-  const auto set = [&](const char* name, double value) {
-    const std::size_t index = quantity_index(name);
-    const bool given =
-        std::ranges::any_of(recording.overrides, [&](const auto& o) { return o.first == index; });
-    if (!given) recording.overrides.emplace_back(index, value);
+  const auto is_set = [&](const char* name) {
+    return std::ranges::count(recording.overrides, quantity_index(name),
+                              [](const auto& o) { return o.first; }) > 0;
   };
+  const auto set = [&](const char* name, double value) {
+    if (!is_set(name)) recording.overrides.emplace_back(quantity_index(name), value);
+  };
+  recording.knows_position = is_set("initial.y0");
+  recording.knows_velocity = is_set("initial.y1");
   const Measurement* velocity = recording.find(Signal::velocity);
   const std::size_t n = recording.initial_samples;
   if (const Measurement* position = recording.find(Signal::position)) {
@@ -92,6 +95,8 @@ InitialErrors initial_errors(const Recording& recording) {
   }
   if (const Measurement* velocity = recording.find(Signal::velocity))
     errors.velocity = start(*velocity).value_error;
+  if (recording.knows_position) errors.position = 0.0;
+  if (recording.knows_velocity) errors.velocity = 0.0;
   return errors;
 }
 

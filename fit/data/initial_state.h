@@ -31,11 +31,11 @@ LocalCourse first_course(const std::vector<double>& times, const std::vector<dou
 /// Arm position and velocity at the first sample, from the recording's first `initial_samples`
 /// (first_course()): the velocity is that of the recorded velocity, or else the slope of the
 /// position. Adds them to the recording's overrides as initial.y0 and initial.y1, unless they are
-/// there. What was not recorded is not set.
+/// there, and are known. What was not recorded is not set.
 void initial_state_from_data(Recording& recording);
 
 /// Standard errors of an initial state that was taken from the samples, from their noise and the
-/// residuals of the cubic; zero where it was not.
+/// residuals of the cubic; zero where it was not, or is known.
 struct InitialErrors {
   double position = 0.0;  ///< m
   double velocity = 0.0;  ///< m/s

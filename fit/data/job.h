@@ -83,6 +83,8 @@ struct Recording {
   /// The model's channels beyond their zero, one value per sample; none: all at their zero.
   std::vector<Samples> channels{};
   InitialState initial_state = InitialState::given;
+  /// Whether the arm's initial position and velocity are known although the others are from data.
+  bool knows_position = false, knows_velocity = false;
   /// Samples at the start from which an initial state is taken.
   std::size_t initial_samples = 20;
   bool score_initial_samples = true;        ///< false: errors are reported without them

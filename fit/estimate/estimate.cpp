@@ -87,7 +87,7 @@ RecordingResult evaluate_recording(const Job& job, const ParameterSpace& space, 
                                    const Eigen::VectorXd& u, double observer_gain) {
   const Recording& recording = job.recordings[index];
   RecordingResult result;
-  result.free_running = simulate_recording(job, space, index, u.data(), {});
+  result.free_running = simulate_freely(job, space, index, u.data());
   const Observer observer = observer_for(recording, observer_gain);
   if (observer.active())
     result.tracking = simulate_recording(job, space, index, u.data(), observer);

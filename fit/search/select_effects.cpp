@@ -215,8 +215,8 @@ Start start_of(const Job& job, const FitResult& first, const SearchContext& cont
   std::optional<double> least_gain = quiet_gain(job, first);
   start.input_is_noisy = least_gain.has_value();
   const bool was_chosen_to_track = job.choose_criterion && tracks(job.options.criterion);
-  start.tracks =
-      first.is_usable() && (window_states(job) > 0 || start.input_is_noisy || was_chosen_to_track);
+  start.tracks = first.is_usable() && (window_length(job.options.criterion) > 0.0 ||
+                                       start.input_is_noisy || was_chosen_to_track);
   if (!start.tracks) return start;
   if (!least_gain) least_gain = kalman_gain(job, values_of(first));
   start.model = tracking(std::move(start.model),

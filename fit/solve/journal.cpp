@@ -111,11 +111,12 @@ Hash& operator<<(Hash& hash, const Recording& recording) {
   // Not hashed: what it is called; the noise of the command, which only widens errors; how errors
   // are reported; and the standstill, which is in the excluded samples.
   const auto& [name, file, role, times, command, command_sigma, command_noise, measurements,
-               channels, initial_state, initial_samples, score_initial_samples,
-               acceleration_at_standstill, held_out, overrides] = recording;
+               channels, initial_state, knows_position, knows_velocity, initial_samples,
+               score_initial_samples, acceleration_at_standstill, held_out, overrides] = recording;
   hash << role;
   if (role != Role::fit) return hash;
-  hash << times << command << initial_state << initial_samples << held_out << measurements.size();
+  hash << times << command << initial_state << knows_position << knows_velocity << initial_samples
+       << held_out << measurements.size();
   for (const Measurement& m : measurements) hash << m;
   hash << channels.size();
   for (const Samples& values : channels) hash << values;

@@ -166,6 +166,15 @@ SimulatedRecording simulate_recording(const Job& job, const Recording& recording
   return simulated(job, recording, model, observer, {});
 }
 
+SimulatedRecording simulate_freely(const Job& job, const ParameterSpace& space, std::size_t index,
+                                   const double* u) {
+  const Recording& recording = job.recordings[index];
+  std::vector<WindowStart> starts;
+  if (recording.role == Role::fit && std::holds_alternative<FreeRun>(job.options.criterion))
+    starts = RecordingCost(job, space, index, {}).starts(u);
+  return simulated(job, recording, model_at(job, space, u, index), {}, starts);
+}
+
 std::optional<SimulatedRecording> simulate_in_windows(const Job& job, const ParameterSpace& space,
                                                       std::size_t index, const double* u,
                                                       double share) {

@@ -25,7 +25,12 @@ SimulatedRecording simulate_recording(const Job& job, const ParameterSpace& spac
 SimulatedRecording simulate_recording(const Job& job, const Recording& recording,
                                       const Model<double>& model, const Observer& observer);
 
-/// The same without an observer, in the windows of the job's criterion. They begin with the states
+/// The free run that a fit compares with the recording: from the initial state that suits it best,
+/// where the fit estimates that, see window_starts().
+SimulatedRecording simulate_freely(const Job& job, const ParameterSpace& space,
+                                   std::size_t recording, const double* u);
+
+/// Without an observer, in the windows of the job's criterion. They begin with the states
 /// that suit the recording best: all of it, or this share at the beginning of each window, at least
 /// 20 samples. None where it has no windows.
 std::optional<SimulatedRecording> simulate_in_windows(const Job& job, const ParameterSpace& space,
