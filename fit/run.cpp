@@ -9,6 +9,7 @@
 #include "fit/data/validation.h"
 #include "fit/errors/gain_error.h"
 #include "fit/errors/guesses.h"
+#include "fit/errors/hold_shift.h"
 #include "fit/errors/rival_error.h"
 #include "fit/estimate/kalman_gain.h"
 #include "fit/estimate/other_gains.h"
@@ -99,8 +100,26 @@ void find_profiles(RunResult& result, const RunContext& context) {
     result.profiles = profiles(result.job(), result.fit(), chosen, context);
 }
 
+void find_other_days(RunResult& result, const RunContext& context) {
+  if (!result.diagnosis) return;
+  context.report({.phase = "does a recording differ in a few parameters?"});
+  result.other_days = other_days(result.job(), result.fit(), *result.diagnosis, {}, context);
+}
+
+/// Recordings of another day count with the parameters that differ there.
+FitGrade grade_with_other_days(const RunResult& result) {
+  if (result.other_days.empty()) return grade_of(result.job(), result.fit(), result.diagnosis);
+  FitResult fit = result.fit();
+  Diagnosis diagnosis = *result.diagnosis;
+  for (const OtherDay& day : result.other_days) {
+    fit.recordings[day.recording] = day.result;
+    diagnosis.forces[day.recording] = day.force;
+  }
+  return grade_of(result.job(), fit, diagnosis);
+}
+
 void judge(RunResult& result) {
-  result.grade = grade_of(result.job(), result.fit(), result.diagnosis);
+  result.grade = grade_with_other_days(result);
   // Something is missing, though it cannot be told what.
   if (result.grade.grade == Grade::explained && result.selection &&
       (!result.selection->verdict.undecided.empty() ||
@@ -235,6 +254,14 @@ void find_guess_influences(const Job& job, FitResult& fit) {
     fit.parameters[i].rests_on = std::move(found[i]);
 }
 
+/// What is said of the final model's estimates alone.
+void find_hold_shifts(const Job& job, FitResult& fit) {
+  if (!fit.is_usable() || !fit.at_solution) return;
+  const double excess = fit.autocorrelation_time * std::max(1.0, fit.reduced_chi_square);
+  const auto found = hold_shifts(job, fit.parameters, *fit.at_solution, excess, fit.observer_gain);
+  for (std::size_t i = 0; i < found.size(); ++i) fit.parameters[i].other_hold = found[i];
+}
+
 void find_guess_influences(RunResult& result) {
   find_guess_influences(result.baseline, result.first);
   if (!result.selection) return;
@@ -278,8 +305,9 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   parameters_to_profile(result.baseline, options);  // fails before the fit
   choose_criterion(result, context);
   fit_declared_model(result, context);
-  run_stages(result, context,
-             {fit_from_inverse_dynamics, close_loop, analyse_residual, find_profiles});
+  run_stages(
+      result, context,
+      {fit_from_inverse_dynamics, close_loop, analyse_residual, find_profiles, find_other_days});
   result.checks = check_recordings(result.baseline);
   judge(result);
   run_stages(result, context, {design_experiments, find_gain_errors, find_model_errors});
@@ -288,6 +316,7 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   run_stages(result, context, {predict, compare});
   result.second_opinion = second_opinion(result.job(), result.fit());
   find_guess_influences(result);
+  find_hold_shifts(result.job(), final_fit(result));
   take_final_estimates(result);
   const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - begin;
   result.wall_time = wall_time.count();

@@ -17,6 +17,7 @@
 #include "fit/judge/diagnosis.h"
 #include "fit/judge/grade.h"
 #include "fit/judge/model_score.h"
+#include "fit/judge/other_day.h"
 #include "fit/judge/second_opinion.h"
 #include "fit/predict/comparison.h"
 #include "fit/predict/prediction.h"
@@ -66,7 +67,8 @@ struct RunResult {
   std::vector<ModelScore> scores;               ///< of the search's models
   std::optional<Diagnosis> diagnosis;           ///< of the final model; none unless that is usable
   std::vector<Scored> suspects;                 ///< of a fit without a search that is not explained
-  FitGrade grade;                               ///< of the final model
+  std::vector<OtherDay> other_days;             ///< recordings that differ in a few parameters
+  FitGrade grade;                               ///< of the final model, with those for these
   std::optional<SecondOpinion> second_opinion;  ///< of the final model, where there can be one
   std::optional<Scatter> scatter;               ///< of the final model, in its errors
   std::optional<AxisUncertainty> uncertainty;   ///< of the final model, where that is usable

@@ -141,7 +141,8 @@ std::optional<HardStop> hard_stop(const Recording& recording, const std::vector<
     const std::size_t length = std::min(kLeastRest, stop);
     const double pushed = mean_of(std::span(command).subspan(stop - length, length)),
                  pushes = mean_of(std::span(command).subspan(stop + kWithin, kLeastRest - kWithin));
-    if (!(pushes * pushed > kStillPushes * pushed * pushed)) return std::nullopt;
+    // A controller that was braking pushes the other way.
+    if (!(std::abs(pushes) > kStillPushes * std::abs(pushed))) return std::nullopt;
   }
   return HardStop{times[stop + 1], times[stop - 1]};
 }

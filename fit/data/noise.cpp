@@ -73,6 +73,9 @@ double noise_of_input(std::span<const double> values) {
   // The equal steps of a ramp are no rounding, which would make noise of their size.
   constexpr double kRamp = 0.1;
   const double rounding = resolution_of(values) / std::sqrt(12.0);
+  // Values as far from each other as from their mean are levels that somebody chose.
+  constexpr double kLevels = 0.5;
+  if (white > kLevels * standard_deviation(values)) return 0.0;
   return white < kRamp * rounding ? white : noise_from_differences(values);
 }
 

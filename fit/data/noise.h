@@ -17,7 +17,8 @@ namespace axisfit {
 double noise_from_differences(std::span<const double> values);
 
 /// The same for a recorded input; zero for a piecewise constant one, whose values lie on a grid
-/// because somebody chose them, and next to nothing for a ramp, whose steps are equal.
+/// because somebody chose them, or for values that are as far from each other as from their mean,
+/// and next to nothing for a ramp, whose steps are equal.
 double noise_of_input(std::span<const double> values);
 
 /// Standard deviation about the mean; zero for no values.

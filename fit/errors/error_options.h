@@ -39,6 +39,10 @@ struct ErrorOptions {
   /// its standard error.
   double guess_move = 0.01;
 
+  /// Sum of squares, in variances, by which one hold of the input leaves more than the other where
+  /// the recordings tell them apart: four standard deviations.
+  double excluded_cost = 16.0;
+
   /// Other observer gains are higher and lower by this factor: enough for the weights of slow and
   /// fast residuals to differ clearly.
   double other_gain = 3.0;

@@ -524,4 +524,14 @@ std::optional<FirstLook> first_look(std::span<const DrivenMotion> motions,
   return best;
 }
 
+std::optional<FirstLook> first_look(std::span<const DrivenMotion> motions, Joint joint) {
+  const auto plain = first_look(motions);
+  if (joint != Joint::revolute) return plain;
+  const auto with_gravity = first_look(motions, {.with_gravity = true});
+  constexpr double kClearlyLess = 0.8;
+  return with_gravity && (!plain || with_gravity->unexplained < kClearlyLess * plain->unexplained)
+             ? with_gravity
+             : plain;
+}
+
 }  // namespace axisfit

@@ -22,6 +22,8 @@
 #include <optional>
 #include <span>
 
+#include "sim/vocabulary.h"
+
 namespace axisfit {
 
 /// A recording, one value per sample. Of position and velocity one may be empty.
@@ -89,5 +91,8 @@ struct FirstLook {
 /// None where there are too few samples, where the input never changes, or where nothing moves.
 std::optional<FirstLook> first_look(std::span<const DrivenMotion> motions,
                                     const FirstLookOptions& options = {});
+
+/// The same; of a joint with gravity where that leaves clearly less of the input.
+std::optional<FirstLook> first_look(std::span<const DrivenMotion> motions, Joint joint);
 
 }  // namespace axisfit

@@ -46,6 +46,9 @@ struct GradeOptions {
   /// Per cent of the drive force that may be missing of a model that describes the machine, and of
   /// one whose free run drifts: there it must be small all the more.
   double largest_force = 50.0, small_force = 10.0;
+  /// A recording is tried as one of another day (other_day.h) where its missing force is more than
+  /// this many times that of those fitted, or than a force that is noticed at all, per cent.
+  double other_day_factor = 2.0, noticed_force = 1.0;
   /// Of the allowed range, the interval of a parameter at its bound that says anything of it.
   double informed_part = 0.25;
 

@@ -95,6 +95,8 @@ TEST(Noise, OfAnInputIsNoneWhereSomebodyChoseItsValues) {
   std::normal_distribution<double> normal(0.0, 0.01);
   for (double& x : levels) x += normal(generator);
   EXPECT_NEAR(noise_of_input(levels), 0.01, 2e-3);
+  for (double& x : levels) x = 300.0 * normal(generator);  // as a log of what changes has them
+  EXPECT_EQ(noise_of_input(levels), 0.0);
 }
 
 }  // namespace
