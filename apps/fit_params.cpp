@@ -22,6 +22,7 @@
 #include "apps/run_options.h"
 #include "base/terminal.h"
 #include "fit/design/run_time_estimate.h"
+#include "fit/first_look/job_look.h"
 #include "fit/run.h"
 #include "io/config/axis_file.h"
 #include "io/config/config.h"
@@ -110,13 +111,14 @@ int check(const FitArguments& arguments, const Job& job, std::optional<ProgressL
   const Forecast found = forecast(job, draw_start(job, 0));
   const RunTimeEstimate run_time = estimate_run_time(job);
   const std::vector<RecordingCheck> recordings = check_recordings(job);
+  const std::optional<FirstLook> look = look_at(job);
   line.reset();
   if (arguments.json)
-    print(check_json(job, recordings, found, run_time).dump(2) + "\n");
+    print(check_json(job, recordings, look, found, run_time).dump(2) + "\n");
   else if (!arguments.quiet)
     print_report(arguments, [&](bool colour) {
-      return recordings_text(job, recordings) + "\n" + forecast_text(job, found, colour) + "\n" +
-             run_time_text(job, run_time);
+      return recordings_text(job, recordings) + first_look_text(job, look) + "\n" +
+             forecast_text(job, found, colour) + "\n" + run_time_text(job, run_time);
     });
   return kUsable;
 }

@@ -134,6 +134,9 @@ Json estimate_json(const Job& job, const ParameterResult& p) {
     estimate["with_rival"] = {{"in_place_of", p.budget.rival->chosen},
                               {"effect", p.budget.rival->rival},
                               {"value", p.budget.rival->value}};
+  if (p.other_hold)
+    estimate["with_other_hold"] = {{"value", p.other_hold->value},
+                                   {"is_better", p.other_hold->is_better}};
   return estimate;
 }
 
@@ -161,6 +164,21 @@ Json uses_json(const Job& job, const FitUses& uses) {
   json["followed_for_s"] = uses.followed_for ? Json(*uses.followed_for) : Json(nullptr);
   json["followed_to_the_end"] = uses.is_followed_to_the_end;
   return json;
+}
+
+Json other_day_json(const Job& job, const OtherDay& day) {
+  Json parameters = Json::array();
+  for (const ParameterResult& p : day.parameters) {
+    parameters.push_back(
+        {{"name", name_of(job, p.id)},
+         {"unit", quantity_of(job, p.id).unit},
+         {"value", p.value},
+         {"standard_error", optional(p.uncertainty.determined, p.uncertainty.standard_error)}});
+  }
+  return {{"recording", job.recordings[day.recording].name},
+          {"parameters", std::move(parameters)},
+          {"missing_force_percent", day.percent},
+          {"missing_force_percent_as_fitted", day.percent_before}};
 }
 
 /// What is known of the parameters together.
@@ -598,6 +616,9 @@ Json result_json(const RunResult& run_result) {
     json["predicted_motion"] = motion_json(*run_result.motion, job.vocabulary());
   if (run_result.horizon) json["horizon"] = horizon_json(*run_result.horizon);
   if (run_result.comparison) json["comparison"] = comparison_json(job, *run_result.comparison);
+  if (!run_result.other_days.empty())
+    json["other_days"] =
+        list(run_result.other_days, [&](const OtherDay& day) { return other_day_json(job, day); });
   if (run_result.scatter) json["scatter"] = scatter_json(*run_result.scatter, job);
   if (!run_result.profiles.empty())
     json["profile"] =
@@ -636,7 +657,33 @@ Json result_json(const RunResult& run_result) {
   return json;
 }
 
-Json check_json(const Job& job, const std::vector<RecordingCheck>& checks, const Forecast& forecast,
+Json first_look_json(const FirstLook& look) {
+  const auto term = [](const FirstLook::Term& found) {
+    return Json{{"value", found.value}, {"standard_error", finite(found.error)}};
+  };
+  const auto direction = [&] {
+    switch (look.direction) {
+      case FirstLook::Direction::along:
+        return "as_declared";
+      case FirstLook::Direction::turned:
+        return "turned";
+      case FirstLook::Direction::open:
+        break;
+    }
+    return "open";
+  };
+  return {{"M", term(look.mass)},
+          {"B_a", term(look.viscous)},
+          {"F_c", term(look.coulomb)},
+          {"F_0",
+           Json{{"value", -look.constant.value}, {"standard_error", finite(look.constant.error)}}},
+          {"delay_s", term(look.delay)},
+          {"unexplained_percent", 100.0 * look.unexplained},
+          {"direction", direction()}};
+}
+
+Json check_json(const Job& job, const std::vector<RecordingCheck>& checks,
+                const std::optional<FirstLook>& look, const Forecast& forecast,
                 const RunTimeEstimate& run_time) {
   Json recordings = Json::array();
   for (std::size_t r = 0; r < checks.size(); ++r)
@@ -663,6 +710,7 @@ Json check_json(const Job& job, const std::vector<RecordingCheck>& checks, const
   Json json{{"schema_version", kSchemaVersion},
             {"axisfit", version()},
             {"recordings", std::move(recordings)},
+            {"first_look", look ? first_look_json(*look) : Json(nullptr)},
             {"evaluation_time_s", run_time.evaluation},
             {"expected_time_s",
              {{"explained", run_time.explained},

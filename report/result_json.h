@@ -7,6 +7,7 @@
 #include "fit/data/recording_check.h"
 #include "fit/design/forecast.h"
 #include "fit/design/run_time_estimate.h"
+#include "fit/first_look/first_look.h"
 #include "fit/run.h"
 
 namespace axisfit {
@@ -18,6 +19,7 @@ nlohmann::ordered_json axes_json(const std::vector<AxisRun>& axes);
 
 /// What the recordings show and can tell of the parameters, before the fit.
 nlohmann::ordered_json check_json(const Job& job, const std::vector<RecordingCheck>& checks,
-                                  const Forecast& forecast, const RunTimeEstimate& run_time);
+                                  const std::optional<FirstLook>& look, const Forecast& forecast,
+                                  const RunTimeEstimate& run_time);
 
 }  // namespace axisfit

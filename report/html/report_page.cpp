@@ -265,6 +265,7 @@ class Page {
       all += html(" <small>{}</small>", gain_shift_text(*gain, unit));
     if (const auto& rival = p.budget.rival)
       all += html(" <small>{}</small>", rival_shift_text(*rival, unit));
+    if (p.other_hold) all += html(" <small>{}</small>", hold_shift_text(job_, *p.other_hold, unit));
     return all;
   }
 

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/rounding.h"
 #include "base/text_table.h"
+#include "base/units.h"
 #include "report/text/report_text.h"
 #include "report/text/words.h"
 
@@ -72,6 +74,42 @@ std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& c
     for (const std::string& warning : warnings_for(job, recording, check))
       text += paragraph("! " + warning, 2);
   }
+  return text;
+}
+
+std::string first_look_text(const Job& job, const std::optional<FirstLook>& look) {
+  if (!look || !look->shows_anything()) return {};
+  const Vocabulary vocabulary = job.vocabulary();
+  const std::string force(words_on(vocabulary, "drive force"));
+  std::vector<std::string> seen;
+  const auto see = [&](const char* quantity, const FirstLook::Term& term) {
+    if (!(std::abs(term.distance()) > FirstLook::kSure)) return;
+    const QuantityEntry& entry = job.entry(quantity_index(quantity));
+    seen.push_back(fmt::format(
+        "{} {}", entry.name,
+        with_unit(with_digits_of(term.value, term.error) + fmt::format(" +- {:.2g}", term.error),
+                  entry.quantity.unit)));
+  };
+  see("M", look->mass);
+  see("B_a", look->viscous);
+  see("coulomb_friction.F_c", look->coulomb);
+  FirstLook::Term acting = look->constant;  // the balance has it on the other side
+  acting.value = -acting.value;
+  see("constant_force.F_0", acting);
+  std::string text = fmt::format(
+      "A first look at the forces of all recordings, by one mass with friction and without a "
+      "simulation: {}. It leaves {:.2g} % of the {}.",
+      fmt::join(seen, ", "), 100.0 * look->unexplained, force);
+  const double interval = sampling(job.recordings.front().times).interval;
+  if (look->shows_delay(interval))
+    text += fmt::format(" The motion {} the {} by {:.2g} ms.",
+                        look->delay.value > 0.0 ? "follows" : "is logged before", force,
+                        1e3 * std::abs(look->delay.value));
+  text = paragraph(text);
+  if (look->direction == FirstLook::Direction::turned)
+    text += paragraph("! As declared, friction would drive the axis: turn the " + force +
+                          " by 'sign: -1' in the job.",
+                      2);
   return text;
 }
 

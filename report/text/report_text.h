@@ -9,6 +9,7 @@
 #include "fit/data/recording_warnings.h"
 #include "fit/design/forecast.h"
 #include "fit/design/run_time_estimate.h"
+#include "fit/first_look/first_look.h"
 #include "fit/run.h"
 
 namespace axisfit {
@@ -86,6 +87,10 @@ std::string forecast_text(const Job& job, const Forecast& forecast, bool colour 
 
 /// What the recordings show by themselves: sampling, ranges, noise, and what looks wrong.
 std::string recordings_text(const Job& job, const std::vector<RecordingCheck>& checks);
+
+/// What a first look at the forces of all recordings sees, without a model; empty where it sees
+/// nothing.
+std::string first_look_text(const Job& job, const std::optional<FirstLook>& look);
 
 /// What looks wrong with a recording, and what to do about it: a sentence or two.
 std::string warning_text(const RecordingWarning& warning, Vocabulary vocabulary);

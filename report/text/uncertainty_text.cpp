@@ -40,8 +40,9 @@ std::string correlation_text(const Job& job, const FitResult& result) {
   return paragraph(fmt::format("Strongly correlated: {}{}.", fmt::join(names, ", "), more), 2);
 }
 
-/// The estimates whose error bars leave out that a value beneath them is a guess, or allow for what
-/// another observer gain or another effect makes of them.
+/// The estimates whose error bars leave out that a value beneath them is a guess or another hold of
+/// the input makes them different, or allow for what another observer gain or another effect makes
+/// of them.
 std::string remarks_text(const Job& job, const FitResult& result) {
   std::string text;
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
@@ -55,6 +56,9 @@ std::string remarks_text(const Job& job, const FitResult& result) {
     if (p.budget.rival)
       text += paragraph(
           fmt::format("{}: {}.", name, rival_shift_text(*p.budget.rival, unit_of(job, i))), 2);
+    if (p.other_hold)
+      text += paragraph(
+          fmt::format("{}: {}.", name, hold_shift_text(job, *p.other_hold, unit_of(job, i))), 2);
   }
   if (const std::string better = better_gain_text(result); !better.empty())
     text += paragraph(better + ".", 2);

@@ -351,16 +351,39 @@ std::string judges_text(const RunResult& run_result) {
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 
+/// What differs in a recording of another day, and what that explains.
+std::string other_day_text(const Job& job, const FitResult& fit, const OtherDay& day) {
+  std::vector<std::string> own;
+  for (std::size_t k = 0; k < day.differing.size(); ++k) {
+    const ParameterResult& usual = fit.parameters[day.differing[k]];
+    const double error = day.parameters[k].uncertainty.standard_error;
+    own.push_back(fmt::format(
+        "{} = {} instead of {}", name_of(job, usual.id),
+        with_digits_of(day.parameters[k].value, error),
+        with_unit(with_digits_of(usual.value, error), quantity_of(job, usual.id).unit)));
+  }
+  return fmt::format(
+      " {} is as of another day: with {}, found in its first half, the model leaves {:.2g} % of "
+      "the "
+      "{} of the second half unexplained, and not {:.2g} %. The grade counts it so.",
+      job.recordings[day.recording].name, fmt::join(own, " and "), day.percent,
+      words_on(job.vocabulary(), "drive force"), day.percent_before);
+}
+
 std::string overall_verdict(const RunResult& run_result, bool colour) {
   const FitGrade& grade = run_result.grade;
   const std::string of_grade = grade_text(run_result.job(), grade, run_result.fit(), colour);
-  if (!run_result.selection) return of_grade;
+  std::string of_days;
+  for (const OtherDay& day : run_result.other_days)
+    of_days += other_day_text(run_result.job(), run_result.fit(), day);
+  if (!run_result.selection) return of_grade + of_days;
   // Both judge the same model by the same residual.
   const bool by_residual =
       grade.reason == FitGrade::Reason::residual || grade.reason == FitGrade::Reason::none;
   return (by_residual ? grade_heading(grade, colour) + "." : of_grade) + " " +
          verdict_text(*run_result.selection) +
-         (run_result.roles_exchanged ? " Found with the roles of the recordings exchanged." : "");
+         (run_result.roles_exchanged ? " Found with the roles of the recordings exchanged." : "") +
+         of_days;
 }
 
 std::string reason_text(const Job& job, const Outcome& trial) {
@@ -437,6 +460,17 @@ std::string rival_shift_text(const RivalShift& shift, std::string_view unit) {
   return fmt::format("{} with {} in place of {}, which its error allows for",
                      with_unit(fmt::format("{:.4g}", shift.value), unit), shift.rival,
                      shift.chosen);
+}
+
+std::string hold_shift_text(const Job& job, const HoldShift& shift, std::string_view unit) {
+  const auto held = std::ranges::any_of(job.recordings, [](const Recording& r) {
+    return r.command.meaning != Meaning::reference && r.command.hold == Hold::zero_order;
+  });
+  return fmt::format(
+      "{} if {}, which {}", with_unit(fmt::format("{:.4g}", shift.value), unit),
+      held ? "the input went straight from one sample to the next ('hold: linear')"
+           : "each value of the input held until the next ('hold: zero_order')",
+      shift.is_better ? "explains these recordings better" : "these recordings do not exclude");
 }
 
 std::string better_gain_text(const FitResult& fit) {

@@ -48,6 +48,9 @@ std::string simulation_name(const FitOptions& options, bool tracks);
 std::string gain_shift_text(const GainShift& shift, std::string_view unit);
 /// "17.6 N s/m with added_mass in place of velocity.gain, which its error allows for".
 std::string rival_shift_text(const RivalShift& shift, std::string_view unit);
+/// "17.6 N s/m if each value of the input held until the next, which the recordings do not
+/// exclude".
+std::string hold_shift_text(const Job& job, const HoldShift& shift, std::string_view unit);
 /// What to do where another observer gain predicts better; empty where none does.
 std::string better_gain_text(const FitResult& fit);
 /// What to do where noise of the inputs adds up in the free run; empty where it does not.
