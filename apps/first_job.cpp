@@ -36,20 +36,22 @@ void write_first_job(const FitArguments& arguments, const StopFlag& stop,
                      std::optional<ProgressLine>& line) {
   namespace fs = std::filesystem;
   const fs::path folder = arguments.output.empty() ? "." : arguments.output;
-  std::vector<ColumnAnswer> answers;
-  for (const std::string& text : arguments.answers) answers.push_back(read_answer(text));
-  if (!arguments.rate.empty()) answers.push_back(read_rate(arguments.rate));
-  if (!arguments.motor.empty()) answers.push_back(motor_answer(arguments.motor));
-  const bool is_machine = !arguments.machine.empty();
+  InitRequest request{.recordings = arguments.files,
+                      .folder = folder.string(),
+                      .axis = arguments.machine.empty() ? arguments.axis : arguments.machine,
+                      .is_machine = !arguments.machine.empty(),
+                      .gain = arguments.gain,
+                      .answers = {.motor = arguments.motor}};
+  for (const std::string& text : arguments.answers)
+    request.answers.columns.push_back(read_answer(text));
+  if (!arguments.rate.empty()) request.answers.rate = read_rate(arguments.rate);
   const RunContext context{.stop = &stop,
                            .progress = [&](const Progress& progress) { line->update(progress); }};
   MachineChoice choice;
-  if (is_machine || !arguments.axis.empty() || arguments.gain)
-    choice.job = initial_job(arguments.files, is_machine ? arguments.machine : arguments.axis,
-                             folder.string(), arguments.gain, answers, is_machine, context);
+  if (!request.axis.empty() || request.gain)
+    choice.job = initial_job(request, context);
   else
-    choice = choose_machine(arguments.files, folder.string(), answers, context,
-                            arguments.threads.value_or(0));
+    choice = choose_machine(request, context, arguments.threads.value_or(0));
   const InitialJob& created = choice.job;
   const auto path = [&](const std::string& name) {
     return (folder / name).lexically_normal().string();

@@ -20,7 +20,7 @@ void check_input(const Folder& folder, std::string_view input) {
   });
   if (is_long) return;
   std::optional<InitialJob> made;
-  refusable([&] { made = initial_job({path}, "", folder.path("")); });
+  refusable([&] { made = initial_job({.recordings = {path}, .folder = folder.path("")}); });
   if (!made) return;
   for (const std::string& guess : made->guesses) require_message(guess);
   for (const auto& [name, contents] : made->files) folder.write(name, contents);

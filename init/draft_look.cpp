@@ -9,6 +9,7 @@
 
 #include "base/rounding.h"
 #include "base/units.h"
+#include "fit/data/filter_check.h"
 #include "fit/data/recording_check.h"
 #include "fit/estimate/estimate.h"
 #include "fit/estimate/recipes.h"
@@ -18,17 +19,9 @@
 namespace axisfit {
 namespace {
 
-std::optional<FirstLook> look_at(const JobDraft& draft, const FirstLookOptions& options) {
-  std::vector<std::vector<double>> inputs;
-  for (const DraftRecording& recording : draft.recordings) inputs.push_back(recording.driving());
-  std::vector<DrivenMotion> motions;
-  for (std::size_t r = 0; r < inputs.size(); ++r)
-    motions.push_back(driven_motion(draft.recordings[r].guess, inputs[r]));
-  return first_look(motions, options);
-}
-
-/// Whether the values stay for most of the time, as those that somebody chose.
+/// Whether the values stay for most of the time, as those that somebody chose, or come in frames.
 bool stays_in_steps(std::span<const double> values) {
+  if (repetition_of(values) > 1) return true;
   constexpr double kMostly = 0.8;
   std::size_t equal = 0;
   for (std::size_t i = 1; i < values.size(); ++i) equal += values[i] == values[i - 1] ? 1 : 0;
@@ -116,16 +109,81 @@ void correct_sign_of_velocity(JobDraft& draft) {
                                             : "is its sign right? It was left as it is"));
 }
 
-/// The reduced chi-square of a short fit of the job; infinite where there is none.
-double chi_square_of(const JobDraft& draft) {
+/// Half a sample later is when a value acts that is held, and not straight between two.
+double interval_of(const JobDraft& draft) {
+  return sampling(draft.recordings.front().guess.time.values).interval;
+}
+
+/// T_d, free from here on.
+DraftParameter free_delay(const JobDraft& draft, double delay) {
+  const Quantity& quantity = draft.quantity("T_d").quantity;
+  const double most =
+      std::min(quantity.upper,
+               round_to_digits(std::max(20.0 * interval_of(draft), 2.0 * std::abs(delay)), 2));
+  return {"T_d", fmt::format(
+                     "{{initial: {}, bounds: [{}, {}]}}", with_unit(round_to_digits(delay, 2), "s"),
+                     with_unit(std::max(quantity.lower, -most), "s"), with_unit(most, "s"))};
+}
+
+/// One way in which the input may go from sample to sample, and what a short fit makes of it.
+struct Timing {
+  bool is_held = false;
+  FirstLook::Term delay{};       ///< s, by which the motion then follows the input
+  double chi_square = INFINITY;  ///< reduced; infinite without a fit
+
+  /// With the wrong hold, a motion that is not late seems to be so by half a sample. Otherwise the
+  /// smaller residual tells; thousands of samples make less than a hundredth by chance.
+  bool is_better_than(const Timing& other, double interval) const {
+    constexpr double kNone = 0.2, kHalf = 0.4, kClearly = 0.5, kBetter = 0.99;
+    const auto needs_none = [=](const Timing& one, const Timing& with_half) {
+      return std::abs(one.delay.value) < kNone * interval &&
+             std::abs(with_half.delay.value) > kHalf * interval;
+    };
+    const double factor = needs_none(*this, other)   ? 1.0 / kClearly
+                          : needs_none(other, *this) ? kClearly
+                                                     : kBetter;
+    return chi_square < factor * other.chi_square;
+  }
+
+  /// Whether there is a delay that hold and noise do not make.
+  bool is_late(double interval) const {
+    return std::abs(delay.value) >= std::max(0.5 * interval, FirstLook::kSure * delay.error);
+  }
+};
+
+void set_hold(JobDraft& draft, bool is_held, const std::string& reason) {
+  for (DraftRecording& recording : draft.recordings) {
+    recording.is_held = is_held;
+    recording.hold_reason = reason;
+  }
+}
+
+/// With the delay of the first look.
+Timing seen_timing(const JobDraft& draft, bool is_held) {
+  Timing timing{is_held, draft.look->delay};
+  if (is_held) timing.delay.value -= 0.5 * interval_of(draft);
+  return timing;
+}
+
+/// By a fit to the first samples of the recordings: enough for a time, and a matter of seconds.
+Timing fitted_timing(JobDraft draft, bool is_held) {
   constexpr std::size_t kMostSamples = 20000;
+  Timing timing = seen_timing(draft, is_held);
+  set_hold(draft, is_held, " on trial");
+  draft.parameters.push_back(free_delay(draft, timing.delay.value));
+  for (DraftRecording& recording : draft.recordings) {
+    const std::vector<double>& times = recording.guess.time.values;
+    const std::size_t most = kMostSamples / draft.recordings.size();
+    if (times.size() > most) recording.trim_to = times[most];
+  }
   Job job = draft_job(draft);
-  std::size_t samples = 0;
-  for (const Recording& r : job.recordings) samples += r.times.size();
-  if (samples > kMostSamples) return INFINITY;
   job.options = recipe::quick(job.options);
   const FitResult fit = estimate(job);
-  return fit.verdict.has_minimum() ? fit.reduced_chi_square : INFINITY;
+  if (!fit.verdict.has_minimum()) return timing;
+  timing.chi_square = fit.reduced_chi_square;
+  const ParameterResult& found = fit.parameters.back();
+  timing.delay = {found.value, found.uncertainty.standard_error};
+  return timing;
 }
 
 }  // namespace
@@ -141,66 +199,75 @@ DrivenMotion driven_motion(const RecordingGuess& recording, std::span<const doub
 
 std::optional<FirstLook> look_at(const JobDraft& draft) {
   if (!draft.is_force_driven()) return std::nullopt;
-  const auto plain = look_at(draft, {});
-  if (draft.vocabulary().joint != Joint::revolute) return plain;
-  const auto with_gravity = look_at(draft, {.with_gravity = true});
-  constexpr double kClearlyLess = 0.8;
-  return with_gravity && (!plain || with_gravity->unexplained < kClearlyLess * plain->unexplained)
-             ? with_gravity
-             : plain;
+  std::vector<std::vector<double>> inputs;
+  for (const DraftRecording& recording : draft.recordings) inputs.push_back(recording.driving());
+  std::vector<DrivenMotion> motions;
+  for (std::size_t r = 0; r < inputs.size(); ++r)
+    motions.push_back(driven_motion(draft.recordings[r].guess, inputs[r]));
+  return first_look(motions, draft.structure.joint);
 }
 
 void correct_signs(JobDraft& draft) {
   draft.is_force_driven() ? correct_sign_of_force(draft) : correct_sign_of_velocity(draft);
 }
 
+void take_for_friction(JobDraft& draft) {
+  if (!draft.look) return;
+  // Less than that is noise, or where an axis comes to rest.
+  constexpr double kPart = 0.02;
+  constexpr std::size_t kParts = 200;
+  double forward = 0.0, back = 0.0;
+  for (const DraftRecording& recording : draft.recordings) {
+    const GuessedColumn* position = recording.guess.find(Kind::position);
+    if (position == nullptr) position = recording.guess.find(Kind::velocity);
+    if (position == nullptr) return;
+    const std::vector<double>& values = position->values;
+    const std::size_t step = std::max<std::size_t>(1, values.size() / kParts);
+    for (std::size_t i = step; i < values.size(); i += step) {
+      const double moved =
+          position->kind == Kind::position ? values[i] - values[i - step] : values[i];
+      (moved > 0.0 ? forward : back) += std::abs(moved);
+    }
+  }
+  const double direction = forward > back ? 1.0 : -1.0;
+  const double all = draft.look->coulomb.value + direction * draft.look->constant.value;
+  draft.goes_one_way = std::min(forward, back) < kPart * std::max(forward, back) && all > 0.0 &&
+                       draft.look->gravity_sine.value == 0.0 &&
+                       draft.look->gravity_cosine.value == 0.0;
+  if (!draft.goes_one_way) return;
+  draft.look->coulomb.value = all;
+  draft.look->constant.value = 0.0;
+}
+
 void set_timing(JobDraft& draft) {
   if (!draft.is_force_driven() || draft.joined) return;
-  const auto set_hold = [&](bool is_held, const std::string& reason) {
-    for (DraftRecording& recording : draft.recordings) {
-      recording.is_held = is_held;
-      recording.hold_reason = reason;
-    }
-  };
-  const bool is_measured = draft.recordings.front().has_measured_input();
   const bool is_stepped = std::ranges::any_of(draft.recordings, [](const DraftRecording& r) {
-    return stays_in_steps(r.input_column().values);
+    return r.input_column().changes_only || stays_in_steps(r.input_column().values);
   });
-  // Whether the motion goes better with the other hold.
-  const auto try_hold = [&](bool is_held, const std::string& reason) {
-    const double before = chi_square_of(draft);
-    set_hold(is_held, reason);
-    constexpr double kBetter = 0.99;  // thousands of samples make less than that by chance
-    if (chi_square_of(draft) < kBetter * before) return true;
-    set_hold(false, {});
-    return false;
+  const bool is_held = draft.recordings.front().holds_input() || is_stepped;
+  const auto take_hold = [&](bool held, const std::string& reason) {
+    if (held != draft.recordings.front().holds_input()) set_hold(draft, held, reason);
   };
-  if (is_measured && is_stepped) try_hold(true, ": it stays in steps, and so does the force");
+  take_hold(is_held, ": it stays in steps");
   if (!draft.look || draft.look->direction == FirstLook::Direction::open) return;
-  const double interval = sampling(draft.recordings.front().guess.time.values).interval;
-  const FirstLook::Term& delay = draft.look->delay;
-  // A value that is held acts half a sample later than one that goes straight to the next.
-  const double straight = delay.value, held = delay.value - 0.5 * interval;
-  const bool is_held = draft.recordings.front().holds_input();
-  double left = is_held ? held : straight;
-  const double other = is_held ? straight : held;
-  constexpr double kAsGoodAsZero = 0.2, kClear = 0.4, kKnown = 0.1;  // samples
-  if (delay.error < kKnown * interval && std::abs(other) < kAsGoodAsZero * interval &&
-      std::abs(left) > kClear * interval) {
-    if (try_hold(!is_held, ": the motion goes better with it")) left = other;
+  const double interval = interval_of(draft);
+  Timing chosen = seen_timing(draft, is_held);
+  // The valleys of gears are too narrow for a short fit.
+  if (!capabilities(draft.structure).has_backlash) {
+    chosen = fitted_timing(draft, is_held);
+    const Timing other = fitted_timing(draft, !is_held);
+    if (other.is_better_than(chosen, interval)) {
+      chosen = other;
+      take_hold(chosen.is_held, ": the motion goes better with it");
+    }
   }
-  if (std::abs(left) < std::max(0.5 * interval, FirstLook::kSure * delay.error)) return;
-  const Quantity& quantity = draft.quantity("T_d").quantity;
-  const double most =
-      std::min(quantity.upper, round_to_digits(std::max(20.0 * interval, 2.0 * std::abs(left)), 2));
-  draft.parameters.push_back(
-      {"T_d",
-       fmt::format("{{initial: {}, bounds: [{}, {}]}}", with_unit(round_to_digits(left, 2), "s"),
-                   with_unit(std::max(quantity.lower, -most), "s"), with_unit(most, "s"))});
+  if (!chosen.is_late(interval)) return;
+  draft.parameters.push_back(free_delay(draft, chosen.delay.value));
   draft.guesses.push_back(
       fmt::format("T_d is free: the motion {} what drives it by {:.2g} ms; it is the time lag of "
                   "drive or log",
-                  left > 0.0 ? "follows" : "is logged before", 1e3 * std::abs(left)));
+                  chosen.delay.value > 0.0 ? "follows" : "is logged before",
+                  1e3 * std::abs(chosen.delay.value)));
 }
 
 }  // namespace axisfit

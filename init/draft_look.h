@@ -20,9 +20,14 @@ std::optional<FirstLook> look_at(const JobDraft& draft);
 /// velocity loop the motion goes the way of the input.
 void correct_signs(JobDraft& draft);
 
-/// Takes the hold of the input, and the time by which the motion follows it, from the first look:
-/// that time is free where it is clearly more than half a sample. What was commanded is held, and
-/// so is what stays in steps; what was measured is not, unless that makes the time as good as zero.
+/// Where the motion goes one way only, friction and a constant force are one: takes all of it for
+/// friction, unless it pushes the axis along.
+void take_for_friction(JobDraft& draft);
+
+/// Takes the hold of the input that suits the motion, and frees the time by which the motion
+/// follows it where that is clearly more than half a sample. Both holds are tried, with the time of
+/// the first look to begin with. Where they do as well, what was commanded is held, and so is what
+/// stays in steps; what was measured is not.
 void set_timing(JobDraft& draft);
 
 }  // namespace axisfit

@@ -76,7 +76,7 @@ bool take_out_open(JobDraft& draft, double strength, const StopFlag* stop) {
 
 Job draft_job(const JobDraft& draft) {
   try {
-    return read_job_draft(job_files(draft), fs::absolute(draft.folder).string()).job;
+    return read_job_draft(job_files(draft), fs::absolute(draft.request.folder).string()).job;
   } catch (const ConfigError& error) {
     // The places are of a file that the user never sees.
     std::set<std::string> messages;
@@ -112,6 +112,10 @@ void list_parameters(JobDraft& draft) {
     const double most =
         force ? std::min((any_gain ? 1e4 : 2.0) * draft.starter->largest_force, q.upper) : 0.0;
     add(entry.name, force ? bounds(q.lower < 0.0 ? -most : 0.0, most, q.unit) : "{}");
+    if (draft.goes_one_way && entry.name == "constant_force.F_0")
+      draft.parameters.back().reason_not_free =
+          "the motion goes one way, which does not tell it from friction: it needs one that "
+          "goes both ways";
   }
   if (draft.starter && !draft.is_force_driven()) add("K_1");
   if (draft.joined)  // two clocks may differ to either side
@@ -128,7 +132,8 @@ void list_parameters(JobDraft& draft) {
       std::ranges::any_of(draft.recordings, &DraftRecording::drives_in_newtons))
     return;
   add("K_f");
-  if (draft.starter || draft.is_machine) draft.parameters.back().reason_not_free = kOnlyRatios;
+  if (draft.starter || draft.request.is_machine)
+    draft.parameters.back().reason_not_free = kOnlyRatios;
 }
 
 void choose_free(JobDraft& draft, const StopFlag* stop) {

@@ -9,6 +9,8 @@
 #include <set>
 
 #include "base/plain_text.h"
+#include "fit/data/filter_check.h"
+#include "fit/data/motion_check.h"
 #include "init/draft_look.h"
 #include "init/free_choice.h"
 #include "init/input_choice.h"
@@ -23,10 +25,11 @@ namespace fs = std::filesystem;
 /// The axis file of the machine that was named, without the line for editors, which says where the
 /// schema is.
 void take_machine(JobDraft& draft) {
-  const auto machine = std::ranges::find(machine_axes(), draft.axis, &MachineAxis::name);
+  const auto machine = std::ranges::find(machine_axes(), draft.request.axis, &MachineAxis::name);
   if (machine == machine_axes().end())
     throw std::runtime_error(fmt::format("there is no machine '{}': choose one of {}",
-                                         sanitized(draft.axis), fmt::join(machine_names(), ", ")));
+                                         sanitized(draft.request.axis),
+                                         fmt::join(machine_names(), ", ")));
   std::string_view text = machine->text;
   if (text.starts_with("# yaml-language-server")) text.remove_prefix(text.find('\n') + 1);
   draft.axis_text = text;
@@ -35,11 +38,11 @@ void take_machine(JobDraft& draft) {
 /// Of the axis that was named.
 void read_structure(JobDraft& draft) {
   Diagnostics diagnostics;
-  if (draft.is_machine) take_machine(draft);
+  if (draft.request.is_machine) take_machine(draft);
   const auto rig =
-      draft.is_machine
+      draft.request.is_machine
           ? read_axis(*ConfigNode::parse(draft.axis_text, kAxisName, diagnostics), diagnostics)
-          : read_axis_file(draft.axis, diagnostics);
+          : read_axis_file(draft.request.axis, diagnostics);
   diagnostics.throw_if_any();
   draft.structure = rig->model.structure;
 }
@@ -67,17 +70,17 @@ void add(JobDraft& draft, const std::string& path, RecordingGuess guess) {
 
 /// Of one axis, that which the first shows, and in the same units: what one recording says only by
 /// how large its values are, the largest of all recordings tell.
-std::vector<RecordingGuess> guesses_of(const std::vector<std::string>& paths,
-                                       const JobDraft& draft) {
+std::vector<RecordingGuess> guesses_of(const JobDraft& draft) {
+  const std::vector<std::string>& paths = draft.request.recordings;
   std::vector<RecordingFile> files;
-  GuessOptions options{draft.answers, draft.structure.joint, {}};
+  GuessOptions options{draft.request.answers, draft.structure.joint, {}};
   std::vector<RecordingGuess> guesses;
   const auto guess_all = [&] {
     guesses.clear();
     for (std::size_t i = 0; i < paths.size(); ++i) {
       guesses.push_back(guess_recording(files[i], paths[i], options));
       if (const std::string& motor = guesses.front().motor; !motor.empty() && i == 0)
-        options.answers.push_back(motor_answer(motor));
+        options.answers.motor = motor;
     }
   };
   for (const std::string& path : paths) files.emplace_back(path);
@@ -97,8 +100,7 @@ std::vector<RecordingGuess> guesses_of(const std::vector<std::string>& paths,
 
 /// Every answer is about a column that is there.
 void check_answers(const JobDraft& draft) {
-  for (const ColumnAnswer& answer : draft.answers) {
-    if (!answer.is_of_column()) continue;
+  for (const ColumnAnswer& answer : draft.request.answers.columns) {
     const auto found = [&](const GuessedColumn& c) { return c.answer == answer.column; };
     if (std::ranges::none_of(draft.recordings, [&](const DraftRecording& s) {
           return found(s.guess.time) || std::ranges::any_of(s.guess.columns, found);
@@ -145,16 +147,55 @@ void drop_recordings_without_input(JobDraft& draft) {
   for (const std::string& text : unusable) draft.guesses.push_back("Skipped: " + text);
 }
 
-double largest(const std::vector<double>& values) {
-  double size = 0.0;
-  for (const double x : values) size = std::max(size, std::abs(x));
-  return size;
+/// What was measured and arrives in frames: each value counts once, at its time, and `values` get
+/// the curve between them.
+void find_frames(JobDraft& draft) {
+  for (DraftRecording& recording : draft.recordings)
+    for (GuessedColumn& c : recording.guess.columns) {
+      if (!draft.is_measured(c) || &c == &recording.input_column() || !c.clock.empty()) continue;
+      c.hold = repetition_of(c.values);
+      if (c.hold == 1) continue;
+      Measurement frames;
+      frames.values = std::move(c.values);
+      frames.hold = c.hold;
+      exclude_uninformative(frames);
+      c.values = std::move(frames.values);
+      c.reasons.push_back(fmt::format("each value is recorded {} times", c.hold));
+    }
+}
+
+/// A motion that ends on a hard stop is used until then.
+void leave_out_stops(JobDraft& draft) {
+  for (DraftRecording& recording : draft.recordings) {
+    Recording motion;
+    motion.times = recording.guess.time.values;
+    for (const Signal signal : {Signal::position, Signal::velocity}) {
+      const GuessedColumn* column =
+          recording.guess.find(signal == Signal::position ? Kind::position : Kind::velocity);
+      if (column == nullptr) continue;
+      Measurement& m = motion.measurements.emplace_back();
+      m.signal = signal;
+      m.values = column->values;
+    }
+    const auto stop = hard_stop(motion, recording.driving());
+    if (!stop) continue;
+    const auto used = static_cast<std::size_t>(
+        std::ranges::upper_bound(motion.times, stop->last_before) - motion.times.begin());
+    constexpr std::size_t kFewest = 50;
+    if (used < kFewest) continue;
+    recording.trim_to = stop->last_before;
+    recording.guess.time.values.resize(used);
+    for (GuessedColumn& c : recording.guess.columns) c.values.resize(used);
+    draft.guesses.push_back(
+        fmt::format("{} ends on a hard stop at {:.4g} s: it is used up to {:.4g} s", recording.name,
+                    stop->at, stop->last_before));
+  }
 }
 
 /// The axis file that is missing.
 void start_axis(JobDraft& draft) {
   const DraftRecording& first = draft.recordings.front();
-  if (draft.gain && (!draft.is_force_driven() || first.drives_in_newtons()))
+  if (draft.request.gain && (!draft.is_force_driven() || first.drives_in_newtons()))
     throw std::runtime_error(fmt::format(
         "--gain is the {} per unit of a current or command, but {} is {}: leave it out",
         draft.say("force"), sanitized(first.input_column().column),
@@ -173,7 +214,7 @@ void start_axis(JobDraft& draft) {
   seen.largest_input = largest(first.driving());
   if (velocity) seen.largest_speed = largest(velocity->values);
   seen.look = draft.look;
-  seen.gain = draft.gain;
+  seen.gain = draft.request.gain;
   seen.structure = draft.structure;
   draft.starter = mass_starter(first.file, seen);
   draft.structure = draft.starter->structure;
@@ -214,12 +255,10 @@ void collect_guesses(JobDraft& draft) {
 
 }  // namespace
 
-InitialJob initial_job(const std::vector<std::string>& recordings, const std::string& axis,
-                       const std::string& folder, std::optional<double> gain,
-                       const std::vector<ColumnAnswer>& answers, bool is_machine,
-                       const RunContext& context) {
-  JobDraft draft{axis, is_machine, folder, gain, answers};
-  const bool makes_axis = axis.empty();
+InitialJob initial_job(const InitRequest& request, const RunContext& context) {
+  JobDraft draft{request};
+  const std::vector<std::string>& recordings = request.recordings;
+  const bool makes_axis = request.axis.empty();
   if (!makes_axis) read_structure(draft);
   for (auto path = recordings.begin(); path != recordings.end(); ++path) {
     std::error_code ignored;
@@ -230,7 +269,7 @@ InitialJob initial_job(const std::vector<std::string>& recordings, const std::st
           fmt::format("{} is given twice: a recording counts once", sanitized(*path)));
   }
   context.report({.phase = "reading the recordings"});
-  std::vector<RecordingGuess> guesses = guesses_of(recordings, draft);
+  std::vector<RecordingGuess> guesses = guesses_of(draft);
   for (std::size_t i = 0; i < recordings.size(); ++i)
     add(draft, recordings[i], std::move(guesses[i]));
   check_answers(draft);
@@ -241,25 +280,27 @@ InitialJob initial_job(const std::vector<std::string>& recordings, const std::st
   choose_inputs(draft);
   drop_recordings_without_input(draft);
   refuse_unrelated(draft);
+  find_frames(draft);
+  leave_out_stops(draft);
   context.report({.phase = "a first look at the forces"});
   draft.look = look_at(draft);
   correct_signs(draft);
   drop_idle_velocities(draft);
   use_common_signals(draft);
+  if (makes_axis) take_for_friction(draft);
   if (makes_axis) start_axis(draft);
   list_parameters(draft);
   context.report({.phase = "what the recordings determine"});
   choose_free(draft, context.stop);
-  if (makes_axis || is_machine) set_timing(draft);
+  if (makes_axis || request.is_machine) set_timing(draft);
   collect_guesses(draft);
   return {job_files(draft), std::move(draft.guesses), draft.look};
 }
 
-std::vector<std::string> machines_for(const std::vector<std::string>& recordings,
-                                      const std::vector<ColumnAnswer>& answers) {
+std::vector<std::string> machines_for(const InitRequest& request) {
   std::vector<std::string> names;
-  const RecordingGuess first =
-      guess_recording(RecordingFile(recordings.front()), recordings.front(), {answers});
+  const std::string& path = request.recordings.front();
+  const RecordingGuess first = guess_recording(RecordingFile(path), path, {request.answers});
   if (is_of_velocity_loop(first)) return names;
   const auto input = std::ranges::find_if(
       force_inputs(), [&](const InputColumn& i) { return has_changing_input(first, i); });

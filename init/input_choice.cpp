@@ -244,7 +244,7 @@ void choose_inputs(JobDraft& draft) {
     for (DraftRecording& recording : draft.recordings) {
       recording.input = capabilities(draft.structure).has_back_emf
                             ? voltage_input(recording.guess)
-                            : velocity_input(recording.guess, !draft.axis.empty());
+                            : velocity_input(recording.guess, !draft.request.axis.empty());
       if (!recording.input || recording.input->kind != Kind::velocity) continue;
       GuessedColumn& column = *recording.guess.find(Kind::velocity, true);
       column.reasons.push_back(fmt::format("a set velocity, taken as a command of {:g} V per m/s",
@@ -271,7 +271,8 @@ void choose_inputs(JobDraft& draft) {
       // A part of a rating is a force only once K_f says how large.
       if (recording.input_column().of_rating) recording.input->key = "command";
     }
-  if (draft.axis.empty() && chosen != force_inputs().end() && draft.recordings.front().input) {
+  if (draft.request.axis.empty() && chosen != force_inputs().end() &&
+      draft.recordings.front().input) {
     if (draft.recordings.front().input_column().of_rating)
       draft.structure.drive = Drive::rated_force;
     else if (chosen->kind == Kind::current)

@@ -71,7 +71,7 @@ std::string JobDraft::say(std::string_view text) const {
 }
 
 std::string JobDraft::relative(const std::string& path) const {
-  const fs::path near = fs::proximate(fs::absolute(path), fs::absolute(folder));
+  const fs::path near = fs::proximate(fs::absolute(path), fs::absolute(request.folder));
   const bool far = near.generic_string().starts_with("../../../");
   return (far ? fs::absolute(path) : near).lexically_normal().generic_string();
 }

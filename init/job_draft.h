@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fit/data/job.h"
+#include "init/init_request.h"
 #include "init/recording_guess.h"
 #include "init/starter_axis.h"
 #include "io/results/output_folder.h"
@@ -33,7 +34,8 @@ struct DraftRecording {
   double input_offset = 0.0;    ///< s, added to the times of that
   /// What tells whether each value of the input holds until the next; empty: its kind does.
   std::string hold_reason = {};
-  bool is_held = false;  ///< by that
+  bool is_held = false;                ///< by that
+  std::optional<double> trim_to = {};  ///< s, recorded time up to which it is used
 
   /// Once the input is known.
   const GuessedColumn& input_column() const;
@@ -54,16 +56,13 @@ struct DraftParameter {
 };
 
 struct JobDraft {
-  std::string axis;  ///< file, or name of a machine; empty: one is to be made
-  bool is_machine = false;
-  std::string folder;          ///< where the job is meant to go
-  std::optional<double> gain;  ///< N/V, of the user
-  std::vector<ColumnAnswer> answers;
+  InitRequest request;
   std::string axis_text = {};  ///< of the axis file to write; empty: that of the user
   bool joined = false;         ///< of two files: their clocks may differ
   std::vector<DraftRecording> recordings = {};
   Structure structure = {};
   std::optional<FirstLook> look = {};       ///< at what a force drives, see first_look.h
+  bool goes_one_way = false;                ///< which does not tell friction from a constant force
   std::optional<StarterAxis> starter = {};  ///< none where an axis file is given
   std::vector<DraftParameter> parameters = {};
   std::vector<std::string> guesses = {};  ///< what the user should look at

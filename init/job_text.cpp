@@ -53,6 +53,7 @@ std::string column_map(const GuessedColumn& column, const std::string& unit,
     out << YAML::Key << "supply" << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key
         << "column" << YAML::Value << column.supply << YAML::Key << "unit" << YAML::Value
         << column.supply_unit << YAML::EndMap;
+  if (column.hold > 1) out << YAML::Key << "hold" << YAML::Value << column.hold;
   if (offset != 0.0)
     out << YAML::Key << "offset" << YAML::Value << with_unit(round_to_digits(offset, 6), "s");
   if (!more.first.empty()) out << YAML::Key << more.first << YAML::Value << more.second;
@@ -136,12 +137,26 @@ std::string input_text(const JobDraft& draft, const DraftRecording& recording,
                      column_map(written, unit, hold, recording.input_file, recording.input_offset));
 }
 
+/// Whether the first value of a velocity is none, and the next ones are hardly more.
+bool begins_at_rest(const GuessedColumn& velocity) {
+  constexpr double kErrors = 4.0, kPart = 0.02;
+  const double first = std::abs(velocity.values.front());
+  return first <= kPart * largest(velocity.values) &&
+         first <= kErrors * std::max(noise_from_differences(velocity.values),
+                                     resolution_of(velocity.values));
+}
+
 /// A recording that begins at rest needs no more than where; another one its first samples.
 std::string initial_text(const JobDraft& draft, const RecordingGuess& guess) {
   const GuessedColumn *position = guess.find(Kind::position),
                       *velocity = guess.find(Kind::velocity);
   if (position == nullptr && velocity == nullptr) return {};
-  if (draft.is_direct()) return "    initial_state: data   # from the first samples\n";
+  if (draft.is_direct())
+    return std::string("    initial_state: data   # from the first samples\n") +
+           (velocity && begins_at_rest(*velocity)
+                ? fmt::format("    set: {{initial.y1: {}}}   # at rest, by its velocity\n",
+                              with_unit(0.0, unit_on(draft.vocabulary(), "m/s")))
+                : "");
   constexpr std::size_t kFirst = 4;
   double speed = 0.0, noise = 0.0;
   if (velocity) {
@@ -173,6 +188,8 @@ std::string recording_text(const JobDraft& draft, const DraftRecording& recordin
               : fmt::format("    time: {}   # {:.4g} Hz, {:.4g} s\n",
                             column_map(guess.time, guess.time.unit), 1.0 / found.interval,
                             found.duration);
+  if (recording.trim_to)
+    text += fmt::format("    trim: {{to: {}}}\n", with_unit(*recording.trim_to, "s"));
   text += "    signals:\n";
   const GuessedColumn& input = recording.input_column();
   text += input_text(draft, recording, input);
@@ -251,7 +268,7 @@ std::string job_text(const JobDraft& draft) {
       "do not follow from the recordings: check them first. All\n# keys: "
       "docs/job-file.md.\naxis: {}\nrecordings:\n",
       version(), kJobName, kJobName,
-      scalar(draft.axis_text.empty() ? draft.relative(draft.axis) : kAxisName));
+      scalar(draft.axis_text.empty() ? draft.relative(draft.request.axis) : kAxisName));
   for (std::size_t i = 0; i < draft.recordings.size(); ++i)
     text += recording_text(draft, draft.recordings[i],
                            draft.recordings.size() > 1 && i + 1 == draft.recordings.size());

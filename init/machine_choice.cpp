@@ -81,15 +81,13 @@ struct Trial {
 
 }  // namespace
 
-MachineChoice choose_machine(const std::vector<std::string>& recordings, const std::string& folder,
-                             const std::vector<ColumnAnswer>& answers, const RunContext& context,
-                             int threads) {
+MachineChoice choose_machine(const InitRequest& request, const RunContext& context, int threads) {
   constexpr std::size_t kMostSamples = 20000;  // of fits that take seconds
   constexpr double kExplained = 0.02;          // of the input
   MachineChoice choice;
   std::string refusal;
   try {
-    choice.job = initial_job(recordings, {}, folder, {}, answers, false, context);
+    choice.job = initial_job(request, context);
   } catch (const std::runtime_error& error) {
     // Columns that do not suit one mass may suit another axis.
     refusal = error.what();
@@ -99,11 +97,11 @@ MachineChoice choose_machine(const std::vector<std::string>& recordings, const s
                        (choice.job.look->unexplained < kExplained ||
                         choice.job.look->direction == FirstLook::Direction::open);
   if (is_told) return choice;
-  const std::vector<std::string> machines = machines_for(recordings, answers);
+  const std::vector<std::string> machines = machines_for(request);
   std::vector<Trial> trials;
   const auto try_axis = [&](const std::string& name, InitialJob made) {
     Trial trial{trials.size(), {name, {}, 0}, std::move(made), {}};
-    const JobFile read = read_job_draft(trial.job.files, folder);
+    const JobFile read = read_job_draft(trial.job.files, request.folder);
     if (name != kMass) mark_examples(trial.job, read);
     trial.read = read.job;
     trial.read.options.threads = threads;
@@ -119,7 +117,7 @@ MachineChoice choose_machine(const std::vector<std::string>& recordings, const s
   };
   const auto samples_of = [&](const InitialJob& made) {
     std::size_t samples = 0;
-    for (const Recording& r : read_job_draft(made.files, folder).job.recordings)
+    for (const Recording& r : read_job_draft(made.files, request.folder).job.recordings)
       samples += r.times.size();
     return samples;
   };
@@ -129,9 +127,12 @@ MachineChoice choose_machine(const std::vector<std::string>& recordings, const s
   }
   if (refusal.empty()) try_axis(kMass, choice.job);
   for (const std::string& name : machines) {
+    InitRequest of_machine = request;
+    of_machine.axis = name;
+    of_machine.is_machine = true;
     if (is_set(context.stop)) break;
     try {
-      try_axis(name, initial_job(recordings, name, folder, {}, answers, true, context));
+      try_axis(name, initial_job(of_machine, context));
     } catch (const std::runtime_error& error) {
       if (refusal.empty()) refusal = error.what();
     }

@@ -35,8 +35,7 @@ struct MachineChoice {
 ///
 /// When the stop flag is set, it is one of those that were tried, or one mass. Throws
 /// std::runtime_error where the recordings make no job.
-MachineChoice choose_machine(const std::vector<std::string>& recordings, const std::string& folder,
-                             const std::vector<ColumnAnswer>& answers = {},
-                             const RunContext& context = {}, int threads = 0);
+MachineChoice choose_machine(const InitRequest& request, const RunContext& context = {},
+                             int threads = 0);
 
 }  // namespace axisfit

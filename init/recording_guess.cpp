@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "fit/data/recording_check.h"
 #include "init/columns/derivative_rule.h"
 #include "init/columns/heading.h"
 #include "init/columns/range_rule.h"
@@ -26,6 +27,22 @@ bool may_be_constant(Kind kind) {
 }
 
 bool is_place(Kind kind) { return kind == Kind::position || kind == Kind::load_position; }
+
+/// Each value until the next; those at NaN times are left out.
+Values held(const Values& times, const Values& values, const Values& at) {
+  Values result;
+  double last = NAN;
+  std::size_t k = 0;
+  for (const double t : at) {
+    for (; k < times.size() && !(times[k] > t); ++k)
+      if (!std::isnan(values[k])) last = values[k];
+    result.push_back(last);
+  }
+  const auto known = std::ranges::find_if(result, [](double x) { return !std::isnan(x); });
+  if (known == result.end()) return {};
+  std::fill(result.begin(), known, *known);
+  return result;
+}
 
 /// Linear between the values that there are, constant beyond; those at NaN times are left out.
 Values interpolated(const Values& times, const Values& values, const Values& at) {
@@ -56,8 +73,8 @@ class Guesser {
       : file_(file), path_(path), options_(options) {}
 
   RecordingGuess guess() {
-    headings_ = headings_of(file_, path_, options_.answers);
-    time_ = find_time(file_, path_, headings_, rate_in(options_.answers));
+    headings_ = headings_of(file_, path_, options_.answers.columns);
+    time_ = find_time(file_, path_, headings_, options_.answers.rate);
     if (time_.place) name_unit(time_.column, headings_[*time_.place]);
     find_columns();
     if (std::ranges::all_of(file_.columns(), [](const Column& c) { return c.name.empty(); }))
@@ -86,7 +103,21 @@ class Guesser {
     const Values times =
         time_.rate > 0.0 ? even_times(file_, time_.rate) : times_of_clock(file_, clock.value_or(0));
     if (times.size() != values.size() || !increases(without_gaps(times))) return {};
-    return interpolated(times, values, time_.column.raw);
+    return has_changes_only(c) ? held(times, values, time_.column.raw)
+                               : interpolated(times, values, time_.column.raw);
+  }
+
+  /// Whether what drives the axis has a clock of its own that is far slower: whoever writes only
+  /// what changes leaves out what stays.
+  bool has_changes_only(std::size_t c) const {
+    const auto clock = file_.columns()[c].clock;
+    const auto& guess = headings_[c].guess;
+    if (!clock || clock == time_.place || time_.column.raw.empty() || !guess ||
+        !may_be_constant(guess->kind))
+      return false;
+    constexpr double kSlower = 3.0;
+    const Sampling own = sampling(without_gaps(times_of_clock(file_, *clock)));
+    return std::max(own.largest_gap, own.interval) > kSlower * sampling(time_.column.raw).interval;
   }
 
   bool is_clock(std::size_t c) const {
@@ -97,6 +128,7 @@ class Guesser {
   /// What name or answer say of unit and factor.
   static void name_unit(UnscaledColumn& column, const Heading& heading) {
     column.rank = heading.guess ? heading.guess->rank : 0;
+    column.turns = heading.guess && heading.guess->turns;
     column.column.is_duty = heading.guess && heading.guess->is_duty;
     if (heading.answer != nullptr) {
       column.column.answer = heading.answer->column;
@@ -140,11 +172,11 @@ class Guesser {
     std::vector<Candidate> list = candidates();
     std::vector<std::string> others;
     try {
-      motor_ = keep_one_axis(list, motor_in(options_.answers), others);
+      motor_ = keep_one_axis(list, options_.answers.motor, others);
     } catch (const std::runtime_error& error) {
       throw RecordingError(path_, 0, error.what());
     }
-    if (!motor_.empty() && motor_in(options_.answers).empty())
+    if (!motor_.empty() && options_.answers.motor.empty())
       notes_.push_back(
           fmt::format("the columns are of several axes, of which only {} moves: it was "
                       "taken; --motor names another one",
@@ -213,6 +245,7 @@ class Guesser {
         (!time_.place || file_.columns()[*clock].values != file_.columns()[*time_.place].values)) {
       column.column.clock = headings_[*clock].reference;
       column.column.clock_unit = file_.columns()[*clock].unit;
+      column.column.changes_only = has_changes_only(c);
     }
     return column;
   }
@@ -247,10 +280,23 @@ class Guesser {
       if (column.size == 0.0) size_other(column);
   }
 
-  void size_by_range(UnscaledColumn& column) const {
+  /// That of the axis; where nobody knows it, that of a name such as "tau" or "theta", unless the
+  /// motion was recorded in lengths.
+  Joint joint() {
+    const bool turns = std::ranges::any_of(columns_, [&](const auto& entry) {
+      return entry.second.turns && entry.second.size == 0.0;
+    });
+    for (const Kind kind : {Kind::position, Kind::velocity})
+      if (const UnscaledColumn* motion = columns_.find(kind);
+          motion != nullptr && motion->joint == Joint::prismatic)
+        return options_.joint;
+    return turns ? Joint::revolute : options_.joint;
+  }
+
+  void size_by_range(UnscaledColumn& column) {
     const auto elsewhere = options_.ranges.find(column.column.column);
     const double other = elsewhere == options_.ranges.end() ? 0.0 : elsewhere->second;
-    size_motion_by_range(column, options_.joint, std::max(column.column.range, other));
+    size_motion_by_range(column, joint(), std::max(column.column.range, other));
   }
 
   void size_other(UnscaledColumn& column) {
@@ -272,7 +318,7 @@ class Guesser {
     } else if (column.column.is_duty) {
       size_duty_by_range(column);
     } else {
-      column.set_unit(*stored_unit(kind, si_unit(kind)));
+      column.set_unit(*stored_unit(kind, si_unit(kind, joint())));
       column.guess(fmt::format("no unit in the header, taken as {}", column.column.unit));
     }
   }

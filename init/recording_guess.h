@@ -40,7 +40,7 @@ struct RecordingGuess {
 
 /// What is known of a recording before it is looked at.
 struct GuessOptions {
-  std::vector<ColumnAnswer> answers{};
+  Answers answers{};
   Joint joint = Joint::prismatic;  ///< of the axis, as far as it is known
   /// How large columns are at most in other recordings of the job, as stored, by their names.
   std::map<std::string, double> ranges{};

@@ -291,18 +291,22 @@ py::dict simulate(const std::string& axis, const std::string& name, const std::s
 /// A job for recordings: files to write, and what was guessed.
 py::tuple init(const std::vector<std::string>& recordings, const std::string& folder,
                const std::string& axis, const std::string& machine, std::optional<double> gain,
-               const std::vector<std::string>& columns, const py::object& progress) {
-  std::vector<ColumnAnswer> answers;
-  for (const std::string& text : columns) answers.push_back(read_answer(text));
+               const std::vector<std::string>& columns, const std::string& rate,
+               const std::string& motor, const py::object& progress) {
+  InitRequest request{.recordings = recordings,
+                      .folder = folder,
+                      .axis = machine.empty() ? axis : machine,
+                      .is_machine = !machine.empty(),
+                      .gain = gain,
+                      .answers = {.motor = motor}};
+  for (const std::string& text : columns) request.answers.columns.push_back(read_answer(text));
+  if (!rate.empty()) request.answers.rate = read_rate(rate);
   Work<MachineChoice> work;
   auto [choice, stopped] = work.run(progress, {}, [&](const RunContext& context) -> MachineChoice {
-    if (!machine.empty() || !axis.empty() || gain) {
-      MachineChoice one;
-      one.job = initial_job(recordings, machine.empty() ? axis : machine, folder, gain, answers,
-                            !machine.empty());
-      return one;
-    }
-    return choose_machine(recordings, folder, answers, context);
+    if (request.axis.empty() && !request.gain) return choose_machine(request, context);
+    MachineChoice one;
+    one.job = initial_job(request, context);
+    return one;
   });
   if (stopped) std::rethrow_exception(stopped);
   return py::make_tuple(choice->job.files, choice->job.guesses);
@@ -383,7 +387,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("simulate", &simulate, "axis"_a, "name"_a, "motion"_a, "signals"_a, "rate"_a, "seed"_a,
              "exact"_a, "band"_a);
   module.def("init", &init, "recordings"_a, "folder"_a, "axis"_a, "machine"_a, "gain"_a,
-             "columns"_a, "progress"_a);
+             "columns"_a, "rate"_a, "motor"_a, "progress"_a);
 }
 
 }  // namespace axisfit

@@ -104,7 +104,7 @@ ColumnAnswer read_answer(const std::string& text) {
   return answer;
 }
 
-ColumnAnswer read_rate(const std::string& text) {
+double read_rate(const std::string& text) {
   const std::size_t end = std::min(text.find_first_not_of("0123456789.+-eE"), text.size());
   std::size_t unit = end;
   while (unit < text.size() && text[unit] == ' ') ++unit;
@@ -118,28 +118,7 @@ ColumnAnswer read_rate(const std::string& text) {
     throw std::runtime_error(fmt::format(
         "--rate {}: write how many samples a second there are, such as \"1 kHz\" or 500Hz",
         sanitized(text)));
-  ColumnAnswer answer;
-  answer.kind = Kind::time;
-  answer.rate = rate;
-  return answer;
-}
-
-ColumnAnswer motor_answer(const std::string& name) {
-  ColumnAnswer answer;
-  answer.motor = name;
-  return answer;
-}
-
-std::optional<double> rate_in(const std::vector<ColumnAnswer>& answers) {
-  for (const ColumnAnswer& answer : answers)
-    if (answer.rate > 0.0) return answer.rate;
-  return std::nullopt;
-}
-
-std::string motor_in(const std::vector<ColumnAnswer>& answers) {
-  for (const ColumnAnswer& answer : answers)
-    if (!answer.motor.empty()) return answer.motor;
-  return {};
+  return rate;
 }
 
 std::vector<std::string_view> answerable_signals() {

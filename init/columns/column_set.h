@@ -35,6 +35,8 @@ struct GuessedColumn {
   std::string answer{};  ///< the column as the user called it; empty: nobody asked
   std::string supply{};  ///< column of the voltage that the values of a duty are of; empty: none
   std::string supply_unit{};
+  std::size_t hold = 1;       ///< how often each value was recorded
+  bool changes_only = false;  ///< it seems to be recorded where it changes alone
 
   bool is_constant() const;
 };
@@ -54,6 +56,7 @@ struct UnscaledColumn {
   std::vector<double> raw;     ///< at the times of the recording
   std::string shown;           ///< what messages call it
   int rank = 0;
+  bool turns = false;     ///< its name is that of an angle or a torque
   bool answered = false;  ///< by the user
 
   void set_unit(const StoredUnit& unit);

@@ -12,6 +12,7 @@ namespace axisfit {
 namespace {
 
 constexpr std::size_t kMinSamples = 10;  // of a recording, as the reader of jobs wants
+constexpr std::size_t kMinChanges = 2;
 
 bool is_usable(const Column& column) {
   if (!column.obstacle.empty()) return false;
@@ -20,7 +21,8 @@ bool is_usable(const Column& column) {
     if (std::isinf(x)) return false;
     there += !std::isnan(x);
   }
-  return there >= kMinSamples;
+  // A clock of its own may tick where the values change alone.
+  return there >= (column.clock ? kMinChanges : kMinSamples);
 }
 
 std::string shown(const Column& column, const std::string& reference, std::size_t c) {
@@ -33,9 +35,7 @@ const ColumnAnswer* answer_for(const std::vector<ColumnAnswer>& answers,
                                const std::string& reference, std::size_t c) {
   const ColumnAnswer* found = nullptr;
   for (const ColumnAnswer& answer : answers)
-    if (answer.is_of_column() &&
-        (answer.column == reference || answer.column == std::to_string(c + 1)))
-      found = &answer;
+    if (answer.column == reference || answer.column == std::to_string(c + 1)) found = &answer;
   return found;
 }
 

@@ -17,7 +17,7 @@ struct Heading {
   std::string shown;      ///< what messages call it: with its number where a job needs that
   std::optional<ColumnGuess> guess;      ///< what the user says of it, or else its name
   const ColumnAnswer* answer = nullptr;  ///< among those given
-  bool is_usable = false;                ///< it has ten finite values, and nothing infinite
+  bool is_usable = false;                ///< it has finite values enough, and nothing infinite
   Overflow overflow{};
 };
 

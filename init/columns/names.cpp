@@ -141,6 +141,8 @@ constexpr std::string_view kMotorWords[]{"motor", "rotor"};
 constexpr std::string_view kLoadWords[]{"load",    "link", "joint", "output", "arm",
                                         "abtrieb", "last", "scale", "linear"};
 constexpr std::string_view kDutyWords[]{"duty", "pwm", "power", "throttle", "dutycycle"};
+constexpr std::string_view kTurningWords[]{"torque", "tau",   "drehmoment", "trq",   "angle",
+                                           "winkel", "theta", "phi",        "omega", "drehzahl"};
 constexpr std::string_view kRawWords[]{"raw", "adc", "roh", "rohwert"};
 constexpr std::string_view kWatts[]{"w", "watt", "watts", "kw"};
 /// They say nothing of the axis.
@@ -224,6 +226,15 @@ std::optional<Kind> kind_of_unit(const std::string& name) {
   return std::nullopt;
 }
 
+/// The same of a name that says nothing else, such as "spindle_turns": of a motion, since what else
+/// has such a unit is rare, and by more than one letter.
+std::optional<Kind> kind_of_long_unit(const std::string& name) {
+  for (const Kind kind : {position, velocity, acceleration})
+    if (const SplitName parts = split(name, kind); parts.unit.size() > 1 && !is_raw(parts.unit))
+      return kind;
+  return std::nullopt;
+}
+
 Side side_of(const std::vector<std::string>& words) {
   return has_word(words, kLoadWords)    ? Side::load
          : has_word(words, kMotorWords) ? Side::motor
@@ -274,6 +285,9 @@ std::optional<ColumnGuess> guess_as(Kind kind, const std::string& name) {
   } else if (const auto told = is_setpoint || is_measured ? kind_of_unit(name) : std::nullopt) {
     guess.kind = *told;
     guess.rank = 2;
+  } else if (const auto ending = kind_of_long_unit(name)) {
+    guess.kind = *ending;
+    guess.rank = 1;
   } else if (is_setpoint) {
     guess.kind = words.front() == "qg" || words.front() == "qdes" ? position : command;
     guess.rank = 2;
@@ -297,6 +311,7 @@ std::optional<ColumnGuess> guess_as(Kind kind, const std::string& name) {
   }
   guess.is_duty = guess.kind == command && has_word(words, kDutyWords) &&
                   (guess.unit.empty() || is_part_of_rating(guess.unit));
+  guess.turns = has_word(words, kTurningWords);
   guess.side = side_of(words);
   guess.axis = axis_in(words, word);
   if (is_measured) guess.rank += 3;

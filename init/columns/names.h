@@ -20,6 +20,7 @@ struct ColumnGuess {
   int rank = 0;      ///< the surer the higher, among columns of one kind
   bool is_measured = false;  ///< the name says so: "actual", "ist"
   bool is_duty = false;      ///< a part of a supply: "pwm", "duty", "power"
+  bool turns = false;        ///< the name is that of an angle or a torque: "theta", "tau"
   Side side = Side::unsaid;
   /// The words that are left: of which axis it is, such as {"0"} of "Motor 0 Position [mm]".
   std::vector<std::string> axis{};

@@ -348,7 +348,7 @@ def simulate(axis, motion, *, signals=("position", "velocity"), rate=1000.0, see
     return _frame(_core.simulate(axis.text, axis.name, _os.fspath(motion), list(signals), rate, seed, exact, band))
 
 
-def init(recordings, folder=".", *, axis=None, machine=None, gain=None, columns=(), progress=None):
+def init(recordings, folder=".", *, axis=None, machine=None, gain=None, columns=(), rate="", motor="", progress=None):
     """A first job for recordings that nobody has described: writes job.yaml and axis.yaml into the folder.
 
     recordings: paths. The keywords are the options of `fit-params --init`. Returns the Job; its attribute `guesses` has
@@ -357,7 +357,7 @@ def init(recordings, folder=".", *, axis=None, machine=None, gain=None, columns=
     recordings = [recordings] if isinstance(recordings, (str, _os.PathLike)) else recordings
     folder = _os.fspath(folder)
     files, guesses = _core.init([_os.fspath(r) for r in recordings], folder, _os.fspath(axis or ""), machine or "", gain,
-                                list(columns), _progress(progress))
+                                list(columns), rate, str(motor), _progress(progress))
     for name, _ in files:
         if _os.path.exists(_os.path.join(folder, name)):
             raise FileExistsError(f"{_os.path.join(folder, name)} already exists and would be overwritten")

@@ -1,8 +1,10 @@
 #include "init/draft_look.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/init/made_job.h"
 
@@ -73,6 +75,59 @@ TEST_F(DraftLookTest, TheHoldIsThatWithWhichTheMotionGoes) {
   folder_.write("b.csv", table);
   make({"b.csv"});
   EXPECT_EQ(read().job.recordings[0].command.hold, Hold::zero_order) << "though it has noise";
+}
+
+// A force that was written where it changes, beside a position of every sample.
+TEST_F(DraftLookTest, WhatIsWrittenWhereItChangesHolds) {
+  const Table table = driven();
+  std::string rows = "Timestamp,Key,Value\n";
+  double before = NAN;
+  for (std::size_t i = 0; i < table.columns[0].values.size(); ++i) {
+    const double time = table.columns[0].values[i], force = table.columns[1].values[i];
+    if (force != before) rows += fmt::format("{},force_N,{}\n", time, 60.0 * force);
+    rows += fmt::format("{},position_m,{}\n", time, table.columns[2].values[i]);
+    before = force;
+  }
+  folder_.write("list.csv", rows);
+  make({"list.csv"});
+  const Job job = read().job;
+  EXPECT_EQ(job.recordings[0].command.hold, Hold::zero_order);
+  EXPECT_EQ(delay(job), nullptr);
+  EXPECT_EQ(job.recordings[0].command_sigma, 0.0);
+  expect_the_driven_mass(fitted(read()), 1.0);
+}
+
+TEST_F(DraftLookTest, AMotionOneWayIsSlowedByFriction) {
+  folder_.write("forward.csv", driven(1, {{2.0, 1.0, 1.5, 0.7, 1.8, 1.2}, 0.3}));
+  const InitialJob made = make({"forward.csv"}, {}, 60.0);
+  ASSERT_TRUE(made.look);
+  EXPECT_EQ(made.look->constant.value, 0.0);
+  EXPECT_EQ(std::ranges::count(read().job.free, quantity_index("constant_force.F_0"),
+                               &FreeParameter::quantity),
+            0);
+  EXPECT_NEAR(fitted(read()).at("coulomb_friction.F_c"), 15.0 - 4.0, 1.0) << "less what pushes";
+}
+
+TEST_F(DraftLookTest, AHardStopIsLeftOut) {
+  Table table = driven(1, {{1.0, -1.0, 2.0}, 0.3});
+  constexpr std::size_t kFree = 450, kAll = 650;
+  table.columns.resize(3);
+  for (Column& column : table.columns) {
+    column.values.resize(kFree);
+    column.values.resize(kAll, column.values.back());
+  }
+  for (std::size_t i = kFree; i < kAll; ++i) {
+    table.columns[0].values[i] = 0.002 * static_cast<double>(i);
+    table.columns[1].values[i] = 2.0;  // it pushes on
+  }
+  folder_.write("a.csv", table);
+  const InitialJob made = make({"a.csv"}, {}, 60.0);
+  const JobFile file = read();
+  EXPECT_NEAR(file.job.recordings[0].times.back(), 0.9, 0.01);
+  EXPECT_TRUE(std::ranges::any_of(made.guesses, [](const std::string& text) {
+    return text.starts_with("a ends on a hard stop at 0.9");
+  }));
+  EXPECT_NEAR(fitted(file).at("M"), 12.0, 0.3);
 }
 
 }  // namespace

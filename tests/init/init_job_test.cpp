@@ -337,7 +337,7 @@ TEST_F(InitJobTest, AxesOfOneFileAreAskedFor) {
               std::string::npos)
         << error.what();
   }
-  make({"a.csv"}, {}, 60.0, {motor_answer("right")});
+  make({"a.csv"}, {}, 60.0, {.motor = "right"});
   EXPECT_NE(folder_.read("job.yaml").find("position: {column: right_pos_m, unit: m}"),
             std::string::npos);
   EXPECT_NE(folder_.read("job.yaml").find("command: {column: right_current_A, unit: A"),
@@ -348,7 +348,7 @@ TEST_F(InitJobTest, AxesOfOneFileAreAskedFor) {
 TEST_F(InitJobTest, AReferenceIsNotFitted) {
   make({AXISFIT_TESTDATA "/contact/q-and-q-des.csv"});
   const auto found = fitted(read());
-  EXPECT_NEAR(found.at("M"), 0.5, 0.02);
+  EXPECT_NEAR(found.at("J"), 0.5, 0.02);  // a torque without a unit turns a joint
   EXPECT_NEAR(found.at("B_a"), 0.4, 0.04);
 }
 
@@ -380,7 +380,8 @@ TEST_F(InitJobTest, AServoWithAPendulumIsReadFromItsFileAlone) {
                  << ". To run this test, name their folder in the environment variable "
                     "AXISFIT_BAM.";
   constexpr double kGain = 0.38670 / 4.0171 * 7.3 / 885.0;  // N m per count, published (model m1)
-  make({(data / "sin_sin_8.csv").string()}, {}, kGain, {read_answer("position=position:rad")});
+  make({(data / "sin_sin_8.csv").string()}, {}, kGain,
+       {.columns = {read_answer("position=position:rad")}});
   const std::string job = folder_.read("job.yaml");
   EXPECT_NE(job.find("command: {column: load, unit: V, signed_bits: 16}"), std::string::npos)
       << job;

@@ -167,7 +167,7 @@ TEST_F(InputChoiceTest, APairingThatExplainsNothingIsRefused) {
         << error.what();
   }
   EXPECT_EQ(folder_.names().count("job.yaml"), 0u);
-  make({"a.csv"}, {}, {}, {read_answer("current=2:A"), read_answer("position=3:m")});
+  make({"a.csv"}, {}, {}, {.columns = {read_answer("current=2:A"), read_answer("position=3:m")}});
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ TEST(JobDraft, AnInputIsMeasuredOrCommanded) {
 
 TEST(JobDraft, PathsAreRelativeWhereThatIsShort) {
   JobDraft draft;
-  draft.folder = "/data/machine/results";
+  draft.request.folder = "/data/machine/results";
   EXPECT_EQ(draft.relative("/data/machine/results/a.csv"), "a.csv");
   EXPECT_EQ(draft.relative("/data/machine/raw/a.csv"), "../raw/a.csv");
   EXPECT_EQ(draft.relative("/data/a.csv"), "../../a.csv");

@@ -61,7 +61,7 @@ TEST_F(JobTextTest, SamplesWithoutTimesHaveARate) {
       driven(), {{"t_s", 1.0}, {"i_A", 1.0}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
   table.columns.erase(table.columns.begin());
   folder_.write("a.csv", table);
-  make({"a.csv"}, {}, {}, {read_rate("500 Hz")});
+  make({"a.csv"}, {}, {}, {.rate = read_rate("500 Hz")});
   EXPECT_NE(folder_.read("job.yaml").find("    rate: 500 Hz   # "), std::string::npos);
   expect_the_driven_mass(fitted(read()), 1.0 / 60.0);
 }

@@ -36,7 +36,7 @@ class MachineChoiceTest : public ::testing::Test {
 
   /// With the job written where it is meant to go.
   MachineChoice choose(const std::string& recording) {
-    MachineChoice choice = choose_machine({recording}, folder_.path());
+    MachineChoice choice = choose_machine({.recordings = {recording}, .folder = folder_.path()});
     for (const auto& [name, contents] : choice.job.files) folder_.write(name, contents);
     return choice;
   }
@@ -67,7 +67,7 @@ TEST_F(MachineChoiceTest, OneMassIsTakenWhereItExplainsTheForces) {
 
 constexpr const char* kGeared = R"(drive: motor_current
 transmission: backlash
-parameters: {K_f: 60 N/A, r_g: 5 mm, J_m: 0.4 kg cm^2, B_m: 0 N m s/rad, H: 0.08 mm, k_g: 1.5 MN/m,
+parameters: {K_f: 60 N/A, r_g: 5 mm, J_m: 0.5 kg cm^2, B_m: 0 N m s/rad, H: 0.08 mm, k_g: 1.5 MN/m,
   b_g: 400 N s/m, M: 35 kg, B_a: 90 N s/m}
 effects: {coulomb_friction: {F_c: 25 N}}
 controller: {limit: 100 A, counts_per_revolution: 31416}
@@ -122,7 +122,7 @@ TEST_F(MachineChoiceTest, ColumnsSayWhatIsTried) {
       const auto columns = static_cast<std::size_t>(1 + std::ranges::count(header, ','));
       text += fmt::format("{}\n", fmt::join(std::span(values).first(columns), ","));
     }
-    return machines_for({folder_.write("run.csv", text)});
+    return machines_for({.recordings = {folder_.write("run.csv", text)}});
   };
   using Names = std::vector<std::string>;
   EXPECT_EQ(machines("time_s,current_A,position_m"),

@@ -22,10 +22,14 @@ class InitJobTest : public ::testing::Test {
  protected:
   /// Makes a job in the folder.
   InitialJob make(std::vector<std::string> recordings, const std::string& axis = {},
-                  std::optional<double> gain = {}, const std::vector<ColumnAnswer>& answers = {}) {
+                  std::optional<double> gain = {}, const Answers& answers = {}) {
     for (std::string& r : recordings)
       if (!std::filesystem::path(r).is_absolute()) r = folder_.path(r);
-    InitialJob made = initial_job(recordings, axis, folder_.path(), gain, answers);
+    InitialJob made = initial_job({.recordings = recordings,
+                                   .folder = folder_.path(),
+                                   .axis = axis,
+                                   .gain = gain,
+                                   .answers = answers});
     for (const auto& [name, contents] : made.files) folder_.write(name, contents);
     return made;
   }
@@ -45,7 +49,8 @@ class InitJobTest : public ::testing::Test {
   }
 
   /// A driven mass: M = 12 kg, B_a = 40 N s/m, F_c = 15 N and F_0 = 4 N at K_f = 60 N/V.
-  Table driven(std::uint64_t seed = 1) {
+  Table driven(std::uint64_t seed = 1,
+               const LevelsMotion& motion = {{2.0, -2.0, 1.0, -1.5, 0.5, -0.8}, 0.3}) {
     const std::string axis = folder_.write(
         "true.yaml",
         "drive: force_source\ntransmission: rigid\n"
@@ -53,7 +58,7 @@ class InitJobTest : public ::testing::Test {
         "effects: {coulomb_friction: {F_c: 15 N}, constant_force: {F_0: 4 N}}\n"
         "instruments: {velocity: {noise: 1 mm/s}, acceleration: {noise: 0.05 m/s^2}}\n"
         "controller: {counts_per_revolution: 3141592}\n");
-    return record_levels(axis, {{2.0, -2.0, 1.0, -1.5, 0.5, -0.8}, 0.3}, 1.8,
+    return record_levels(axis, motion, 1.8,
                          {Signal::position, Signal::velocity, Signal::acceleration}, 500.0, seed);
   }
 

@@ -66,6 +66,18 @@ TEST(RecordingGuessTest, WhereNothingTellsTheUnitTheJointDoes) {
   EXPECT_FALSE(has_motion_without_unit(guess_of(swing(1e3, 1.0))));
 }
 
+TEST(RecordingGuessTest, ATorqueTurnsAJointUnlessItMovesInLengths) {
+  Table table = swing(1.0, 1.0);
+  table.columns[1].name = "tau";
+  table.columns[3].name = "velocity";
+  RecordingGuess guess = guess_of(table);
+  EXPECT_TRUE(is_of_angles(guess));
+  EXPECT_EQ(guess.find(Kind::force)->stored, "N m");
+  table.columns[2].name += "_mm";
+  guess = guess_of(table);
+  EXPECT_FALSE(is_of_angles(guess));
+}
+
 TEST(RecordingGuessTest, ATimeHasTheUnitThatPositionAndVelocityTell) {
   Table table = swing(1e6, 1e3);
   table.columns[0].name = "time";
@@ -82,7 +94,8 @@ TEST(RecordingGuessTest, AnAnswerComesBeforeNamesAndValues) {
   table.columns[1].name = "Status";
   const std::string path = folder.write("a.csv", table);
   const auto position = [&](const std::string& answer) {
-    RecordingGuess guess = guess_recording(RecordingFile(path), path, {{read_answer(answer)}});
+    RecordingGuess guess =
+        guess_recording(RecordingFile(path), path, {{.columns = {read_answer(answer)}}});
     write_units(guess, Joint::prismatic);
     return *guess.find(Kind::position);
   };
@@ -120,7 +133,8 @@ TEST(RecordingGuessTest, AnAnswerKeepsTheTurnsThatWereFound) {
   const TempFolder folder;
   const std::string path = folder.write("a.csv", table);
   for (const char* answer : {"position=Geber:rev/4096", "position=Geber"}) {
-    RecordingGuess guess = guess_recording(RecordingFile(path), path, {{read_answer(answer)}});
+    RecordingGuess guess =
+        guess_recording(RecordingFile(path), path, {{.columns = {read_answer(answer)}}});
     EXPECT_TRUE(is_of_angles(guess));
     write_units(guess, Joint::revolute);
     const GuessedColumn& position = *guess.find(Kind::position);
@@ -139,7 +153,7 @@ TEST(RecordingGuessTest, ANegativeFactorTurnsTheColumn) {
   const TempFolder folder;
   const std::string path = folder.write("a.csv", swing(1e3, 1e3));
   RecordingGuess guess =
-      guess_recording(RecordingFile(path), path, {{read_answer("position=x:mm*-1")}});
+      guess_recording(RecordingFile(path), path, {{.columns = {read_answer("position=x:mm*-1")}}});
   write_units(guess, Joint::prismatic);
   EXPECT_EQ(guess.find(Kind::position)->factor, -1.0);
   EXPECT_NEAR(guess.find(Kind::position)->values[100], -0.1 * std::sin(1.5), 1e-12);
@@ -174,7 +188,7 @@ TEST(RecordingGuessTest, ASupplyIsWhatTheUserSays) {
   table.columns.push_back({"ch7", std::vector<double>(400, 24000.0)});
   const TempFolder folder;
   const std::string path = folder.write("a.csv", table);
-  const std::vector<ColumnAnswer> answers{read_answer("duty=out:%"), read_answer("supply=ch7:mV")};
+  const Answers answers{.columns = {read_answer("duty=out:%"), read_answer("supply=ch7:mV")}};
   const RecordingGuess guess = guess_recording(RecordingFile(path), path, {answers});
   EXPECT_EQ(guess.find(Kind::command)->supply, "ch7");
   EXPECT_EQ(guess.find(Kind::command)->supply_unit, "mV");
@@ -187,13 +201,13 @@ TEST(RecordingGuessTest, WithoutTimesTheRateTells) {
   const TempFolder folder;
   const std::string path = folder.write("a.csv", table);
   EXPECT_THROW(guess_recording(RecordingFile(path), path), RecordingError);
-  const RecordingGuess guess = guess_recording(RecordingFile(path), path, {{read_rate("200 Hz")}});
+  const RecordingGuess guess = guess_recording(RecordingFile(path), path, {{.rate = 200.0}});
   EXPECT_EQ(guess.rate, 200.0);
   EXPECT_EQ(guess.find(Kind::position)->unit, "mm");
   EXPECT_FALSE(guess.find(Kind::position)->guessed);
 }
 
-RecordingGuess of_contact(const std::string& file, std::vector<ColumnAnswer> answers = {}) {
+RecordingGuess of_contact(const std::string& file, Answers answers = {}) {
   const std::string path = AXISFIT_TESTDATA "/contact/" + file;
   return guess_recording(RecordingFile(path), path, {std::move(answers)});
 }
@@ -213,7 +227,7 @@ TEST(RecordingGuessTest, APositionGoesWithItsOwnCurrent) {
   EXPECT_EQ(guess.find(Kind::current)->column, "Motor 1 Current");
   EXPECT_EQ(guess.motor, "1");
   ASSERT_EQ(guess.notes.size(), 1u);
-  EXPECT_EQ(of_contact("two-motors.csv", {motor_answer("0")}).find(Kind::current)->column,
+  EXPECT_EQ(of_contact("two-motors.csv", {.motor = "0"}).find(Kind::current)->column,
             "Motor 0 Current");
 }
 

@@ -25,15 +25,19 @@ TEST_F(StarterAxisTest, AMachineIsTakenByItsName) {
       "a.csv",
       renamed(driven(),
               {{"t_s", 1.0}, {"iq [A]", 1.0}, {"pos [mm]", 1e3}, {"v_mps", 1.0}, {"a_mps2", 1.0}}));
-  const InitialJob made =
-      initial_job({folder_.path("a.csv")}, "linear-motor", folder_.path(), {}, {}, true);
+  const auto of_machine = [&](const std::string& machine) {
+    return initial_job({.recordings = {folder_.path("a.csv")},
+                        .folder = folder_.path(),
+                        .axis = machine,
+                        .is_machine = true});
+  };
+  const InitialJob made = of_machine("linear-motor");
   for (const auto& [name, contents] : made.files) folder_.write(name, contents);
   EXPECT_NE(folder_.read("axis.yaml").find("name: slide with a linear motor"), std::string::npos);
   const JobFile file = read();
   EXPECT_EQ(file.job.model.structure.drive, Drive::motor_current);
   expect_the_driven_mass(fitted(file), 1.0);  // both have 60 N/A
-  EXPECT_THROW(initial_job({folder_.path("a.csv")}, "loom", folder_.path(), {}, {}, true),
-               std::runtime_error);
+  EXPECT_THROW(of_machine("loom"), std::runtime_error);
 }
 
 TEST_F(StarterAxisTest, ALargeCurrentLeavesNoRoomBeyondTheBounds) {

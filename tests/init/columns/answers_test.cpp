@@ -57,20 +57,11 @@ TEST(ReadAnswer, NeedsNoUnit) {
 }
 
 TEST(ReadRate, IsAFrequency) {
-  for (const auto& [text, hertz] : {std::pair("1 kHz", 1e3), {"500Hz", 500.0}, {"62.5", 62.5}}) {
-    EXPECT_DOUBLE_EQ(read_rate(text).rate, hertz) << text;
-    EXPECT_DOUBLE_EQ(*rate_in({read_answer("position=3"), read_rate(text)}), hertz);
-  }
+  for (const auto& [text, hertz] : {std::pair("1 kHz", 1e3), {"500Hz", 500.0}, {"62.5", 62.5}})
+    EXPECT_DOUBLE_EQ(read_rate(text), hertz) << text;
   for (const char* text : {"", "kHz", "1 ms", "-5 Hz", "0 Hz", "1 rpm", "1 kHz x"})
     EXPECT_EQ(refusal(read_rate, text).find(std::string("--rate ") + text + ": write how many"), 0u)
         << text;
-  EXPECT_FALSE(rate_in({read_answer("position=3")}));
-}
-
-TEST(MotorAnswer, IsTheNameOfAnAxis) {
-  EXPECT_EQ(motor_in({read_rate("1 kHz"), motor_answer("elbow")}), "elbow");
-  EXPECT_EQ(motor_in({}), "");
-  EXPECT_FALSE(motor_answer("0").is_of_column());
 }
 
 }  // namespace

@@ -140,6 +140,11 @@ TEST(ColumnGuessTest, KnowsWhatMayActOnAnAxisBesideIt) {
 }
 
 TEST(ColumnGuessTest, MeasuredComesBeforeUnsaid) {
+  EXPECT_EQ(guess_column("spindle_turns")->unit, "rev");
+  EXPECT_EQ(guess_column("spindle_rpm")->kind, Kind::velocity);
+  EXPECT_GT(guess_column("position")->rank, 0);
+  EXPECT_GT(guess_column("position_mm")->rank, guess_column("spindle_mm")->rank);
+  EXPECT_FALSE(guess_column("spindle_m"));  // as short as that, it may mean anything
   EXPECT_GT(guess_column("actual position [mm]")->rank, guess_column("position [mm]")->rank);
   EXPECT_GT(guess_column("position [mm]")->rank, guess_column("position")->rank);
 }
