@@ -7,14 +7,19 @@
 #include <vector>
 
 namespace axisfit {
+namespace {
+
+/// Differences below that part of the largest value are rounding errors of the computer.
+constexpr double kRounding = 1e-12;
+
+}  // namespace
 
 double resolution_of(std::span<const double> values) {
   double size = 0.0, step = 0.0;
   for (std::size_t i = 1; i < values.size(); ++i) {
     const double d = std::abs(values[i] - values[i - 1]);
     size = std::max(size, std::abs(values[i]));
-    // Differences below rounding are zeros.
-    if (d > 1e-12 * size && (step == 0.0 || d < step)) step = d;
+    if (d > kRounding * size && (step == 0.0 || d < step)) step = d;
   }
   if (step == 0.0) return 0.0;
   // Small multiples only: over large ones the error of the step itself adds up.
@@ -36,13 +41,13 @@ constexpr std::size_t kOrder = 6;
 /// many places apart.
 constexpr std::array<double, kOrder + 1> kGain{924.0, -792.0, 495.0, -220.0, 66.0, -12.0, 1.0};
 
-/// Their standard deviation, by the median; of those that are not zero if `only_changes`.
+/// Their standard deviation, by the median; of those larger than `least` alone, if it is given.
 double spread_of_differences(std::span<const double> values, std::size_t stride,
-                             bool only_changes = false) {
+                             double least = -1.0) {
   std::vector<double> d = sixth_differences(values, stride);
-  if (only_changes) std::erase(d, 0.0);
-  if (d.size() < 3) return 0.0;
   for (double& x : d) x = std::abs(x);
+  std::erase_if(d, [&](double x) { return x <= least; });
+  if (d.size() < 3) return 0.0;
   const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
   std::nth_element(d.begin(), middle, d.end());
   return *middle / 0.6745;  // median of |N(0, 1)|
@@ -63,7 +68,10 @@ std::vector<double> sixth_differences(std::span<const double> values, std::size_
 double noise_from_differences(std::span<const double> values) {
   double spread = spread_of_differences(values, 1);
   // A signal that is frozen at rest shows its noise only in motion.
-  if (spread == 0.0) spread = spread_of_differences(values, 1, true);
+  double size = 0.0;
+  for (const double x : values) size = std::max(size, std::abs(x));
+  if (const double rounding = kRounding * size; spread <= rounding)
+    spread = std::max(spread, spread_of_differences(values, 1, rounding));
   return std::max(spread / std::sqrt(kGain[0]), resolution_of(values) / std::sqrt(12.0));
 }
 

@@ -72,6 +72,18 @@ TEST(Noise, OfASignalThatIsFrozenAtRestIsThatOfItsMotion) {
   EXPECT_NEAR(noise_from_differences(values), 2e-3, 0.05 * 2e-3);
 }
 
+// The median lies between differences that are zero and those that are so but for the computer's
+// rounding.
+TEST(Noise, OfASignalThatRestsHalfTheTimeIsThatOfItsDigits) {
+  for (int rest = 450; rest < 550; ++rest) {
+    std::vector<double> values;
+    for (int i = 0; i < 1000; ++i)
+      values.push_back(std::round(1e9 * (1.0 - std::cos(4.7e-3 * std::max(0, i - rest)))) / 1e9);
+    EXPECT_GT(noise_from_differences(values), 3e-11) << rest;
+    EXPECT_LT(noise_from_differences(values), 4e-10) << rest;
+  }
+}
+
 TEST(Noise, OfAConstantIsZero) {
   EXPECT_EQ(noise_from_differences(std::vector<double>(100, 3.0)), 0.0);
   EXPECT_EQ(noise_from_differences(std::vector<double>{1.0, 2.0, 1.0}), 0.0);
