@@ -207,12 +207,16 @@ void start_axis(JobDraft& draft) {
         "axis.yaml describes a velocity loop with the values of a published axis");
     return;
   }
-  const GuessedColumn* velocity = first.guess.find(Kind::velocity);
   DrivenMass seen;
   seen.column = first.input_column().column;
   seen.is_force = first.drives_in_newtons();
-  seen.largest_input = largest(first.driving());
-  if (velocity) seen.largest_speed = largest(velocity->values);
+  double speed = 0.0;
+  for (const DraftRecording& recording : draft.recordings) {
+    seen.largest_input = std::max(seen.largest_input, largest(recording.driving()));
+    if (const GuessedColumn* velocity = recording.guess.find(Kind::velocity))
+      speed = std::max(speed, largest(velocity->values));
+  }
+  if (speed > 0.0) seen.largest_speed = speed;
   seen.look = draft.look;
   seen.gain = draft.request.gain;
   seen.structure = draft.structure;

@@ -168,6 +168,18 @@ TEST_F(InitJobTest, NothingButShortNamesIsEnough) {
   expect_the_driven_mass(fitted(file), 1.0 / 60.0);
 }
 
+// The first may be too slow to show how large a friction may be.
+TEST_F(InitJobTest, TheLargestCommandOfAllRecordingsBoundsTheForces) {
+  Table slow = driven();
+  for (std::size_t c = 1; c < slow.columns.size(); ++c)
+    for (double& x : slow.columns[c].values) x *= 0.1;
+  folder_.write("slow.csv", slow);
+  folder_.write("fast.csv", driven(2));
+  make({"slow.csv", "fast.csv"}, {}, 60.0);
+  const std::string text = folder_.read("job.yaml");
+  EXPECT_NE(text.find("coulomb_friction.F_c: {bounds: [0 N, 240 N]}"), std::string::npos) << text;
+}
+
 TEST_F(InitJobTest, AForceNeedsNoGain) {
   Table table = renamed(
       driven(), {{"t_s", 1.0}, {"force_kN", 0.06}, {"x_m", 1.0}, {"v_mps", 1.0}, {"a_mps2", 1.0}});
