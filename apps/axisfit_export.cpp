@@ -121,7 +121,7 @@ int main(int argc, char** argv) {
                  "fmu2, fmu3: a unit for co-simulation by FMI 2.0 or 3.0; c: source in C, as an "
                  "S-function and a MEX function as well; mjcf: a model of MuJoCo; urdf: a joint "
                  "and a link; matlab: parameters and their covariance, as a function and a "
-                 "MAT-file")
+                 "MAT-file; frc: gains of a feed-forward in volts, as JSON")
       ->required()
       ->check(CLI::IsMember(targets))
       ->type_name("TARGET");

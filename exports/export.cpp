@@ -52,6 +52,8 @@ Export export_axis(const Rig& rig, ExportTarget target, const std::string& name,
       return urdf(rig, name, origin);
     case ExportTarget::matlab:
       return matlab(rig, name, origin);
+    case ExportTarget::frc:
+      return frc(rig, name, origin);
   }
   throw std::logic_error("no such target");
 }

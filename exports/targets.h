@@ -10,6 +10,7 @@ namespace axisfit {
 Export mjcf(const Rig& rig, const std::string& name, const std::string& origin);
 Export urdf(const Rig& rig, const std::string& name, const std::string& origin);
 Export matlab(const Rig& rig, const std::string& of_file, const std::string& origin);
+Export frc(const Rig& rig, const std::string& name, const std::string& origin);
 Export c_code(const Rig& rig, const std::string& of_file, const std::string& origin);
 
 enum class FmiVersion { v2, v3 };
