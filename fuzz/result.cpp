@@ -10,6 +10,7 @@
 #include <cstring>
 #include <optional>
 
+#include "fit/first_look/job_look.h"
 #include "fit/run.h"
 #include "fuzz/check.h"
 #include "init/starter_axis.h"
@@ -257,8 +258,10 @@ void check(const Folder& folder, JobFile file, const Names& names, const std::st
   file.job.options.step = 0.02;
   const Forecast forecast = axisfit::forecast(file.job, draw_start(file.job, 0));
   const auto checks = check_recordings(file.job);
-  read_back(axisfit::check_json(file.job, checks, forecast, {1.0, 1.0}));
-  require_harmless(recordings_text(file.job, checks) + forecast_text(file.job, forecast),
+  const auto look = look_at(file.job);
+  read_back(axisfit::check_json(file.job, checks, look, forecast, {1.0, 1.0}));
+  require_harmless(recordings_text(file.job, checks) + first_look_text(file.job, look) +
+                       forecast_text(file.job, forecast),
                    "--check prints what a terminal cannot show");
   const RunResult run_result = draw.below(4) == 1 ? run(file.job, {}) : fitted(file.job);
   check_json(run_result, names);

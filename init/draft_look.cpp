@@ -177,6 +177,7 @@ Timing fitted_timing(JobDraft draft, bool is_held) {
     if (times.size() > most) recording.trim_to = times[most];
   }
   Job job = draft_job(draft);
+  for (Recording& recording : job.recordings) recording.role = Role::fit;  // all of them tell
   job.options = recipe::quick(job.options);
   const FitResult fit = estimate(job);
   if (!fit.verdict.has_minimum()) return timing;
@@ -212,31 +213,12 @@ void correct_signs(JobDraft& draft) {
 }
 
 void take_for_friction(JobDraft& draft) {
-  if (!draft.look) return;
-  // Less than that is noise, or where an axis comes to rest.
-  constexpr double kPart = 0.02;
-  constexpr std::size_t kParts = 200;
-  double forward = 0.0, back = 0.0;
-  for (const DraftRecording& recording : draft.recordings) {
-    const GuessedColumn* position = recording.guess.find(Kind::position);
-    if (position == nullptr) position = recording.guess.find(Kind::velocity);
-    if (position == nullptr) return;
-    const std::vector<double>& values = position->values;
-    const std::size_t step = std::max<std::size_t>(1, values.size() / kParts);
-    for (std::size_t i = step; i < values.size(); i += step) {
-      const double moved =
-          position->kind == Kind::position ? values[i] - values[i - step] : values[i];
-      (moved > 0.0 ? forward : back) += std::abs(moved);
-    }
-  }
-  const double direction = forward > back ? 1.0 : -1.0;
-  const double all = draft.look->coulomb.value + direction * draft.look->constant.value;
-  draft.goes_one_way = std::min(forward, back) < kPart * std::max(forward, back) && all > 0.0 &&
-                       draft.look->gravity_sine.value == 0.0 &&
-                       draft.look->gravity_cosine.value == 0.0;
-  if (!draft.goes_one_way) return;
-  draft.look->coulomb.value = all;
-  draft.look->constant.value = 0.0;
+  if (!draft.look || draft.look->only_way == 0.0) return;
+  FirstLook::Term &coulomb = draft.look->coulomb, &constant = draft.look->constant;
+  draft.goes_one_way = draft.look->dissipation.value > 0.0;
+  if (draft.goes_one_way) return;
+  constant.value += draft.look->only_way * coulomb.value;
+  coulomb.value = 0.0;
 }
 
 void set_timing(JobDraft& draft) {
@@ -261,7 +243,9 @@ void set_timing(JobDraft& draft) {
       take_hold(chosen.is_held, ": the motion goes better with it");
     }
   }
-  if (!chosen.is_late(interval)) return;
+  // A fit may take a delay for friction that the model lacks: the balance of forces must see it,
+  // too.
+  if (!chosen.is_late(interval) || !seen_timing(draft, chosen.is_held).is_late(interval)) return;
   draft.parameters.push_back(free_delay(draft, chosen.delay.value));
   draft.guesses.push_back(
       fmt::format("T_d is free: the motion {} what drives it by {:.2g} ms; it is the time lag of "

@@ -20,8 +20,8 @@ std::optional<FirstLook> look_at(const JobDraft& draft);
 /// velocity loop the motion goes the way of the input.
 void correct_signs(JobDraft& draft);
 
-/// Where the motion goes one way only, friction and a constant force are one: takes all of it for
-/// friction, unless it pushes the axis along.
+/// Where the motion goes one way only, friction and a constant force are one: the first look takes
+/// all of it for friction, unless it pushes the axis along.
 void take_for_friction(JobDraft& draft);
 
 /// Takes the hold of the input that suits the motion, and frees the time by which the motion

@@ -182,7 +182,9 @@ Uncertainty uncertainty(const ParameterSpace& space, const Eigen::VectorXd& u,
       const Eigen::MatrixXd& c = spread.covariance;
       if (result.parameters[static_cast<std::size_t>(row)].determined &&
           result.parameters[static_cast<std::size_t>(column)].determined)
-        result.correlation(row, column) = c(a, b) / std::sqrt(c(a, a) * c(b, b));
+        // Rounding takes a covariance that is nearly singular beyond.
+        result.correlation(row, column) =
+            std::clamp(0.5 * (c(a, b) + c(b, a)) / std::sqrt(c(a, a) * c(b, b)), -1.0, 1.0);
     }
   return result;
 }

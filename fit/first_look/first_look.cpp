@@ -371,6 +371,7 @@ FirstLook::Direction direction_of(const FirstLook& look) {
   constexpr double kDoubt = 0.1;  // of the one's distance from zero, at which the other counts
   const double friction = look.dissipation.distance(), mass = look.mass.distance();
   if (friction > kSure) return along;
+  if (friction < -kSure && look.only_way != 0.0) return mass > kSure ? along : open;
   if (friction < -kSure) return mass > std::max(kSure, -kDoubt * friction) ? open : turned;
   if (std::abs(mass) > kSure && look.is_mass_noticeable()) return mass > 0.0 ? along : turned;
   return open;
@@ -396,7 +397,6 @@ struct WithDelay {
 /// Steps of one size, each in its direction, are as good as dry friction and nothing else: then it
 /// cannot be told from what makes the motion, and is left out.
 void leave_out_dry_friction(Balance& balance, const std::vector<Grid>& grids) {
-  if (balance.parts.empty()) return;
   constexpr double kAllOfIt = 0.05;
   const MatrixXd dry = balance.terms(Eigen::all, std::vector<Index>{kCoulomb, kConstant});
   const VectorXd inputs = balance.inputs(grids, 0.0);
@@ -405,12 +405,34 @@ void leave_out_dry_friction(Balance& balance, const std::vector<Grid>& grids) {
     balance.noise(kCoulomb, kCoulomb) = std::numeric_limits<double>::max();
 }
 
+/// 1 or -1 where all motions go that way only, otherwise zero.
+double only_way_of(const Balance& balance) {
+  constexpr double kPart = 0.02;  // less than that is noise, or where an axis comes to rest
+  bool any_forward = false, any_back = false;
+  for (const Balance::Rows& part : balance.parts) {
+    const auto speeds =
+        balance.terms.col(kViscous).segment(part.row, static_cast<Index>(part.first.size()));
+    const double forward = speeds.cwiseMax(0.0).sum(), back = -speeds.cwiseMin(0.0).sum();
+    any_forward = any_forward || forward > kPart * back;
+    any_back = any_back || back > kPart * forward;
+  }
+  return any_forward && any_back ? 0.0 : any_forward ? 1.0 : any_back ? -1.0 : 0.0;
+}
+
+/// What of friction and constant force cannot be told from the others.
+void leave_out_what_is_alike(Balance& balance, const std::vector<Grid>& grids) {
+  if (balance.parts.empty()) return;
+  leave_out_dry_friction(balance, grids);
+  if (only_way_of(balance) != 0.0)
+    balance.noise(kConstant, kConstant) = std::numeric_limits<double>::max();
+}
+
 /// What windows of one length tell; none where they tell nothing.
 std::optional<FirstLook> look_through(const std::vector<Grid>& grids, std::size_t samples,
                                       bool of_position, const FirstLookOptions& options,
                                       double& information) {
   Balance balance = balance_in(grids, samples, of_position, options.with_gravity, 0.0);
-  leave_out_dry_friction(balance, grids);
+  leave_out_what_is_alike(balance, grids);
   FirstLook look;
   const double interval = grids.front().interval();
   for (double near = 0.0;; near = look.delay.value) {
@@ -420,8 +442,9 @@ std::optional<FirstLook> look_through(const std::vector<Grid>& grids, std::size_
     look.delay.value = best_delay(balance, regression, grids, options);
     if (std::abs(look.delay.value - near) < interval || near != 0.0) break;
     balance = balance_in(grids, samples, of_position, options.with_gravity, look.delay.value);
-    leave_out_dry_friction(balance, grids);
+    leave_out_what_is_alike(balance, grids);
   }
+  look.only_way = only_way_of(balance);
   const double delay = look.delay.value, h = 0.5 * interval;
   const VectorXd inputs = balance.inputs(grids, delay);
   const VectorXd left = Regression(balance.terms, balance.noise).remaining(inputs);

@@ -59,11 +59,15 @@ struct FirstLook {
   Term dissipation;  ///< unit of the input times m/s: the mean power that friction takes
   /// The mass that would take all of the input: the size of one that the balance does not show.
   double largest_mass = 0.0;
+  /// 1 or -1 where the motion goes that way only. Nothing then tells a constant force from dry
+  /// friction, which it is taken for; otherwise zero.
+  double only_way = 0.0;
   double unexplained = 1.0;  ///< part of the input's root mean square that remains
   double window = 0.0;       ///< s, length of the windows
 
   /// Which way the input acts. A passive load takes work in, whatever its mass: friction
-  /// dissipates. Where it shows no friction, the mass is positive.
+  /// dissipates. Where it shows no friction, the mass is positive. In a motion one way a weight may
+  /// do what friction would be turned for.
   enum class Direction {
     along,   ///< as recorded
     turned,  ///< beyond doubt against what was recorded
