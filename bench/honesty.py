@@ -229,6 +229,8 @@ class Job:
         file = file or f"{name}.csv"
         self.files.setdefault(file, record)
         signals = {s: {"column": s, "unit": UNITS[s]} for s in record if s != "time"}
+        if "drive_force" in signals:  # of these machines it holds, as a command does
+            signals["drive_force"]["hold"] = "zero_order"
         for signal, value in (sigma or {}).items():
             signals[signal]["sigma"] = with_unit(value, UNITS[signal])
         self.recordings.append({"name": name, "file": file, "role": role,
@@ -596,7 +598,7 @@ def hysteresis_large(job):
     job.truth = {}
 
 
-@situation(USABLE, "backlash is declared as zero, and no effect is a backlash")
+@situation(EXPLAINED, "backlash is declared as zero", "backlash")
 def robot_backlash_undeclared(job):
     job.robot_runs(true={"H": 0.1e-3}, **ROBOT_NOISE)
     job.declare_robot(H=0.0)
@@ -806,8 +808,7 @@ def velocity_unit(job):
     job.truth["velocity.gain"] = 1000.0
 
 
-@situation(MODEL_WRONG, "the position is in mm, declared m: no mass in the bounds is that light",
-           loop=False)  # fmt: skip
+@situation(EXPLAINED, "the position is in mm, declared m: a mass of grams explains it", loop=False)
 def position_unit(job):
     job.runs(SLIDE, change=scale("position", 1000.0), position=10e-6)
     job.declare(SLIDE)
@@ -884,15 +885,14 @@ def delay_20_ms_no_loop(job):
     job.declare(SLIDE)
 
 
-@situation(EXPLAINED, "the command is logged 10 ms late: the velocity is early, which can be found",
-           "velocity.delay")  # fmt: skip
+@situation(EXPLAINED, "the command is logged 10 ms late: the motion is early, which can be found", *LATER)
 def command_late(job):
     job.runs(SLIDE, change=late(10, "command"), seconds=2.0, rate=1000, velocity=0.002)
     job.declare(SLIDE)
     job.truth["velocity.delay"] = -0.010
 
 
-@situation(USABLE, "the clock of the velocity is 1 % slow: a delay that grows to 40 ms", *LATER)
+@situation(USABLE, "the clock of the velocity is 1 % slow: a delay that grows to 40 ms", "velocity.drift", *LATER)
 def clock_drift(job):
     def drift(record, log):
         record["velocity"] = [at(record["velocity"], 0.99 * k) for k in range(len(log["time"]))]
@@ -1083,7 +1083,7 @@ def validate_payload(job):
     change_to_validate(job, dataclasses.replace(SLIDE, M=1.3 * SLIDE.M))
 
 
-@situation(MODEL_WRONG, "three times the friction, most of the force, in the recording to validate")
+@situation(USABLE, "three times the friction in the recording to validate, as on another day")
 def validate_friction(job):
     tight = dataclasses.replace(RUBBING, F_c=3 * RUBBING.F_c)
     change_to_validate(job, tight, RUBBING, least=0.5, most=1.0)
@@ -1105,7 +1105,7 @@ def payload_dropped(job):
     job.truth = {}
 
 
-@situation(USABLE, "friction that falls to a third as it warms up, over 20 s")
+@situation(EXPLAINED, "friction that falls to a third as it warms up, over 20 s", "warming_friction")
 def friction_warms_up(job):
     machine = dataclasses.replace(SLIDE, dry=lambda t, y, v, f: 18.0 * math.exp(-t / 7.0))
     job.runs(machine, seconds=20.0, rate=100, motion={"least": 0.4, "most": 0.9}, velocity=0.002)

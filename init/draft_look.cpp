@@ -109,7 +109,7 @@ void correct_sign_of_velocity(JobDraft& draft) {
                                             : "is its sign right? It was left as it is"));
 }
 
-/// Half a sample later is when a value acts that is held, and not straight between two.
+/// s, between samples.
 double interval_of(const JobDraft& draft) {
   return sampling(draft.recordings.front().guess.time.values).interval;
 }
@@ -158,7 +158,7 @@ void set_hold(JobDraft& draft, bool is_held, const std::string& reason) {
   }
 }
 
-/// With the delay of the first look.
+/// With the delay of the first look. What is held acts half a sample later than what goes straight.
 Timing seen_timing(const JobDraft& draft, bool is_held) {
   Timing timing{is_held, draft.look->delay};
   if (is_held) timing.delay.value -= 0.5 * interval_of(draft);
@@ -166,7 +166,7 @@ Timing seen_timing(const JobDraft& draft, bool is_held) {
 }
 
 /// By a fit to the first samples of the recordings: enough for a time, and a matter of seconds.
-Timing fitted_timing(JobDraft draft, bool is_held) {
+Timing fitted_timing(JobDraft draft, bool is_held, const RunContext& context) {
   constexpr std::size_t kMostSamples = 20000;
   Timing timing = seen_timing(draft, is_held);
   set_hold(draft, is_held, " on trial");
@@ -179,12 +179,21 @@ Timing fitted_timing(JobDraft draft, bool is_held) {
   Job job = draft_job(draft);
   for (Recording& recording : job.recordings) recording.role = Role::fit;  // all of them tell
   job.options = recipe::quick(job.options);
-  const FitResult fit = estimate(job);
+  job.options.threads = 1;
+  const FitResult fit = estimate(job, context.quiet());
   if (!fit.verdict.has_minimum()) return timing;
   timing.chi_square = fit.reduced_chi_square;
   const ParameterResult& found = fit.parameters.back();
   timing.delay = {found.value, found.uncertainty.standard_error};
   return timing;
+}
+
+/// By fits with both holds, unless the valleys of a gear are too narrow for short ones.
+Timing best_timing(const JobDraft& draft, bool is_held, const RunContext& context) {
+  if (capabilities(draft.structure).has_backlash) return seen_timing(draft, is_held);
+  const Timing usual = fitted_timing(draft, is_held, context),
+               other = fitted_timing(draft, !is_held, context);
+  return other.is_better_than(usual, interval_of(draft)) ? other : usual;
 }
 
 }  // namespace
@@ -221,7 +230,7 @@ void take_for_friction(JobDraft& draft) {
   coulomb.value = 0.0;
 }
 
-void set_timing(JobDraft& draft) {
+void set_timing(JobDraft& draft, const RunContext& context) {
   if (!draft.is_force_driven() || draft.joined) return;
   const bool is_stepped = std::ranges::any_of(draft.recordings, [](const DraftRecording& r) {
     return r.input_column().changes_only || stays_in_steps(r.input_column().values);
@@ -232,17 +241,16 @@ void set_timing(JobDraft& draft) {
   };
   take_hold(is_held, ": it stays in steps");
   if (!draft.look || draft.look->direction == FirstLook::Direction::open) return;
-  const double interval = interval_of(draft);
   Timing chosen = seen_timing(draft, is_held);
-  // The valleys of gears are too narrow for a short fit.
-  if (!capabilities(draft.structure).has_backlash) {
-    chosen = fitted_timing(draft, is_held);
-    const Timing other = fitted_timing(draft, !is_held);
-    if (other.is_better_than(chosen, interval)) {
-      chosen = other;
-      take_hold(chosen.is_held, ": the motion goes better with it");
-    }
+  try {
+    chosen = best_timing(draft, is_held, context);
+  } catch (const Interrupted&) {
+    draft.guesses.emplace_back(
+        "whether the input holds from sample to sample was not looked at, since the run was "
+        "stopped");
   }
+  take_hold(chosen.is_held, ": the motion goes better with it");
+  const double interval = interval_of(draft);
   // A fit may take a delay for friction that the model lacks: the balance of forces must see it,
   // too.
   if (!chosen.is_late(interval) || !seen_timing(draft, chosen.is_held).is_late(interval)) return;

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "fit/first_look/first_look.h"
+#include "fit/solve/run_context.h"
 #include "init/job_draft.h"
 
 namespace axisfit {
@@ -28,6 +29,7 @@ void take_for_friction(JobDraft& draft);
 /// follows it where that is clearly more than half a sample. Both holds are tried, with the time of
 /// the first look to begin with. Where they do as well, what was commanded is held, and so is what
 /// stays in steps; what was measured is not.
-void set_timing(JobDraft& draft);
+/// When the stop flag is set, `guesses` say that nothing was tried.
+void set_timing(JobDraft& draft, const RunContext& context = {});
 
 }  // namespace axisfit

@@ -296,7 +296,8 @@ InitialJob initial_job(const InitRequest& request, const RunContext& context) {
   list_parameters(draft);
   context.report({.phase = "what the recordings determine"});
   choose_free(draft, context.stop);
-  if (makes_axis || request.is_machine) set_timing(draft);
+  context.report({.phase = "how the input goes from sample to sample"});
+  if (makes_axis || request.is_machine) set_timing(draft, context);
   collect_guesses(draft);
   return {job_files(draft), std::move(draft.guesses), draft.look};
 }

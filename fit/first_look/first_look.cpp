@@ -1,7 +1,5 @@
 #include "fit/first_look/first_look.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -9,9 +7,8 @@
 #include <vector>
 
 #include "base/linear_algebra.h"
-#include "fit/data/derivative.h"
-#include "fit/data/noise.h"
-#include "sim/sampling.h"
+#include "fit/first_look/force_balance.h"
+#include "fit/first_look/noisy_regression.h"
 
 namespace axisfit {
 namespace {
@@ -20,314 +17,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Places of the regressors.
-enum Place : Index { kMass, kViscous, kCoulomb, kConstant, kSine, kCosine };
-
 constexpr std::size_t kShortestWindow = 8, kLongestWindow = 4096;  // samples
-constexpr std::size_t kWindowsPerMotion = 8;                       // at least
-constexpr std::size_t kMostWindows = 4000;  // of a recording, which bounds the time
-constexpr std::size_t kOverlap = 4;         // windows over each sample
 /// Logarithm of the likelihood ratio, beyond which a delay is one.
 constexpr double kClearlyMore = 10.0;
 constexpr std::size_t kMostDelays = 120;  // of the first search
-/// Part of a window that may be at rest, where friction has any value.
-constexpr double kMostRest = 0.3;
-/// Of the highest speed, that counts as rest.
-constexpr double kRest = 0.005;
-/// Standard deviations of its noise below which a speed has no sign.
-constexpr double kSpeedErrors = 3.0;
-
-/// A window (1 - s^2)^4 on s from -1 to 1, and its derivatives by the time, at even samples.
-struct Window {
-  explicit Window(std::size_t samples, double interval) {
-    const double half = 0.5 * interval * static_cast<double>(samples);
-    for (std::size_t i = 0; i <= samples; ++i) {
-      const double s = 2.0 * static_cast<double>(i) / static_cast<double>(samples) - 1.0;
-      const double r = 1.0 - s * s;
-      value.push_back(std::pow(r, 4) * interval);
-      slope.push_back(-8.0 * s * std::pow(r, 3) / half * interval);
-      bend.push_back((-8.0 * std::pow(r, 3) + 48.0 * s * s * r * r) / (half * half) * interval);
-    }
-    // Sums over few samples are no integrals: a constant speed and a constant acceleration must
-    // come out as they are.
-    double area = 0.0, ramp = 0.0, parabola = 0.0, mean = 0.0;
-    for (const double x : bend) mean += x / static_cast<double>(bend.size());
-    for (std::size_t i = 0; i <= samples; ++i) {
-      const double t = half * (2.0 * static_cast<double>(i) / static_cast<double>(samples) - 1.0);
-      bend[i] -= mean;
-      area += value[i];
-      ramp -= slope[i] * t;
-      parabola += 0.5 * bend[i] * t * t;
-    }
-    for (double& x : slope) x *= area / ramp;
-    for (double& x : bend) x *= area / parabola;
-  }
-  std::vector<double> value, slope, bend;  ///< times the interval, so that sums are integrals
-};
-
-/// One recording on an even grid.
-class Grid {
- public:
-  Grid(const DrivenMotion& motion, bool of_position) : motion_(motion), of_position_(of_position) {
-    count_ = motion.times.size();
-    interval_ = mean_interval(motion.times);
-    const std::span<const double> readings = of_position ? motion.position : motion.velocity;
-    values_ = on_even_grid(motion.times, readings);
-    // What a column says of a motion that it was rounded to is no better than its steps.
-    noise_ = std::max(noise_from_differences(readings), resolution_of(readings) / std::sqrt(12.0));
-    if (!motion.position.empty()) positions_ = on_even_grid(motion.times, motion.position);
-  }
-
-  double interval() const { return interval_; }
-  std::size_t count() const { return count_; }
-  double duration() const { return interval_ * static_cast<double>(count_ - 1); }
-
-  /// The speed about each sample, and the standard deviation of its noise.
-  std::vector<double> speeds(std::size_t samples, double& noise) const {
-    const auto reach = std::max<std::size_t>(1, samples / 8);
-    std::vector<double> speed(count_, 0.0);
-    const double width = 2.0 * static_cast<double>(reach) + (of_position_ ? 0.0 : 1.0);
-    double sum = 0.0;
-    if (of_position_) {
-      for (std::size_t i = 0; i < count_; ++i) {
-        const std::size_t a = i - std::min(i, reach), b = std::min(count_ - 1, i + reach);
-        speed[i] = (values_[b] - values_[a]) / (static_cast<double>(b - a) * interval_);
-      }
-      noise = std::sqrt(2.0) * noise_ / (width * interval_);
-      return speed;
-    }
-    for (std::size_t i = 0; i < count_ + reach; ++i) {
-      if (i < count_) sum += values_[i];
-      if (i > 2 * reach) sum -= values_[i - 2 * reach - 1];
-      if (i >= reach)
-        speed[i - reach] =
-            sum / static_cast<double>(std::min(i, count_ - 1) - (i - std::min(i, 2 * reach)) + 1);
-    }
-    noise = noise_ / std::sqrt(width);
-    return speed;
-  }
-
-  std::vector<double> input(double delay) const {
-    return on_even_grid(motion_.times, motion_.input, delay);
-  }
-  const std::vector<double>& values() const { return values_; }
-  const std::vector<double>& positions() const { return positions_; }
-  double noise() const { return noise_; }
-
- private:
-  DrivenMotion motion_;
-  bool of_position_;
-  std::size_t count_ = 0;
-  double interval_ = 0.0, noise_ = 0.0;
-  std::vector<double> values_, positions_;
-};
-
-/// The balance in windows of one length: its regressors, and the input in the same windows.
-struct Balance {
-  MatrixXd terms;
-  MatrixXd noise;  ///< what noise of the readings adds to terms' terms, on average
-  struct Rows {
-    std::size_t grid = 0;
-    std::vector<std::size_t> first;  ///< samples with which the windows begin
-    Index row = 0;
-    Window window;
-    Index lags = 0;  ///< neighbours that share samples with a window
-  };
-  std::vector<Rows> parts;
-  double mean_square_speed = 0.0, mean_speed = 0.0;
-
-  VectorXd inputs(const std::vector<Grid>& grids, double delay) const {
-    VectorXd result(terms.rows());
-    for (const Rows& part : parts) {
-      const std::vector<double> input = grids[part.grid].input(delay);
-      for (std::size_t k = 0; k < part.first.size(); ++k) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < part.window.value.size(); ++i)
-          sum += part.window.value[i] * input[part.first[k] + i];
-        result[part.row + static_cast<Index>(k)] = sum;
-      }
-    }
-    return result;
-  }
-};
-
-/// Windows whose input, so much earlier, was not recorded are left out.
-Balance balance_in(const std::vector<Grid>& grids, std::size_t samples, bool of_position,
-                   bool with_gravity, double delay) {
-  Balance balance;
-  const Index terms = with_gravity ? 6 : 4;
-  balance.noise = MatrixXd::Zero(terms, terms);
-  std::vector<double> rows;  // one after the other
-  double speed_samples = 0.0;
-  for (std::size_t g = 0; g < grids.size(); ++g) {
-    const Grid& grid = grids[g];
-    if (grid.count() < kWindowsPerMotion / 2 * samples) continue;
-    Balance::Rows part{
-        g, {}, static_cast<Index>(rows.size()) / terms, Window(samples, grid.interval()), 0};
-    const std::size_t step =
-        std::max({std::size_t{1}, samples / kOverlap, (grid.count() - samples) / kMostWindows});
-    part.lags = static_cast<Index>(samples / step) * 2;
-    double speed_noise = 0.0;
-    const std::vector<double> speed = grid.speeds(samples, speed_noise);
-    double fastest = 0.0;
-    for (const double v : speed) fastest = std::max(fastest, std::abs(v));
-    const double least = std::max({kSpeedErrors * speed_noise, kRest * fastest, 1e-300});
-    std::vector<double> sign(speed.size());
-    for (std::size_t i = 0; i < speed.size(); ++i)
-      sign[i] = std::clamp(speed[i] / least, -1.0, 1.0);
-    double bend_square = 0.0, slope_square = 0.0, value_square = 0.0;
-    const Window& w = part.window;
-    for (std::size_t i = 0; i <= samples; ++i) {
-      bend_square += w.bend[i] * w.bend[i];
-      slope_square += w.slope[i] * w.slope[i];
-      value_square += w.value[i] * w.value[i];
-    }
-    const double variance = grid.noise() * grid.noise();
-    for (std::size_t first = 0; first + samples < grid.count(); first += step) {
-      if (static_cast<double>(first) * grid.interval() < delay ||
-          static_cast<double>(first + samples) * grid.interval() > grid.duration() + delay)
-        continue;
-      std::size_t at_rest = 0;
-      double mass = 0.0, viscous = 0.0, coulomb = 0.0, constant = 0.0, sine = 0.0, cosine = 0.0;
-      const double middle = of_position ? grid.values()[first + samples / 2] : 0.0;
-      for (std::size_t i = 0; i <= samples; ++i) {
-        const std::size_t at = first + i;
-        const double x = grid.values()[at] - middle;
-        if (of_position) {
-          mass += w.bend[i] * x;
-          viscous -= w.slope[i] * x;
-        } else {
-          mass -= w.slope[i] * x;
-          viscous += w.value[i] * x;
-        }
-        coulomb += w.value[i] * sign[at];
-        constant += w.value[i];
-        if (with_gravity) {
-          sine += w.value[i] * std::sin(grid.positions()[at]);
-          cosine += w.value[i] * std::cos(grid.positions()[at]);
-        }
-        at_rest += std::abs(speed[at]) < least ? 1 : 0;
-      }
-      if (static_cast<double>(at_rest) > kMostRest * static_cast<double>(samples)) continue;
-      part.first.push_back(first);
-      for (const double x : {mass, viscous, coulomb, constant}) rows.push_back(x);
-      if (with_gravity)
-        for (const double x : {sine, cosine}) rows.push_back(x);
-      balance.noise(kMass, kMass) += variance * (of_position ? bend_square : slope_square);
-      balance.noise(kViscous, kViscous) += variance * (of_position ? slope_square : value_square);
-    }
-    for (const double v : speed) {
-      balance.mean_square_speed += v * v;
-      balance.mean_speed += std::abs(v);
-    }
-    speed_samples += static_cast<double>(speed.size());
-    if (!part.first.empty()) balance.parts.push_back(std::move(part));
-  }
-  balance.mean_square_speed /= std::max(1.0, speed_samples);
-  balance.mean_speed /= std::max(1.0, speed_samples);
-  balance.terms = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(
-      rows.data(), static_cast<Index>(rows.size()) / terms, terms);
-  return balance;
-}
-
-/// A regression with the noise of the regressors subtracted. A regressor that is mostly noise, or
-/// that others make, is left out.
-class Regression {
- public:
-  Regression(const MatrixXd& terms, const MatrixXd& noise) : terms_(terms), noise_(noise) {
-    const MatrixXd& a = terms;
-    const VectorXd scale = a.colwise().norm();
-    if (a.rows() < 4 * a.cols()) return;
-    std::vector<Index> kept;
-    for (Index i = 0; i < a.cols(); ++i)
-      if (scale[i] > 0.0 && noise(i, i) < kMostNoise * scale[i] * scale[i]) kept.push_back(i);
-    while (!kept.empty() && !invert(kept, scale)) std::erase(kept, most_dependent(kept, scale));
-    is_possible_ = !kept.empty();
-  }
-
-  bool is_possible() const { return is_possible_; }
-  bool has(Index place) const { return inverse_(place, place) > 0.0; }
-  VectorXd solve(const VectorXd& inputs) const { return inverse_ * (terms_.transpose() * inputs); }
-  VectorXd remaining(const VectorXd& inputs) const { return inputs - terms_ * solve(inputs); }
-
-  /// The covariance of a solution, which allows for the autocorrelation of what remains: windows
-  /// share samples (W. K. Newey and K. D. West, Econometrica 55, 1987).
-  MatrixXd covariance(const VectorXd& remaining, const VectorXd& inputs,
-                      const std::vector<Balance::Rows>& parts) const {
-    const MatrixXd& a = terms_;
-    // No recording is that of one mass to more digits than these.
-    MatrixXd middle = std::pow(kLeastLeft, 2) * inputs.squaredNorm() /
-                      static_cast<double>(inputs.size()) * (a.transpose() * a);
-    for (const Balance::Rows& part : parts) {
-      const auto n = static_cast<Index>(part.first.size());
-      MatrixXd weighted = a.middleRows(part.row, n);
-      weighted.array().colwise() *= remaining.segment(part.row, n).array();
-      for (Index lag = 0; lag <= std::min(part.lags, n - 1); ++lag) {
-        const double weight = 1.0 - static_cast<double>(lag) / static_cast<double>(part.lags + 1);
-        const MatrixXd product =
-            weighted.bottomRows(n - lag).transpose() * weighted.topRows(n - lag);
-        middle += (lag == 0 ? 0.5 : 1.0) * weight * (product + product.transpose());
-      }
-    }
-    return inverse_ * middle * inverse_;
-  }
-
- private:
-  static constexpr double kMostNoise = 0.5;  ///< of a regressor's sum of squares
-  static constexpr double kLeastOwn = 1e-6;  ///< of a regressor's, that others do not make
-  static constexpr double kLeastLeft = 1e-3;
-
-  MatrixXd normal(const std::vector<Index>& kept, const VectorXd& scale) const {
-    const VectorXd inverse = scale(kept).cwiseInverse();
-    const MatrixXd a = terms_(Eigen::all, kept) * inverse.asDiagonal();
-    return a.transpose() * a -
-           MatrixXd(inverse.asDiagonal() * noise_(kept, kept) * inverse.asDiagonal());
-  }
-
-  /// False: these regressors depend on each other.
-  bool invert(const std::vector<Index>& kept, const VectorXd& scale) {
-    const auto n = static_cast<Index>(kept.size());
-    const Eigen::LDLT<MatrixXd> solver(normal(kept, scale));
-    if (solver.info() != Eigen::Success || !solver.isPositive() ||
-        solver.vectorD().minCoeff() < kLeastOwn)
-      return false;
-    const VectorXd inverse = scale(kept).cwiseInverse();
-    inverse_ = MatrixXd::Zero(scale.size(), scale.size());
-    inverse_(kept, kept) =
-        inverse.asDiagonal() * solver.solve(MatrixXd::Identity(n, n)) * inverse.asDiagonal();
-    return true;
-  }
-
-  /// The one of these of which the others leave the least.
-  Index most_dependent(const std::vector<Index>& kept, const VectorXd& scale) const {
-    const MatrixXd squares = normal(kept, scale);
-    Index worst = kept.front();
-    double least = INFINITY;
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-      std::vector<Index> others;
-      for (std::size_t k = 0; k < kept.size(); ++k)
-        if (k != i) others.push_back(static_cast<Index>(k));
-      const auto at = static_cast<Index>(i);
-      const VectorXd with = squares(others, at);
-      const double own =
-          others.empty() ? squares(at, at)
-                         : squares(at, at) - with.dot(squares(others, others).ldlt().solve(with));
-      if (own < least) {
-        least = own;
-        worst = kept[i];
-      }
-    }
-    return worst;
-  }
-
-  const MatrixXd& terms_;
-  const MatrixXd& noise_;
-  MatrixXd inverse_;
-  bool is_possible_ = false;
-};
 
 /// The delay at which least of the input remains.
-double best_delay(const Balance& balance, const Regression& regression,
+double best_delay(const Balance& balance, const NoisyRegression& regression,
                   const std::vector<Grid>& grids, const FirstLookOptions& options) {
   double interval = 0.0, shortest = INFINITY;
   std::size_t samples = 0;
@@ -437,7 +133,7 @@ std::optional<FirstLook> look_through(const std::vector<Grid>& grids, std::size_
   const double interval = grids.front().interval();
   for (double near = 0.0;; near = look.delay.value) {
     if (balance.parts.empty()) return std::nullopt;
-    const Regression regression(balance.terms, balance.noise);
+    const NoisyRegression regression(balance.terms, balance.noise);
     if (!regression.is_possible()) return std::nullopt;
     look.delay.value = best_delay(balance, regression, grids, options);
     if (std::abs(look.delay.value - near) < interval || near != 0.0) break;
@@ -447,14 +143,14 @@ std::optional<FirstLook> look_through(const std::vector<Grid>& grids, std::size_
   look.only_way = only_way_of(balance);
   const double delay = look.delay.value, h = 0.5 * interval;
   const VectorXd inputs = balance.inputs(grids, delay);
-  const VectorXd left = Regression(balance.terms, balance.noise).remaining(inputs);
+  const VectorXd left = NoisyRegression(balance.terms, balance.noise).remaining(inputs);
   // Neighbours share most of their samples: a row is worth less than an independent one.
   const double scatter =
       left.norm() / std::sqrt(static_cast<double>(left.size())) * std::sqrt(2.0 * kOverlap);
   const WithDelay all(
       balance, (balance.inputs(grids, delay - h) - balance.inputs(grids, delay + h)) / (2 * h),
       scatter, std::abs(delay) + interval);
-  const Regression regression(all.terms, all.noise);
+  const NoisyRegression regression(all.terms, all.noise);
   if (!regression.is_possible()) return std::nullopt;
   VectorXd inputs_and_prior(inputs.size() + 1), left_and_prior(inputs.size() + 1);
   inputs_and_prior << inputs, 0.0;

@@ -77,12 +77,14 @@ bool shows_force(const MissingForce& force, const GradeOptions& options) {
   return force.found && force.noise < kPerCent * options.small_force * force.drive_rms;
 }
 
-/// Whether the mass may be none: the force that the observer adds to it is then none, whatever the
-/// model lacks.
+/// Whether the mass may be none, or anything: the force that the observer adds to it is then as
+/// small as the mass happens to be, whatever the model lacks.
 bool is_massless(const Job& job, const FitResult& fit) {
   static const std::size_t kMass = quantity_index("M");
-  for (std::size_t i = 0; i < fit.parameters.size(); ++i)
-    if (job.free[i].quantity == kMass && fit.parameters[i].uncertainty.is_at_zero()) return true;
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    const ParameterUncertainty& known = fit.parameters[i].uncertainty;
+    if (job.free[i].quantity == kMass && (!known.determined || known.is_at_zero())) return true;
+  }
   return false;
 }
 

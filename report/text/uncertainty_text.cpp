@@ -40,6 +40,19 @@ std::string correlation_text(const Job& job, const FitResult& result) {
   return paragraph(fmt::format("Strongly correlated: {}{}.", fmt::join(names, ", "), more), 2);
 }
 
+/// An estimate of another order of magnitude than the user expects; empty where it is none.
+std::string far_text(const FreeParameter& free, const ParameterResult& found) {
+  constexpr double kFar = 300.0;  // a thousand, as of mm and m, from an initial value that is poor
+  if (free.scale == Scale::linear || !(free.initial > 0.0) || !found.uncertainty.determined)
+    return {};
+  const double ratio = found.value / free.initial;
+  if (!(ratio > 0.0) || (ratio < kFar && ratio > 1.0 / kFar)) return {};
+  return fmt::format(
+      "{:.2g} times the initial value; if that was about right, a unit in the job or the axis file "
+      "is not",
+      ratio);
+}
+
 /// The estimates whose error bars leave out that a value beneath them is a guess or another hold of
 /// the input makes them different, or allow for what another observer gain or another effect makes
 /// of them.
@@ -48,6 +61,8 @@ std::string remarks_text(const Job& job, const FitResult& result) {
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     const ParameterResult& p = result.parameters[i];
     const std::string name = name_of(job, p.id);
+    if (const std::string far = far_text(job.free[i], p); !far.empty())
+      text += paragraph(fmt::format("{}: {}.", name, far), 2);
     if (!p.rests_on.empty())
       text += paragraph(fmt::format("{}: {}.", name, guesses_text(job, p.rests_on)), 2);
     if (p.budget.gain)

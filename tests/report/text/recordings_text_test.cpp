@@ -48,6 +48,32 @@ TEST(RecordingsTextTest, DescribesTheInputAndEverySignal) {
             "0.002 0.002 none acceleration -2 2.5 m/s^2 0.05 0.05 0.0123 not fitted");
 }
 
+TEST(RecordingsTextTest, AFirstLookTellsWhatIsSureAlone) {
+  Job job;
+  job.recordings.emplace_back().times = std::vector<double>{0.0, 0.001, 0.002};
+  EXPECT_EQ(first_look_text(job, {}), "");
+  FirstLook look;
+  look.mass = {12.0, 0.1};
+  look.viscous = {3.0, 1.0};
+  look.coulomb = {8.0, 0.5};
+  look.constant = {5.0, 0.2};
+  look.delay = {0.003, 1e-5};
+  look.dissipation = {4.0, 0.5};
+  look.largest_mass = 13.0;
+  look.unexplained = 0.012;
+  look.direction = FirstLook::Direction::along;
+  const std::string text = first_look_text(job, look);
+  expect_narrow(text);
+  EXPECT_EQ(
+      on_one_line(text),
+      "A first look at the forces of all recordings, by one mass with friction and without a "
+      "simulation: M 12.00 +- 0.1 kg, coulomb_friction.F_c 8.00 +- 0.5 N, constant_force.F_0 "
+      "-5.00 +- 0.2 N. It leaves 1.2 % of the drive force. The motion follows the drive force "
+      "by 3 ms.");
+  look.direction = FirstLook::Direction::turned;
+  EXPECT_NE(on_one_line(first_look_text(job, look)).find("sign: -1"), std::string::npos);
+}
+
 TEST(RecordingsTextTest, CountsGapsAndTellsOfJitter) {
   const Job job = rubbing_file().job;
   std::vector<RecordingCheck> found = checks();

@@ -46,6 +46,44 @@ TEST(UncertaintyTextTest, SaysWhatNoiseIsAssumed) {
   EXPECT_NE(told().find(", which makes up to 25 % of their squares."), std::string::npos) << told();
 }
 
+TEST(UncertaintyTextTest, RemarksOnAnEstimateFarFromItsInitialValue) {
+  Job job = with_free({"M"});
+  job.free[0].initial = 6.0;
+  job.free[0].scale = Scale::from_zero;
+  FitResult fit;
+  fit.reduced_chi_square = 1.0;
+  fit.parameters.push_back({job.free[0].id(), 0.012, {.determined = true}});
+  const auto told = [&] { return on_one_line(uncertainty_text(job, fit)); };
+  EXPECT_NE(told().find("M: 0.002 times the initial value; if that was about right, a unit"),
+            std::string::npos)
+      << told();
+  fit.parameters[0].value = 0.6;
+  EXPECT_EQ(told().find("times the initial value"), std::string::npos) << "a poor guess";
+  fit.parameters[0].value = 0.012;
+  fit.parameters[0].uncertainty.determined = false;
+  EXPECT_EQ(told().find("times the initial value"), std::string::npos);
+}
+
+TEST(UncertaintyTextTest, RemarksOnAnEstimateThatTheOtherHoldMoves) {
+  Job job = with_free({"M"});
+  job.recordings.emplace_back().command.hold = Hold::linear;
+  FitResult fit;
+  fit.reduced_chi_square = 1.0;
+  fit.parameters.push_back({job.free[0].id(), 12.0, {.determined = true}});
+  fit.parameters[0].other_hold = HoldShift{11.5, false};
+  const auto told = [&] { return on_one_line(uncertainty_text(job, fit)); };
+  EXPECT_NE(told().find("M: 11.5 kg if each value of the input held until the next ('hold: "
+                        "zero_order'), which these recordings do not exclude."),
+            std::string::npos)
+      << told();
+  job.recordings[0].command.hold = Hold::zero_order;
+  fit.parameters[0].other_hold->is_better = true;
+  EXPECT_NE(told().find("if the input went straight from one sample to the next ('hold: linear'), "
+                        "which explains these recordings better."),
+            std::string::npos)
+      << told();
+}
+
 TEST(UncertaintyTextTest, NamesThreeCorrelationsAndCountsTheOthers) {
   const Job job = with_free({"M", "B_a", "K_f", "F_s"});
   FitResult fit;

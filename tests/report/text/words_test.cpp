@@ -10,6 +10,28 @@
 namespace axisfit {
 namespace {
 
+TEST(WordsTest, OfARecordingOfAnotherDay) {
+  RunResult result;
+  result.baseline.recordings.emplace_back().name = "later";
+  result.baseline.free = {free_parameter("constant_force.F_0", 5.0)};
+  result.first.parameters.push_back({result.baseline.free[0].id(), 5.0, {.determined = true}});
+  result.first.verdict.kind = FitVerdict::Kind::usable;
+  result.grade = {.grade = Grade::explained, .reason = FitGrade::Reason::none};
+  EXPECT_EQ(overall_verdict(result).find("another day"), std::string::npos);
+  OtherDay& day = result.other_days.emplace_back();
+  day.differing = {0};
+  day.parameters.push_back(
+      {result.baseline.free[0].id(), 40.0, {.determined = true, .standard_error = 0.1}});
+  day.percent_before = 12.3;
+  day.percent = 0.45;
+  const std::string text = overall_verdict(result);
+  EXPECT_NE(text.find("later is as of another day: with constant_force.F_0 = 40.00 instead of "
+                      "5.00 N, found in its first half, the model leaves 0.45 % of the drive force "
+                      "of the second half unexplained, and not 12 %. The grade counts it so."),
+            std::string::npos)
+      << text;
+}
+
 TEST(WordsTest, OfTheGradeOfAFit) {
   using enum FitVerdict::Kind;
   using Reason = FitGrade::Reason;
