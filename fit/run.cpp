@@ -71,7 +71,9 @@ void exchange_roles(RunResult& result, const RunContext& context) {
 }
 
 void close_loop(RunResult& result, const RunContext& context) {
-  if (!result.options.select_effects || !result.first.is_usable()) return;
+  if (!result.options.select_effects ||
+      !(result.first.is_usable() || result.first.verdict.kind == FitVerdict::Kind::no_minimum))
+    return;
   result.selection = select_effects(result.baseline, result.first, {}, context);
   exchange_roles(result, context);
   if (result.selection->horizon) result.horizon = result.selection->horizon;

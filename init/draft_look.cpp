@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "base/plain_text.h"
 #include "base/rounding.h"
 #include "base/units.h"
 #include "fit/data/filter_check.h"
@@ -255,11 +256,15 @@ void set_timing(JobDraft& draft, const RunContext& context) {
   // too.
   if (!chosen.is_late(interval) || !seen_timing(draft, chosen.is_held).is_late(interval)) return;
   draft.parameters.push_back(free_delay(draft, chosen.delay.value));
+  const double late = 1e3 * std::abs(chosen.delay.value);
+  const std::string column = sanitized(draft.recordings.front().input_column().column);
   draft.guesses.push_back(
-      fmt::format("T_d is free: the motion {} what drives it by {:.2g} ms; it is the time lag of "
-                  "drive or log",
-                  chosen.delay.value > 0.0 ? "follows" : "is logged before",
-                  1e3 * std::abs(chosen.delay.value)));
+      chosen.delay.value > 0.0
+          ? fmt::format("T_d is free: the motion follows {} by {:.2g} ms, the lag of a drive or of "
+                        "the motion's log",
+                        column, late)
+          : fmt::format("T_d is free: {} is logged {:.2g} ms late, probably by its filter", column,
+                        late));
 }
 
 }  // namespace axisfit

@@ -208,15 +208,17 @@ struct Start {
 
 /// The declared model, tracked where its own fit would hide effects or take minutes: the states
 /// with which windows begin take part of what is missing upon themselves, a free run that noise of
-/// the input moves is elsewhere, and a simulation that was chosen to track may follow the noise.
-/// The gain is one at which noise of the inputs does not add up.
+/// the input moves is elsewhere, what the model lacks may leave it without a minimum, and a
+/// simulation that was chosen to track may follow the noise. The gain is one at which noise of the
+/// inputs does not add up.
 Start start_of(const Job& job, const FitResult& first, const SearchContext& context) {
   Start start{{"", job, first}};
   std::optional<double> least_gain = quiet_gain(job, first);
   start.input_is_noisy = least_gain.has_value();
   const bool was_chosen_to_track = job.choose_criterion && tracks(job.options.criterion);
-  start.tracks = first.is_usable() && (window_length(job.options.criterion) > 0.0 ||
-                                       start.input_is_noisy || was_chosen_to_track);
+  start.tracks = first.verdict.kind == FitVerdict::Kind::no_minimum ||
+                 (first.is_usable() && (window_length(job.options.criterion) > 0.0 ||
+                                        start.input_is_noisy || was_chosen_to_track));
   if (!start.tracks) return start;
   if (!least_gain) least_gain = kalman_gain(job, values_of(first));
   start.model = tracking(std::move(start.model),

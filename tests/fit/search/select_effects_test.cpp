@@ -372,12 +372,24 @@ TEST(SelectEffects, TellsWhatItDoes) {
 TEST(SelectEffects, NeedsAUsableFit) {
   const Job job = hidden_effect_named("coulomb_friction").job();
   FitResult fit = estimate(job);
-  fit.verdict.kind = FitVerdict::Kind::no_minimum;
+  fit.verdict.kind = FitVerdict::Kind::signal_not_followed;
   const EffectSelection selection = select_effects(job, fit);
   EXPECT_TRUE(selection.effects.empty());
   EXPECT_FALSE(selection.explained);
   EXPECT_EQ(selection.models.size(), 1u);
   EXPECT_EQ(selection.verdict.kind, SelectionVerdict::Kind::no_usable_fit);
+}
+
+// What the model lacks may leave it without a minimum: then all the more is to be found.
+TEST(SelectEffects, IsNotBlindedByAModelWithoutAMinimum) {
+  const Job job = hidden_effect_named("coulomb_friction").job();
+  FitResult fit = estimate(job);
+  fit.verdict.kind = FitVerdict::Kind::no_minimum;
+  const EffectSelection selection = select_effects(job, fit);
+  EXPECT_EQ(accepted(selection), Names{"coulomb_friction"});
+  EXPECT_TRUE(selection.explained);
+  EXPECT_TRUE(selection.result.fit.is_usable());
+  EXPECT_FALSE(tracks(selection.result.job.options.criterion)) << "the job asks for a free run";
 }
 
 // The size of the residual is that of the noise, but its shape is not.
