@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "base/deadline.h"
 #include "base/plain_text.h"
 #include "base/rounding.h"
 #include "base/units.h"
@@ -181,7 +182,7 @@ Timing fitted_timing(JobDraft draft, bool is_held, const RunContext& context) {
   for (Recording& recording : job.recordings) recording.role = Role::fit;  // all of them tell
   job.options = recipe::quick(job.options);
   job.options.threads = 1;
-  const FitResult fit = estimate(job, context.quiet());
+  const FitResult fit = estimate(job, context);
   if (!fit.verdict.has_minimum()) return timing;
   timing.chi_square = fit.reduced_chi_square;
   const ParameterResult& found = fit.parameters.back();
@@ -189,12 +190,21 @@ Timing fitted_timing(JobDraft draft, bool is_held, const RunContext& context) {
   return timing;
 }
 
-/// By fits with both holds, unless the valleys of a gear are too narrow for short ones.
+/// By fits with both holds, unless they take longer than a hold is worth. Throws Interrupted after
+/// a stop.
 Timing best_timing(const JobDraft& draft, bool is_held, const RunContext& context) {
-  if (capabilities(draft.structure).has_backlash) return seen_timing(draft, is_held);
-  const Timing usual = fitted_timing(draft, is_held, context),
-               other = fitted_timing(draft, !is_held, context);
-  return other.is_better_than(usual, interval_of(draft)) ? other : usual;
+  constexpr double kSeconds = 0.5;  // of processors
+  const Deadline deadline(context.stop, kSeconds);
+  RunContext within = context.quiet();
+  within.stop = deadline.flag();
+  try {
+    const Timing usual = fitted_timing(draft, is_held, within),
+                 other = fitted_timing(draft, !is_held, within);
+    return other.is_better_than(usual, interval_of(draft)) ? other : usual;
+  } catch (const Interrupted&) {
+    if (is_set(context.stop)) throw;
+    return seen_timing(draft, is_held);
+  }
 }
 
 }  // namespace

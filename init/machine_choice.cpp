@@ -54,7 +54,7 @@ void mark_examples(InitialJob& created, const JobFile& read) {
 
 /// Of processors. What explains a recording does so at once; a stiff gear that does not would take
 /// minutes.
-constexpr double kSecondsOfATrial = 2.0, kSecondsOfAnother = 8.0;
+constexpr double kSecondsOfATrial = 0.8, kSecondsOfAnother = 8.0;
 
 struct Trial {
   std::size_t place;  ///< in the order of trials: one mass first

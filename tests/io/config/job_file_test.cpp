@@ -331,7 +331,8 @@ TEST_F(JobFileTest, NoiseIsEstimatedFromTheSamplesThatAreKept) {
 
 TEST_F(JobFileTest, TheNoiseOfAnInputIsGivenOrOfAForceSourceEstimated) {
   Data data;
-  for (std::size_t i = 0; i < kRows; ++i) data.u[i] = std::sin(0.05 * double(i)) + (i % 2 == 0 ? 0.01 : -0.01);
+  for (std::size_t i = 0; i < kRows; ++i)
+    data.u[i] = std::sin(0.05 * double(i)) + (i % 2 == 0 ? 0.01 : -0.01);
   write_data("data.csv", data.columns());
   const Recording estimated = read(kJob).job.recordings.front();
   EXPECT_EQ(estimated.command_noise, NoiseSource::differences);
