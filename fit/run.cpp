@@ -75,6 +75,12 @@ void close_loop(RunResult& result, const RunContext& context) {
       !(result.first.is_usable() || result.first.verdict.kind == FitVerdict::Kind::no_minimum))
     return;
   result.selection = select_effects(result.baseline, result.first, {}, context);
+  // Not even while it tracks: there is nothing to begin with.
+  if (!result.first.is_usable() && !result.selection->interrupted &&
+      result.selection->verdict.kind == SelectionVerdict::Kind::no_usable_fit) {
+    result.selection.reset();
+    return;
+  }
   exchange_roles(result, context);
   if (result.selection->horizon) result.horizon = result.selection->horizon;
   if (result.selection->interrupted) throw Interrupted();

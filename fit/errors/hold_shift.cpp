@@ -49,7 +49,10 @@ std::vector<std::optional<HoldShift>> hold_shifts(const Job& job,
   std::vector<Eigen::Index> moving;
   for (std::size_t i = 0; i < parameters.size(); ++i)
     if (!parameters[i].uncertainty.at_bound) moving.push_back(static_cast<Eigen::Index>(i));
-  if (moving.empty() || !at_solution.finite) return shifts;
+  const bool has_hold = std::ranges::any_of(job.recordings, [](const Recording& r) {
+    return r.role == Role::fit && r.command.meaning != Meaning::reference;
+  });
+  if (moving.empty() || !at_solution.finite || !has_hold) return shifts;
 
   const Job other = with_other_hold(job);
   const ParameterSpace space(other);

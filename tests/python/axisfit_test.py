@@ -215,6 +215,14 @@ class Init(unittest.TestCase):
             with self.assertRaises(FileExistsError):
                 axisfit.init(PROJECT / "testdata" / "clean-fit.csv", folder)
 
+    def test_takes_the_answers_of_the_command(self):
+        with tempfile.TemporaryDirectory() as folder:
+            two = PROJECT / "testdata" / "contact" / "two-motors.csv"
+            job = axisfit.init(two, folder, motor=1, gain=1.0)
+            self.assertEqual(list(job.free)[0], "M")
+            with self.assertRaisesRegex(RuntimeError, "--rate apples: write how many samples"):
+                axisfit.init(two, os.path.join(folder, "other"), rate="apples")
+
 
 class Interrupted(unittest.TestCase):
     def test_ends_soon_with_what_is_finished(self):
