@@ -291,8 +291,10 @@ InitialJob initial_job(const InitRequest& request, const RunContext& context) {
   correct_signs(draft);
   drop_idle_velocities(draft);
   use_common_signals(draft);
-  if (makes_axis) take_for_friction(draft);
-  if (makes_axis) start_axis(draft);
+  if (makes_axis) {
+    take_for_friction(draft);
+    start_axis(draft);
+  }
   list_parameters(draft);
   context.report({.phase = "what the recordings determine"});
   choose_free(draft, context.stop);

@@ -9,6 +9,7 @@
 #include "base/plain_text.h"
 #include "fit/data/noise.h"
 #include "fit/data/recording_check.h"
+#include "init/columns/resample.h"
 #include "init/draft_look.h"
 
 namespace axisfit {
@@ -35,24 +36,13 @@ bool has_input(const RecordingGuess& recording, const InputColumn& input) {
   return recording.find(input.kind, input.is_setpoint) != nullptr;
 }
 
-/// Values of another clock at these times; each holds until the next.
-std::vector<double> at_times(const std::vector<double>& times, const std::vector<double>& clock,
-                             const std::vector<double>& values, double offset) {
-  std::vector<double> result;
-  for (const double t : times) {
-    const auto next = std::ranges::upper_bound(clock, t - offset) - clock.begin();
-    result.push_back(values[static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - 1, 0))]);
-  }
-  return result;
-}
-
 /// What is added to the clock of the input for the motion to follow it.
 double best_offset(const DraftRecording& motion, const std::vector<double>& clock,
                    const std::vector<double>& values) {
   const std::vector<double>& times = motion.guess.time.values;
   double offset = times.front() - clock.front(), least = INFINITY;
   const auto look_at = [&](double from, double reach) {
-    const std::vector<double> input = at_times(times, clock, values, from);
+    const std::vector<double> input = held_at(times, clock, values, from);
     const DrivenMotion driven = driven_motion(motion.guess, input);
     const auto found =
         first_look(std::span(&driven, 1),
@@ -228,7 +218,7 @@ void join_files(JobDraft& draft) {
   motion->input_offset = offset;
   column.clock = clock.column;
   column.clock_unit = clock.unit;
-  column.values = at_times(motion->guess.time.values, clock.values, column.values, offset);
+  column.values = held_at(motion->guess.time.values, clock.values, column.values, offset);
   column.reasons.push_back(
       fmt::format("from {}, whose clock was set {:.6g} s {}: there the force goes best with the "
                   "acceleration; the delay T_d, which is free, does the rest",

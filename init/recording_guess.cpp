@@ -11,6 +11,7 @@
 #include "init/columns/derivative_rule.h"
 #include "init/columns/heading.h"
 #include "init/columns/range_rule.h"
+#include "init/columns/resample.h"
 #include "init/columns/roles.h"
 #include "init/columns/time_column.h"
 #include "init/columns/unnamed.h"
@@ -27,45 +28,6 @@ bool may_be_constant(Kind kind) {
 }
 
 bool is_place(Kind kind) { return kind == Kind::position || kind == Kind::load_position; }
-
-/// Each value until the next; those at NaN times are left out.
-Values held(const Values& times, const Values& values, const Values& at) {
-  Values result;
-  double last = NAN;
-  std::size_t k = 0;
-  for (const double t : at) {
-    for (; k < times.size() && !(times[k] > t); ++k)
-      if (!std::isnan(values[k])) last = values[k];
-    result.push_back(last);
-  }
-  const auto known = std::ranges::find_if(result, [](double x) { return !std::isnan(x); });
-  if (known == result.end()) return {};
-  std::fill(result.begin(), known, *known);
-  return result;
-}
-
-/// Linear between the values that there are, constant beyond; those at NaN times are left out.
-Values interpolated(const Values& times, const Values& values, const Values& at) {
-  Values known_times, known;
-  for (std::size_t i = 0; i < std::min(times.size(), values.size()); ++i) {
-    if (std::isnan(times[i]) || std::isnan(values[i])) continue;
-    known_times.push_back(times[i]);
-    known.push_back(values[i]);
-  }
-  Values result;
-  if (known.empty()) return result;
-  std::size_t k = 0;
-  for (const double t : at) {
-    while (k < known_times.size() && known_times[k] < t) ++k;
-    if (k == 0 || k == known_times.size()) {
-      result.push_back(k == 0 ? known.front() : known.back());
-      continue;
-    }
-    const double share = (t - known_times[k - 1]) / (known_times[k] - known_times[k - 1]);
-    result.push_back(share == 1.0 ? known[k] : known[k - 1] + share * (known[k] - known[k - 1]));
-  }
-  return result;
-}
 
 class Guesser {
  public:
@@ -103,8 +65,8 @@ class Guesser {
     const Values times =
         time_.rate > 0.0 ? even_times(file_, time_.rate) : times_of_clock(file_, clock.value_or(0));
     if (times.size() != values.size() || !increases(without_gaps(times))) return {};
-    return has_changes_only(c) ? held(times, values, time_.column.raw)
-                               : interpolated(times, values, time_.column.raw);
+    return has_changes_only(c) ? held_at(time_.column.raw, times, values)
+                               : interpolated_at(time_.column.raw, times, values);
   }
 
   /// Whether what drives the axis has a clock of its own that is far slower: whoever writes only
