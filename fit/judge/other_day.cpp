@@ -33,7 +33,7 @@ std::vector<std::vector<std::size_t>> candidates(const Job& job) {
   return sets;
 }
 
-/// A job with that recording alone, whose first half is fitted.
+/// A job with that recording alone, whose first half is fitted, and nothing free.
 Job job_of(const Job& job, const FitResult& fit, std::size_t recording) {
   Job alone = job;
   alone.model = fitted_model(job, fit);
@@ -54,12 +54,13 @@ std::optional<OtherDay> other_day(const Job& job, const FitResult& fit, std::siz
   const std::size_t half = job.recordings[recording].times.size() / 2;
   OtherDay best{.recording = recording, .percent_before = percent_from(missing, half)};
   best.percent = best.percent_before;
+  const Job nothing_free = job_of(job, fit, recording);
   std::size_t fewest = 0;
   for (const std::vector<std::size_t>& differing : candidates(job)) {
     // As few as do: more are not tried where some do.
     if (best.percent < usual && differing.size() > fewest) break;
     context.check_stop();
-    Job alone = job_of(job, fit, recording);
+    Job alone = nothing_free;
     for (const std::size_t i : differing) {
       FreeParameter& free = alone.free.emplace_back(job.free[i]);
       free.initial = fit.parameters[i].value;
