@@ -4,7 +4,6 @@
 #include <span>
 
 #include "fit/first_look/first_look.h"
-#include "fit/solve/run_context.h"
 #include "init/job_draft.h"
 
 namespace axisfit {
@@ -24,12 +23,5 @@ void correct_signs(JobDraft& draft);
 /// Where the motion goes one way only, friction and a constant force are one: the first look takes
 /// all of it for friction, unless it pushes the axis along.
 void take_for_friction(JobDraft& draft);
-
-/// Takes the hold of the input that suits the motion, and frees the time by which the motion
-/// follows it where that is clearly more than half a sample. Both holds are tried, with the time of
-/// the first look to begin with. Where they do as well, what was commanded is held, and so is what
-/// stays in steps; what was measured is not.
-/// When the stop flag is set, `guesses` say that nothing was tried.
-void set_timing(JobDraft& draft, const RunContext& context = {});
 
 }  // namespace axisfit

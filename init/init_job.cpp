@@ -15,6 +15,7 @@
 #include "init/free_choice.h"
 #include "init/input_choice.h"
 #include "init/job_text.h"
+#include "init/timing.h"
 #include "io/config/axis_file.h"
 
 namespace axisfit {

@@ -54,6 +54,9 @@ std::string column_map(const GuessedColumn& column, const std::string& unit,
         << "column" << YAML::Value << column.supply << YAML::Key << "unit" << YAML::Value
         << column.supply_unit << YAML::EndMap;
   if (column.hold > 1) out << YAML::Key << "hold" << YAML::Value << column.hold;
+  if (column.averaged > 1)
+    out << YAML::Key << "filter" << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key
+        << "moving_average" << YAML::Value << column.averaged << YAML::EndMap;
   if (offset != 0.0)
     out << YAML::Key << "offset" << YAML::Value << with_unit(round_to_digits(offset, 6), "s");
   if (!more.first.empty()) out << YAML::Key << more.first << YAML::Value << more.second;

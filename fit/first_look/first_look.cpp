@@ -123,13 +123,21 @@ void leave_out_what_is_alike(Balance& balance, const std::vector<Grid>& grids) {
     balance.noise(kConstant, kConstant) = std::numeric_limits<double>::max();
 }
 
-/// What windows of one length tell; none where they tell nothing.
-std::optional<FirstLook> look_through(const std::vector<Grid>& grids, std::size_t samples,
-                                      bool of_position, const FirstLookOptions& options,
-                                      double& information) {
+/// What windows of one length tell.
+struct Look {
+  FirstLook found;
+  double information = 0.0;
+  /// Of what friction and constant forces leave of the input, the part that a mass leaves, too.
+  double left_by_mass = 1.0;
+};
+
+/// None where they tell nothing.
+std::optional<Look> look_through(const std::vector<Grid>& grids, std::size_t samples,
+                                 bool of_position, const FirstLookOptions& options) {
   Balance balance = balance_in(grids, samples, of_position, options.with_gravity, 0.0);
   leave_out_what_is_alike(balance, grids);
-  FirstLook look;
+  Look result;
+  FirstLook& look = result.found;
   const double interval = grids.front().interval();
   for (double near = 0.0;; near = look.delay.value) {
     if (balance.parts.empty()) return std::nullopt;
@@ -185,17 +193,21 @@ std::optional<FirstLook> look_through(const std::vector<Grid>& grids, std::size_
   look.window = static_cast<double>(samples) * interval;
   look.direction = direction_of(look);
   if (options.by_evidence) {
-    information = -static_cast<double>(left.size()) * std::log(std::max(1e-6, look.unexplained));
-    return look;
+    result.information =
+        -static_cast<double>(left.size()) * std::log(std::max(1e-6, look.unexplained));
+    return result;
   }
+  MatrixXd without_mass = balance.noise;
+  without_mass(kMass, kMass) = std::numeric_limits<double>::max();
+  result.left_by_mass =
+      left.norm() / NoisyRegression(balance.terms, without_mass).remaining(inputs).norm();
   // What the balance does not have may explain all of the input.
-  information = 0.0;
   for (Index place = 0; place < 4; ++place) {
     const double most = inputs.norm() / std::max(1e-300, balance.terms.col(place).norm());
-    information -= std::log(
+    result.information -= std::log(
         regression.has(place) ? std::min(most, std::sqrt(covariance(place, place))) : most);
   }
-  return look;
+  return result;
 }
 
 bool changes(std::span<const double> values) {
@@ -206,10 +218,6 @@ bool changes(std::span<const double> values) {
 
 std::optional<FirstLook> first_look(std::span<const DrivenMotion> motions,
                                     const FirstLookOptions& options) {
-  struct Look {
-    FirstLook found;
-    double information;
-  };
   std::vector<Look> looks;
   for (const bool of_position : {true, false}) {
     std::vector<Grid> grids;
@@ -224,18 +232,26 @@ std::optional<FirstLook> first_look(std::span<const DrivenMotion> motions,
     }
     for (std::size_t samples = kShortestWindow;
          samples <= std::min(kLongestWindow, longest / kWindowsPerMotion); samples *= 2) {
-      double information = 0.0;
-      if (const auto look = look_through(grids, samples, of_position, options, information))
-        looks.push_back({*look, information});
+      if (const auto look = look_through(grids, samples, of_position, options))
+        looks.push_back(*look);
     }
   }
   // Where short windows, or the other signal, leave clearly more, they show what a mass is not.
-  constexpr double kClearly = 1.15, kHardlyAnything = 0.02;
-  double least = INFINITY, most = -INFINITY;
-  for (const Look& look : looks) least = std::min(least, look.found.unexplained);
+  // Unless a mass explains most of what they show: at a speed that hardly changes on the whole,
+  // long windows leave little because friction takes all of their input.
+  constexpr double kClearly = 1.15, kHardlyAnything = 0.02, kMostOfIt = 0.5;
+  double least = INFINITY, least_by_mass = kMostOfIt, most = -INFINITY;
+  for (const Look& look : looks) {
+    least = std::min(least, look.found.unexplained);
+    least_by_mass = std::min(least_by_mass, look.left_by_mass);
+  }
   std::optional<FirstLook> best;
   for (const Look& look : looks) {
-    const bool is_clearly_worse = look.found.unexplained > kClearly * least + kHardlyAnything;
+    const auto is_worse = [](double left, double least_left) {
+      return left > kClearly * least_left + kHardlyAnything;
+    };
+    const bool is_clearly_worse =
+        is_worse(look.found.unexplained, least) && is_worse(look.left_by_mass, least_by_mass);
     if ((is_clearly_worse && !options.by_evidence) || !(look.information > most)) continue;
     most = look.information;
     best = look.found;

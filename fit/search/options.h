@@ -121,8 +121,8 @@ struct SearchOptions {
 
   /// Periods of a force along the stroke, as peaks of a spectrum over it.
   struct Periods {
-    double samples_per_period = 4.0;  ///< at the highest speed, and ...
-    double most_per_stroke = 400.0;   ///< ... periods, at most
+    double samples_per_period = 4.0;  ///< at the highest speed, at least
+    double most_products = 2e8;       ///< samples times lines of a spectrum, which bounds the time
     double cycle_step = 0.25;         ///< cycles per stroke, from line to line: peaks are one wide
     std::size_t first_line = 4;       ///< of one cycle: longer forces are no ripple
     std::size_t sizes = 24;           ///< of a response are computed, which change slowly

@@ -108,8 +108,9 @@ std::vector<double> periods_in(const Recording& recording, const SimulatedRecord
   }
   const double stroke = high - low;
   const double interval = mean_interval(recording.times);
-  const double shortest =
-      std::max(kOptions.samples_per_period * speed * interval, stroke / kOptions.most_per_stroke);
+  const double spacing = kOptions.cycle_step / stroke;  // 1/m
+  const double shortest = std::max(kOptions.samples_per_period * speed * interval,
+                                   static_cast<double>(n) / (spacing * kOptions.most_products));
   if (!(stroke > 0.0) || !(shortest < stroke)) return {};
 
   struct Line {
@@ -137,7 +138,6 @@ std::vector<double> periods_in(const Recording& recording, const SimulatedRecord
   // response, backwards in time, to the residual: one for all waves. The size of a response changes
   // slowly over the waves, so that a few of them tell.
   const std::vector<double> adjoint = adjoint_response(recording, residual, observer);
-  const double spacing = kOptions.cycle_step / stroke;  // 1/m
   const auto waves = static_cast<std::size_t>(std::ceil((1.0 / shortest) / spacing));
   const std::size_t stride = std::max<std::size_t>(1, waves / kOptions.sizes);
   std::vector<std::complex<double>> turn(n), phase(n);

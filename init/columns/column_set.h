@@ -36,6 +36,7 @@ struct GuessedColumn {
   std::string supply{};  ///< column of the voltage that the values of a duty are of; empty: none
   std::string supply_unit{};
   std::size_t hold = 1;       ///< how often each value was recorded
+  std::size_t averaged = 1;   ///< samples of which each value is the mean
   bool changes_only = false;  ///< it seems to be recorded where it changes alone
 
   bool is_constant() const;

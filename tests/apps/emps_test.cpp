@@ -1,7 +1,6 @@
 // The EMPS benchmark, a real axis: the fit finds what others have found.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -9,30 +8,21 @@
 #include "fit/estimate/estimate.h"
 #include "io/config/job_file.h"
 #include "report/text/names.h"
+#include "tests/foreign_recordings.h"
 
 namespace axisfit {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Recordings are not part of the project; see configs/jobs/emps.yaml for where to get them.
-std::string folder_of_recordings() {
-  if (const char* given = std::getenv("AXISFIT_EMPS"); given != nullptr && *given != '\0')
-    return given;
-  return (fs::path(AXISFIT_CONFIGS) / "../../shared/data/emps").lexically_normal().string();
-}
-
 // A. Janot, M. Gautier and M. Brunot, "Data Set and Reference Models of EMPS", 2019: least squares
 // estimates. Their offset is on the side of the friction, F_0 on that of the force.
 TEST(EmpsTest, FitAgreesWithThePublishedEstimates) {
-  const std::string folder = folder_of_recordings();
-  if (!fs::exists(fs::path(folder) / "DATA_EMPS.mat") ||
-      !fs::exists(fs::path(folder) / "DATA_EMPS_PULSES.mat"))
-    GTEST_SKIP()
-        << "There are no EMPS recordings in " << folder
-        << ". To run this test, name their folder in the environment variable AXISFIT_EMPS.";
+  const fs::path folder = foreign_recordings("emps");  // where to get them: configs/jobs/emps.yaml
+  AXISFIT_SKIP_WITHOUT(folder, "DATA_EMPS.mat");
+  AXISFIT_SKIP_WITHOUT(folder, "DATA_EMPS_PULSES.mat");
 
-  const JobFile file = read_job_file(AXISFIT_CONFIGS "/jobs/emps.yaml", folder);
+  const JobFile file = read_job_file(AXISFIT_CONFIGS "/jobs/emps.yaml", folder.string());
   const FitResult result = estimate(file.job);
   EXPECT_TRUE(result.verdict.has_minimum());
   EXPECT_TRUE(result.is_usable()) << result.message;

@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
 #include "fit/estimate/estimate.h"
 #include "io/config/job_file.h"
+#include "tests/foreign_recordings.h"
 #include "tests/init/made_job.h"
 
 namespace axisfit {
@@ -365,13 +365,9 @@ TEST_F(InitJobTest, AReferenceIsNotFitted) {
 }
 
 TEST_F(InitJobTest, TheEmpsAxisIsFoundFromItsFilesAlone) {
-  const char* given = std::getenv("AXISFIT_EMPS");
-  const fs::path data =
-      given != nullptr && *given != '\0' ? given : AXISFIT_CONFIGS "/../../shared/data/emps";
-  if (!fs::exists(data / "DATA_EMPS.mat") || !fs::exists(data / "DATA_EMPS_PULSES.mat"))
-    GTEST_SKIP() << "There are no EMPS recordings in " << data
-                 << ". To run this test, name their folder in the environment variable "
-                    "AXISFIT_EMPS.";
+  const fs::path data = foreign_recordings("emps");
+  AXISFIT_SKIP_WITHOUT(data, "DATA_EMPS.mat");
+  AXISFIT_SKIP_WITHOUT(data, "DATA_EMPS_PULSES.mat");
   make({(data / "DATA_EMPS.mat").string(), (data / "DATA_EMPS_PULSES.mat").string()});
   const auto found = fitted(read());
   constexpr double kGain = 35.15065188248547;  // N/V, published; the job takes 1 N/V
@@ -384,13 +380,8 @@ TEST_F(InitJobTest, TheEmpsAxisIsFoundFromItsFilesAlone) {
 // A hobby servo: whole numbers without a sign for its duty, a supply beside them, no units, and a
 // weight that no column tells of.
 TEST_F(InitJobTest, AServoWithAPendulumIsReadFromItsFileAlone) {
-  const char* given = std::getenv("AXISFIT_BAM");
-  const fs::path data =
-      given != nullptr && *given != '\0' ? given : AXISFIT_CONFIGS "/../../shared/data/bam";
-  if (!fs::exists(data / "sin_sin_8.csv"))
-    GTEST_SKIP() << "There are no recordings of the servo in " << data
-                 << ". To run this test, name their folder in the environment variable "
-                    "AXISFIT_BAM.";
+  const fs::path data = foreign_recordings("bam");
+  AXISFIT_SKIP_WITHOUT(data, "sin_sin_8.csv");
   constexpr double kGain = 0.38670 / 4.0171 * 7.3 / 885.0;  // N m per count, published (model m1)
   make({(data / "sin_sin_8.csv").string()}, {}, kGain,
        {.columns = {read_answer("position=position:rad")}});
@@ -403,6 +394,17 @@ TEST_F(InitJobTest, AServoWithAPendulumIsReadFromItsFileAlone) {
   // m l^2 of the pendulum and the published armature; its weight at its lever.
   EXPECT_NEAR(start.axis.M, 0.0049 + 0.0018142, 0.0007);
   EXPECT_NEAR(*members(start)[quantity_index("pendulum_gravity.G_s")], 0.49 * 9.81 * 0.1, 0.05);
+}
+
+// A motor that turns slowly in closed loop over its cogging. Over a long time its speed never
+// changes, so that the current is that of friction; its inertia shows within a period of the
+// cogging. By least squares with the cogging of its two orders, 2.4e-4 A s^2/rad.
+TEST_F(InitJobTest, AMassThatOnlyCoggingMovesIsSeen) {
+  const fs::path data = foreign_recordings("laas");
+  AXISFIT_SKIP_WITHOUT(data, "speed_test1.txt");
+  make({(data / "speed_test1.txt").string()}, {}, {},
+       {.columns = {read_answer("position=Position:rad"), read_answer("velocity=Velocity:rad/s")}});
+  EXPECT_NEAR(read().job.model.axis.M, 2.4e-4, 0.6e-4);
 }
 
 }  // namespace
