@@ -105,8 +105,12 @@ double least_bic_difference(const std::vector<ResidualSeries>& best, double more
   return more_parameters * std::log(std::max(2.0, samples)) - gain;
 }
 
+double clear_difference(const SearchOptions& options) {
+  return 2.0 * std::log(options.acceptance.odds);
+}
+
 bool is_clearly_worse(double bic_difference, const SearchOptions& options) {
-  return bic_difference > 2.0 * std::log(options.acceptance.odds);
+  return bic_difference > clear_difference(options);
 }
 
 bool is_needed(const Improvement& gain, std::size_t parameters, bool replicates,

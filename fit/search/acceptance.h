@@ -44,7 +44,9 @@ double bic_difference(const std::vector<ResidualSeries>& best, std::size_t best_
 /// known.
 double least_bic_difference(const std::vector<ResidualSeries>& best, double more_parameters);
 
-/// Whether a difference of that is ground for a preference.
+/// The least difference of that which is ground for a preference.
+double clear_difference(const SearchOptions& options = {});
+/// Whether this one is.
 bool is_clearly_worse(double bic_difference, const SearchOptions& options = {});
 
 /// What the fit says of a hypothesis's own parameters, the last of the job's.
@@ -79,6 +81,7 @@ struct Rejection {
     power,            ///< nor could it: what was not fitted hardly shows it
     validation_size,  ///< it hardly does
     bound,            ///< a parameter of it is held by a bound
+    span,             ///< a shape of it is beyond what the recordings span: it is a simpler effect
     shape,            ///< the data leave a shape of it open
     distinct,         ///< other parameters can imitate it
     strength,         ///< the data leave its strength open
@@ -89,11 +92,12 @@ struct Rejection {
   Test test = Test::fit;
   /// By test, significance: the fall of the sum of squares; validation and power: the p-value;
   /// validation_size: the fall of the validation error, %; share: that beyond the noise; strength:
-  /// the standard errors from zero; period: that which they show.
+  /// the standard errors from zero; period: that which they show;
+  /// span: the shape.
   double found = 0.0;
   double required = 0.0;  ///< of significance: the least fall of the sum of squares
   std::size_t tried = 0;  ///< of significance: hypotheses and settings among which it was chosen
-  std::optional<ParameterId> parameter{};  ///< of bound and shape
+  std::optional<ParameterId> parameter{};  ///< of bound, span and shape
 
   bool operator==(const Rejection&) const = default;
 };

@@ -67,7 +67,9 @@ struct SearchOptions {
     /// nine of ten such recordings. Below, the recordings cannot judge.
     double power = 4.4;
     double alias = 1e-10;  ///< part of an effect that nothing imitates: below is rounding
-    double odds = 100.0;   ///< of two models, that make one clearly worse (by BIC)
+    /// Times what was tried of a shape, beyond which the effect is a simpler one.
+    double beyond_tried = 3.0;
+    double odds = 100.0;  ///< of two models, that make one clearly worse (by BIC)
   } acceptance;
 
   /// One round: which hypothesis explains the most.
@@ -96,6 +98,9 @@ struct SearchOptions {
     std::size_t constants = 4;  ///< of a corrected constant, others that do the same
     double imitated = 0.1;      ///< part of a correction that these may leave
     std::size_t refitted = 8;   ///< of one accepted hypothesis
+    /// A rival is out of reach that leaves more, to first order, than so many clear differences and
+    /// than this part of what it would replace.
+    double far = 10.0, left = 0.3;
   } rivals;
 
   /// What a search that ends far from the noise may name, per cent of the error beyond the noise.

@@ -26,14 +26,15 @@ bool is_alike_elsewhere(SearchState& state, const Hypothesis& hypothesis,
 
 }  // namespace
 
-bool drop_degenerate(SearchState& state) {
+bool drop_degenerate(SearchState& state, const SearchOptions& options) {
   for (std::size_t a = 0; a < state.accepted().size(); ++a) {
     const Hypothesis hypothesis = state.accepted()[a].hypothesis;
-    const auto shape = shape_at_bound(state.current().job, state.current().fit, hypothesis);
-    if (!shape) continue;
+    const auto rejection =
+        rejection_as_simpler(state.current().job, state.current().fit, hypothesis, options);
+    if (!rejection) continue;
     const FittedModel& reduced = state.chain.without(a);
     if (!reduced.fit.is_usable()) continue;
-    state.outcomes.fail(hypothesis, {.test = Rejection::Test::bound, .parameter = shape});
+    state.outcomes.fail(hypothesis, *rejection);
     state.take_out(a, reduced);
     state.degenerate.push_back(hypothesis);
     return true;

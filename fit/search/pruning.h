@@ -9,7 +9,7 @@ namespace axisfit {
 
 /// Takes out the first effect that has become a simpler one beside those accepted after it, not to
 /// be tried again: the simpler one is in the catalogue. Whether there was one.
-bool drop_degenerate(SearchState& state);
+bool drop_degenerate(SearchState& state, const SearchOptions& options);
 
 /// Takes away what is not needed any more, or never was but to a simulation that tracks. Where the
 /// fit stays far from the noise, what the recordings to validate tell alike beside all other

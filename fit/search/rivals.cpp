@@ -1,10 +1,12 @@
 #include "fit/search/rivals.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/parallel.h"
 #include "fit/search/catalogue.h"
+#include "fit/search/exchange_score.h"
 #include "fit/search/imitators.h"
 #include "fit/solve/parameters.h"
 
@@ -49,6 +51,14 @@ Scored with_strengths(Scored rival, const Job& others, const SearchContext& cont
   return rival;
 }
 
+/// Whether a rival leaves so much of what it would replace that no refit makes them equal.
+bool is_out_of_reach(const SearchState& state, const Job& others, const Scored& rival,
+                     const SearchOptions& options) {
+  const auto score = exchange_score(state.current(), state.accepted(), others, rival);
+  return score && score->with_rival > std::max(options.rivals.far * clear_difference(options),
+                                               options.rivals.left * score->with_nothing);
+}
+
 /// Refits those of an accepted hypothesis' rivals that `counts` in its place, from where all else
 /// is.
 template <class Counts>
@@ -65,6 +75,7 @@ std::vector<Tried> try_rivals(const SearchState& state, std::size_t place, Count
   if (list.empty()) return list;
   const Job others = state.chain.job_with_accepted(state.chain.declared().job, place);
   parallel_for(list.size(), [&](std::size_t i) {
+    if (is_out_of_reach(state, others, rivals[i], context.options)) return;
     Scored start = with_strengths(rivals[i], others, context);
     if (start.others.empty()) start.others = initial_values(others);
     list[i] = try_hypothesis(others, start, context);
@@ -83,17 +94,24 @@ double loss_with(const Tried& tried, const FittedModel& present,
 
 bool are_delays(const Hypothesis& a, const Hypothesis& b) { return is_delay(a) && is_delay(b); }
 
-std::optional<TriedRival> better_rival(SearchState& state, std::size_t tried,
+std::optional<TriedRival> better_rival(SearchState& state, const Shortlist& scores,
                                        const SearchContext& context) {
   const FittedModel& present = state.current();
   const auto now = residual_series(present.job, present.fit);
-  const Strictness strictness{tried, context.options.acceptance.chance};
+  const Strictness strictness{scores.tried, context.options.acceptance.chance};
+  // Where nothing but noise is left a score is exact; elsewhere a refit may find more.
+  const double part = state.explained() ? 1.0 : context.options.round.promise;
   for (std::size_t a = 0; a < state.accepted().size(); ++a) {
     const Accepted& accepted = state.accepted()[a];
     if (accepted.rivals.empty()) continue;
     state.report_progress(context.run, "any better than " + accepted.hypothesis.name + "?");
-    for (Tried& rival : try_rivals(
-             state, a, [](const Hypothesis&) { return true; }, context)) {
+    const auto may_be_better = [&](const Hypothesis& rival) {
+      const double more = static_cast<double>(rival.parameters()) -
+                          static_cast<double>(accepted.hypothesis.parameters());
+      const double needed = clear_difference(context.options) + more * std::log(samples_of(now));
+      return scores.promised_by(rival).value_or(INFINITY) >= part * needed;
+    };
+    for (Tried& rival : try_rivals(state, a, may_be_better, context)) {
       if (!is_clearly_worse(-loss_with(rival, present, now), context.options)) continue;
       const FittedModel& reduced = state.chain.without(a);
       judge(rival, residual_series(reduced.job, reduced.fit), strictness, context.options);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fit/search/search_state.h"
+#include "fit/search/shortlist.h"
 
 namespace axisfit {
 
@@ -15,9 +16,11 @@ struct TriedRival {
   Tried tried;
 };
 
-/// The first accepted hypothesis that has a clearly better rival, which passes the acceptance test
-/// among so many tried; none where there is no such.
-std::optional<TriedRival> better_rival(SearchState& state, std::size_t tried,
+/// The first accepted hypothesis that has a clearly better rival, which passes the acceptance test;
+/// none where there is no such. `scores` are those beside all that is accepted: a model with both
+/// explains at least as much as one with the rival alone, so that a rival which promises little
+/// beside the accepted one is no better in its place, and is not refitted.
+std::optional<TriedRival> better_rival(SearchState& state, const Shortlist& scores,
                                        const SearchContext& context);
 
 /// The equals of all accepted hypotheses, now that all else is known. Rivals without an outcome get

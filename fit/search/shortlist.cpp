@@ -76,7 +76,24 @@ std::vector<Scored> best_of(ScoreTest& test, std::size_t length,
   return taken;
 }
 
+/// Keeps the best of each hypothesis.
+void note(std::vector<Shortlist::Promise>& promises, const Shortlist::Promise& promise) {
+  const auto known = std::ranges::find_if(promises, [&](const Shortlist::Promise& p) {
+    return is_same(*p.hypothesis, *promise.hypothesis);
+  });
+  if (known == promises.end())
+    promises.push_back(promise);
+  else
+    known->gain = std::max(known->gain, promise.gain);
+}
+
 }  // namespace
+
+std::optional<double> Shortlist::promised_by(const Hypothesis& hypothesis) const {
+  const auto found = std::ranges::find_if(
+      promises, [&](const Promise& p) { return is_same(*p.hypothesis, hypothesis); });
+  return found == promises.end() ? std::nullopt : std::optional(found->gain);
+}
 
 Shortlist shortlist(const Job& job, const std::vector<double>& values,
                     const std::vector<double>& gains, bool curves, const SearchContext& context) {
@@ -86,6 +103,8 @@ Shortlist shortlist(const Job& job, const std::vector<double>& values,
   parallel_for(gains.size(), [&](std::size_t i) {
     ScoreTest test = score_test(job, values, gains[i], curves, context);
     of_gain[i].tried = test.scores.size();
+    for (const Scored& score : test.scores)
+      note(of_gain[i].promises, {score.hypothesis, score.gain / std::max(1.0, test.mean_square)});
     // Beside simulations that track, the free run is heard for its best, and what nearly equals it.
     const bool is_beside = gains[i] == 0.0 && gains.size() > 1;
     of_gain[i].entries =
@@ -94,6 +113,7 @@ Shortlist shortlist(const Job& job, const std::vector<double>& values,
   Shortlist result;
   for (Shortlist& list : of_gain) {
     result.tried = std::max(result.tried, list.tried);
+    for (const Shortlist::Promise& promise : list.promises) note(result.promises, promise);
     for (Scored& entry : list.entries) {
       const bool known = std::ranges::any_of(result.entries, [&](const Scored& s) {
         return nearly_same(s, entry, options.same_shape);

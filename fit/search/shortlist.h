@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "fit/search/score.h"
@@ -11,6 +13,16 @@ namespace axisfit {
 struct Shortlist {
   std::vector<Scored> entries;
   std::size_t tried = 1;  ///< hypotheses and settings among which they were chosen
+
+  /// What the score promises of a hypothesis, at its best setting and gain.
+  struct Promise {
+    std::shared_ptr<const Hypothesis> hypothesis;
+    double gain = 0.0;  ///< see Scored::scaled_gain
+  };
+  std::vector<Promise> promises;  ///< of all that were scored, each once
+
+  /// Nothing where it was not scored.
+  std::optional<double> promised_by(const Hypothesis& hypothesis) const;
 };
 
 /// The best by score_test() at each of these observer gains, from a fit with the given values of

@@ -55,14 +55,8 @@ Accepted accepted_from(const RoundResult& round, const Tried& best, const Search
   return accepted;
 }
 
-/// What a round did to the state.
-struct RoundEnd {
-  bool passed = false;
-  std::size_t tried = 1;  ///< hypotheses and settings
-};
-
-/// Adds the hypothesis that explains the most, if one passes.
-RoundEnd add_best(SearchState& state, bool curves, double chance, Rounds& rounds) {
+/// Adds the hypothesis that explains the most; whether one passes.
+bool add_best(SearchState& state, bool curves, double chance, Rounds& rounds) {
   const auto begin = std::chrono::steady_clock::now();
   ++rounds.count;
   RoundResult round = try_round(state.current(),
@@ -86,16 +80,16 @@ RoundEnd add_best(SearchState& state, bool curves, double chance, Rounds& rounds
        .best = state.current().fit.reduced_chi_square,
        .finished = fmt::format("round {}, {:.1f} s: {}", rounds.count, time.count(),
                                best != nullptr ? state.current().added : "none")});
-  return {best != nullptr, round.tried};
+  return best != nullptr;
 }
 
-RoundEnd add_best(SearchState& state, bool curves, Rounds& rounds) {
+bool add_best(SearchState& state, bool curves, Rounds& rounds) {
   return add_best(state, curves, rounds.context.options.acceptance.chance, rounds);
 }
 
 /// Exchanges the first accepted effect that has a clearly better rival; whether there was one.
-bool exchange(SearchState& state, std::size_t tried, const Rounds& rounds) {
-  std::optional<TriedRival> found = better_rival(state, tried, rounds.context);
+bool exchange(SearchState& state, const Rounds& rounds) {
+  std::optional<TriedRival> found = better_rival(state, *rounds.of_names.list, rounds.context);
   if (!found) return false;
   Tried& better = found->tried;
   state.outcomes.reject(state.accepted()[found->place].hypothesis, Reason::replaced,
@@ -113,13 +107,12 @@ void add_named(SearchState& state, Rounds& rounds) {
   bool may_exchange = true;
   do {
     while (has_room(state, rounds)) {
-      const RoundEnd end = add_best(state, false, rounds);
-      if (end.passed) continue;
+      if (add_best(state, false, rounds)) continue;
       if (!may_exchange || state.accepted().empty()) break;
       may_exchange = false;
-      if (!exchange(state, end.tried, rounds)) break;
+      if (!exchange(state, rounds)) break;
     }
-  } while (drop_degenerate(state));
+  } while (drop_degenerate(state, rounds.context.options));
 }
 
 /// By how much b explains the recordings worse than a, parameters counted.
@@ -189,9 +182,11 @@ SearchState together(SearchState state, Rounds& rounds) {
   if (is_continued)
     state.restart(tracking(declared, score_gains(declared.job).front(), rounds.context));
   const double chance = rounds.context.options.acceptance.provisional_chance;
-  while (state.current().fit.is_usable() && has_room(state, rounds) && !state.explained() &&
-         add_best(state, false, chance, rounds).passed) {
-  }
+  do {
+    while (state.current().fit.is_usable() && has_room(state, rounds) && !state.explained() &&
+           add_best(state, false, chance, rounds)) {
+    }
+  } while (drop_degenerate(state, rounds.context.options));
   const bool is_new = std::ranges::any_of(state.accepted(), [&](const Accepted& found) {
     return std::ranges::none_of(
         known, [&](const Accepted& other) { return is_same(found.hypothesis, other.hypothesis); });
@@ -213,7 +208,7 @@ SearchState together(SearchState state, Rounds& rounds) {
 
 SearchState with_curves(SearchState state, Rounds& rounds) {
   try {
-    while (has_room(state, rounds) && add_best(state, true, rounds).passed) {
+    while (has_room(state, rounds) && add_best(state, true, rounds)) {
     }
   } catch (const Interrupted&) {
     state.interrupted = true;
@@ -224,7 +219,7 @@ SearchState with_curves(SearchState state, Rounds& rounds) {
 SearchState from_a_curve(const SearchState& state, Rounds& rounds) {
   SearchState anew = state;
   anew.restart(state.chain.declared());
-  if (!add_best(anew, true, rounds).passed) return state;
+  if (!add_best(anew, true, rounds)) return state;
   add_named(anew, rounds);
   eliminate_backward(anew, rounds.context);
   return anew;

@@ -1,6 +1,7 @@
 #include "fit/search/tried.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "fit/estimate/recipes.h"
 #include "fit/solve/parameters.h"
@@ -60,13 +61,25 @@ HypothesisValues values_in(const Tried& tried) {
   return values_in(fitted_model(tried.job, tried.fit), tried.hypothesis);
 }
 
-std::optional<ParameterId> shape_at_bound(const Job& job, const FitResult& fit,
-                                          const Hypothesis& hypothesis) {
+std::optional<Rejection> rejection_as_simpler(const Job& job, const FitResult& fit,
+                                              const Hypothesis& hypothesis,
+                                              const SearchOptions& options) {
   if (!hypothesis.estimates_shapes()) return std::nullopt;
-  for (std::size_t i = 0; i < job.free.size(); ++i)
-    if (std::ranges::find(hypothesis.shapes, job.free[i].quantity) != hypothesis.shapes.end() &&
-        fit.parameters[i].uncertainty.at_bound)
-      return fit.parameters[i].id;
+  for (std::size_t k = 0; k < hypothesis.shapes.size(); ++k) {
+    const auto found = std::ranges::find(job.free, hypothesis.shapes[k], &FreeParameter::quantity);
+    if (found == job.free.end()) continue;
+    const ParameterResult& p = fit.parameters[static_cast<std::size_t>(found - job.free.begin())];
+    if (p.uncertainty.at_bound) return Rejection{.test = Rejection::Test::bound, .parameter = p.id};
+    double least = INFINITY, most = 0.0;
+    for (const std::vector<double>& setting : hypothesis.settings) {
+      least = std::min(least, setting[k]);
+      most = std::max(most, setting[k]);
+    }
+    const double beyond = options.acceptance.beyond_tried;
+    if (hypothesis.settings.size() > 1 && least > 0.0 &&
+        (p.value > beyond * most || p.value < least / beyond))
+      return Rejection{.test = Rejection::Test::span, .found = p.value, .parameter = p.id};
+  }
   return std::nullopt;
 }
 

@@ -43,10 +43,13 @@ void judge(Tried& tried, const std::vector<ResidualSeries>& before, const Strict
 /// What its quantities are.
 HypothesisValues values_in(const Tried& tried);
 
-/// A free shape of a hypothesis that a fit has driven to its bound: there the effect is a simpler
-/// one, as Dahl friction of no length is Coulomb friction.
-std::optional<ParameterId> shape_at_bound(const Job& job, const FitResult& fit,
-                                          const Hypothesis& hypothesis);
+/// Where a fit has driven a free shape of a hypothesis to its bound, or far beyond what was tried
+/// of it, which is what the recordings span: there the effect is a simpler one. Dahl friction of no
+/// length is Coulomb friction, and so is Stribeck's with a speed that the axis never reaches. None
+/// where no shape is there.
+std::optional<Rejection> rejection_as_simpler(const Job& job, const FitResult& fit,
+                                              const Hypothesis& hypothesis,
+                                              const SearchOptions& options = {});
 
 /// By how much a explains all recordings better than b, parameters counted, see bic_difference().
 double bic_advantage(const Tried& a, const Tried& b);

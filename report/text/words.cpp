@@ -37,6 +37,10 @@ std::string rejection_text(const Job& job, const Rejection& rejection) {
       return fmt::format("hardly lowers the validation error, by {:.2g} %", rejection.found);
     case bound:
       return name_of(job, rejection.parameter.value()) + " is at its bound";
+    case span:
+      return fmt::format(
+          "{} = {:.3g} is beyond what the recordings span: there it is a simpler effect",
+          name_of(job, rejection.parameter.value()), rejection.found);
     case shape:
       return "the recordings do not determine " + name_of(job, rejection.parameter.value());
     case distinct:

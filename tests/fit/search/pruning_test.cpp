@@ -51,12 +51,12 @@ TEST(DropDegenerate, TakesOutWhatHasBecomeASimplerEffect) {
   SearchState state = accepted_in(hidden_effect_named("coulomb_friction").job(),
                                   {{"dahl_friction", {{5.0}, {1e-5}}}});
   ASSERT_TRUE(state.current().fit.parameters.back().uncertainty.at_bound);
-  EXPECT_TRUE(drop_degenerate(state));
+  EXPECT_TRUE(drop_degenerate(state, {}));
   EXPECT_TRUE(state.accepted().empty());
   ASSERT_EQ(state.degenerate.size(), 1u);
   EXPECT_EQ(state.degenerate[0].name, "dahl_friction");
   EXPECT_EQ(state.outcomes.list()[0].rejection->test, Rejection::Test::bound);
-  EXPECT_FALSE(drop_degenerate(state));
+  EXPECT_FALSE(drop_degenerate(state, {}));
 }
 
 TEST(RejectionOfAll, IsForAModelThatLeavesMostOfTheError) {

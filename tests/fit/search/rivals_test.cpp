@@ -28,10 +28,16 @@ SearchState accepted_with_rival(const Job& job, const char* chosen, HypothesisVa
   return state;
 }
 
+/// Scores of the free run, beside all that is accepted.
+Shortlist scores_of(const SearchState& state) {
+  const FittedModel& present = state.current();
+  return shortlist(present.job, values_of(present.fit), {0.0}, false, kContext);
+}
+
 TEST(BetterRival, IsTheTrueEffectInPlaceOfAnother) {
   SearchState state = accepted_with_rival(hidden_effect_named("coulomb_friction").job(),
                                           "stroke_spring", {{1.0}, {}}, "coulomb_friction");
-  const auto found = better_rival(state, 100, kContext);
+  const auto found = better_rival(state, scores_of(state), kContext);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->place, 0u);
   EXPECT_EQ(found->tried.hypothesis.name, "coulomb_friction");
@@ -42,7 +48,15 @@ TEST(BetterRival, IsTheTrueEffectInPlaceOfAnother) {
 TEST(BetterRival, IsNoneWhereTheTrueEffectWasChosen) {
   SearchState state = accepted_with_rival(hidden_effect_named("coulomb_friction").job(),
                                           "coulomb_friction", {{4.0}, {}}, "stroke_spring");
-  EXPECT_FALSE(better_rival(state, 100, kContext));
+  EXPECT_FALSE(better_rival(state, scores_of(state), kContext));
+}
+
+TEST(BetterRival, IsNotLookedForWhereItPromisesNothing) {
+  SearchState state = accepted_with_rival(hidden_effect_named("coulomb_friction").job(),
+                                          "stroke_spring", {{1.0}, {}}, "coulomb_friction");
+  Shortlist scores = scores_of(state);
+  for (Shortlist::Promise& promise : scores.promises) promise.gain = 0.0;
+  EXPECT_FALSE(better_rival(state, scores, kContext));
 }
 
 // Of a slide with one free parameter, twice the force does what half the mass does.

@@ -8,9 +8,9 @@
 namespace axisfit {
 namespace {
 
-class ShapeAtBoundTest : public testing::Test {
+class AsSimplerTest : public testing::Test {
  protected:
-  ShapeAtBoundTest() {
+  AsSimplerTest() {
     for (const char* name : {"B_a", "dahl_friction.F_d", "dahl_friction.l_d"}) {
       job_.free.push_back(free_parameter(name, 1.0));
       fit_.parameters.emplace_back().id = id_of(name);
@@ -18,23 +18,38 @@ class ShapeAtBoundTest : public testing::Test {
     hypothesis_.strengths = {quantity_index("dahl_friction.F_d")};
     hypothesis_.shapes = {quantity_index("dahl_friction.l_d")};
   }
-  std::optional<ParameterId> found() const { return shape_at_bound(job_, fit_, hypothesis_); }
+  std::optional<Rejection> found() const { return rejection_as_simpler(job_, fit_, hypothesis_); }
 
   Job job_;
   FitResult fit_;
   Hypothesis hypothesis_;
 };
 
-TEST_F(ShapeAtBoundTest, IsThatOfTheEffect) {
+TEST_F(AsSimplerTest, IsThatOfTheEffect) {
   EXPECT_EQ(found(), std::nullopt);
   fit_.parameters[0].uncertainty.at_bound = true;  // of the axis
   fit_.parameters[1].uncertainty.at_bound = true;  // a strength
   EXPECT_EQ(found(), std::nullopt);
   fit_.parameters[2].uncertainty.at_bound = true;
-  EXPECT_EQ(found(), id_of("dahl_friction.l_d"));
+  EXPECT_EQ(found(),
+            (Rejection{.test = Rejection::Test::bound, .parameter = id_of("dahl_friction.l_d")}));
 }
 
-TEST_F(ShapeAtBoundTest, IsNoneWhereShapesAreNotEstimated) {
+TEST_F(AsSimplerTest, IsBeyondWhatWasTried) {
+  hypothesis_.settings = {{1e-4}, {1e-2}};
+  for (const double length : {1e-4, 1e-2, 2.9e-2, 3.5e-5}) {
+    fit_.parameters[2].value = length;
+    EXPECT_EQ(found(), std::nullopt) << length;
+  }
+  for (const double length : {3.1e-2, 3.2e-5}) {
+    fit_.parameters[2].value = length;
+    EXPECT_EQ(found(), (Rejection{.test = Rejection::Test::span,
+                                  .found = length,
+                                  .parameter = id_of("dahl_friction.l_d")}));
+  }
+}
+
+TEST_F(AsSimplerTest, IsNoneWhereShapesAreNotEstimated) {
   fit_.parameters[2].uncertainty.at_bound = true;
   hypothesis_.kind = HypothesisKind::curve;
   EXPECT_EQ(found(), std::nullopt);
