@@ -363,6 +363,13 @@ std::optional<ChannelGuess> guess_channel(const std::string& name) {
   };
   if (is_among(kTemperatures) || ends_with_unit("degc"))
     return ChannelGuess{"temperature", ends_with_unit("k") ? "K" : "degC"};
+  static constexpr std::string_view kPressures[]{"pressure", "press", "druck"};
+  static constexpr std::string_view kUnitsOfPressure[]{"mbar", "bar", "hPa", "kPa",
+                                                       "MPa",  "Pa",  "psi"};
+  if (is_among(kPressures))
+    for (const std::string_view unit : kUnitsOfPressure)
+      if (ends_with_unit(plain(std::string(unit))))
+        return ChannelGuess{"pressure", std::string(unit)};
   if (!is_among(kSupplies)) return std::nullopt;
   const std::string unit = split(name, Kind::motor_voltage).unit;
   return ChannelGuess{"supply", unit.empty() ? "V" : unit};

@@ -34,12 +34,12 @@ std::optional<ColumnGuess> guess_column(const std::string& name);
 
 /// A column beside an axis that may act on it.
 struct ChannelGuess {
-  std::string name;  ///< "temperature" or "supply"
+  std::string name;  ///< "temperature", "supply" or "pressure"
   std::string unit;  ///< as a job writes it
 };
 
-/// Whether a name is that of a temperature or of the voltage of a supply: "motor temperature",
-/// "T2 [degC]", "bus voltage [V]".
+/// Whether a name is that of a temperature, of the voltage of a supply, or of a pressure with its
+/// unit: "motor temperature", "T2 [degC]", "bus voltage [V]", "chamber pressure [bar]".
 std::optional<ChannelGuess> guess_channel(const std::string& name);
 
 }  // namespace axisfit

@@ -135,7 +135,11 @@ TEST(ColumnGuessTest, KnowsWhatMayActOnAnAxisBesideIt) {
   EXPECT_EQ(guessed("temperature_degc"), "temperature in degC");
   EXPECT_EQ(guessed("BusVoltage [mV]"), "supply in mV");
   EXPECT_EQ(guessed("supply_v"), "supply in V");
-  for (const char* other : {"position", "attempt", "tempo", "T_motor", "busy", "velocity [m/s]"})
+  EXPECT_EQ(guessed("pressure_bar"), "pressure in bar");
+  EXPECT_EQ(guessed("Druck A [mbar]"), "pressure in mbar");
+  EXPECT_EQ(guessed("chamber pressure (kPa)"), "pressure in kPa");
+  for (const char* other : {"position", "attempt", "tempo", "T_motor", "busy", "velocity [m/s]",
+                            "pressure", "pressure_V", "bar"})
     EXPECT_EQ(guessed(other), "") << other;
 }
 
