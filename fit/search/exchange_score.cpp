@@ -38,6 +38,11 @@ Eigen::VectorXd steps_to_absence(const Job& job, const ParameterSpace& space,
 
 }  // namespace
 
+bool is_out_of_reach(const ExchangeScore& score, const SearchOptions& options) {
+  return score.with_rival > std::max(options.rivals.far * clear_difference(options),
+                                     options.rivals.left * score.with_nothing);
+}
+
 std::optional<ExchangeScore> exchange_score(const FittedModel& present,
                                             const std::vector<Accepted>& accepted,
                                             const Job& others, const Scored& rival) {

@@ -24,6 +24,9 @@ struct ExchangeScore {
   double with_nothing = 0.0;  ///< in the place of what is taken out
 };
 
+/// Whether a rival leaves so much of what it would replace that no refit makes them equal.
+bool is_out_of_reach(const ExchangeScore& score, const SearchOptions& options);
+
 /// `others` is the job of the present model without what is taken out of its accepted ones. None
 /// where one linear step says little: of another transmission, of delays, and where the effect is
 /// absent at infinity.

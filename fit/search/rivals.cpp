@@ -51,14 +51,6 @@ Scored with_strengths(Scored rival, const Job& others, const SearchContext& cont
   return rival;
 }
 
-/// Whether a rival leaves so much of what it would replace that no refit makes them equal.
-bool is_out_of_reach(const SearchState& state, const Job& others, const Scored& rival,
-                     const SearchOptions& options) {
-  const auto score = exchange_score(state.current(), state.accepted(), others, rival);
-  return score && score->with_rival > std::max(options.rivals.far * clear_difference(options),
-                                               options.rivals.left * score->with_nothing);
-}
-
 /// Refits those of an accepted hypothesis' rivals that `counts` in its place, from where all else
 /// is.
 template <class Counts>
@@ -75,7 +67,8 @@ std::vector<Tried> try_rivals(const SearchState& state, std::size_t place, Count
   if (list.empty()) return list;
   const Job others = state.chain.job_with_accepted(state.chain.declared().job, place);
   parallel_for(list.size(), [&](std::size_t i) {
-    if (is_out_of_reach(state, others, rivals[i], context.options)) return;
+    const auto score = exchange_score(state.current(), state.accepted(), others, rivals[i]);
+    if (score && is_out_of_reach(*score, context.options)) return;
     Scored start = with_strengths(rivals[i], others, context);
     if (start.others.empty()) start.others = initial_values(others);
     list[i] = try_hypothesis(others, start, context);

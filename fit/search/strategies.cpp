@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "fit/criterion/gains.h"
+#include "fit/search/exchange_score.h"
 #include "fit/search/pruning.h"
 #include "fit/search/rivals.h"
 
@@ -135,6 +136,17 @@ bool can_gain_by_a_curve(const SearchState& state, const SearchOptions& options)
                            options);
 }
 
+/// Whether any of the curves that were scored could do what the accepted effects do.
+bool is_a_curve_in_reach(const SearchState& state, const std::optional<Shortlist>& curves,
+                         const SearchOptions& options) {
+  if (!curves) return true;
+  return std::ranges::any_of(curves->promises, [&](const Shortlist::Promise& curve) {
+    const auto score = exchange_score(state.current(), state.accepted(), state.chain.declared().job,
+                                      {curve.hypothesis, {{}, curve.hypothesis->settings.front()}});
+    return !score || !is_out_of_reach(*score, options);
+  });
+}
+
 /// Whether a search that began with a curve explains more than one that did not. A curve has a
 /// mean, too: what is not fitted must tell it from a named effect.
 bool is_proven(const FittedModel& from_curve, const FittedModel& other, bool other_has_curve,
@@ -241,7 +253,8 @@ SearchState search(SearchState declared, Rounds& rounds) {
   // A simulation that tracks the data shows a curve also beside effects that imitate a part of it.
   const bool tracks = axisfit::tracks(best.chain.declared().job.options.criterion);
   if (best.interrupted || names == 0 || (tracks && !has_curve) ||
-      !can_gain_by_a_curve(best, options))
+      !can_gain_by_a_curve(best, options) ||
+      (!has_curve && !is_a_curve_in_reach(best, rounds.of_curves.list, options)))
     return best;
   other = finished(best, [&](const SearchState& s) { return from_a_curve(s, rounds); });
   if (other.interrupted || is_proven(other.current(), best.current(), has_curve, options))
