@@ -139,16 +139,24 @@ Timing best_average(const JobDraft& draft, const Timing& late, const RunContext&
   const auto of = [&](std::size_t samples) {
     return fitted_timing(draft, late.is_held, samples, context);
   };
-  const double samples = 1.0 + 2.0 * late.delay.value / interval_of(draft);
-  if (samples < 2.0) return late;
-  Timing best = of(static_cast<std::size_t>(samples));
-  for (std::size_t step = std::max<std::size_t>(1, best.averaged / 8); step > 0; step /= 2)
-    for (const bool is_longer : {true, false})
-      for (bool is_better = true; is_better && (is_longer || best.averaged > step + 1);) {
-        const Timing next = of(is_longer ? best.averaged + step : best.averaged - step);
-        is_better = next.chi_square < best.chi_square;
-        if (is_better) best = next;
-      }
+  const double expected = 1.0 + 2.0 * late.delay.value / interval_of(draft);
+  if (expected < 2.0) return late;
+  Timing best = of(static_cast<std::size_t>(expected));
+  const auto improve = [&](std::size_t samples) {
+    const Timing next = of(samples);
+    const bool is_better = next.chi_square < best.chi_square;
+    if (is_better) best = next;
+    return is_better;
+  };
+  for (std::size_t step = std::max<std::size_t>(1, best.averaged / 8); step > 0; step /= 2) {
+    const std::size_t before = best.averaged;
+    while (improve(best.averaged + step)) {
+    }
+    // What is shorter than an improvement was worse.
+    if (best.averaged > before) continue;
+    while (best.averaged > step + 1 && improve(best.averaged - step)) {
+    }
+  }
   return best.chi_square < kClearly * late.chi_square ? best : late;
 }
 
@@ -205,8 +213,8 @@ void set_timing(JobDraft& draft, const RunContext& context) {
     draft.parameters.push_back(free_delay(draft, chosen.delay.value));
     draft.guesses.push_back(
         fmt::format("{} is a mean over the last {:.3g} ms, as motor controllers make it: the "
-                    "simulated one is a "
-                    "mean over {} samples, too, and T_d is free for what remains of the lag",
+                    "simulated one is a mean over {} samples, too, and T_d is free for what "
+                    "remains of the lag",
                     sanitized(draft.recordings.front().guess.find(Kind::velocity)->column),
                     1e3 * interval * static_cast<double>(chosen.averaged), chosen.averaged));
     return;

@@ -92,8 +92,7 @@ struct Rejection {
   Test test = Test::fit;
   /// By test, significance: the fall of the sum of squares; validation and power: the p-value;
   /// validation_size: the fall of the validation error, %; share: that beyond the noise; strength:
-  /// the standard errors from zero; period: that which they show;
-  /// span: the shape.
+  /// the standard errors from zero; period: that which they show; span: the shape.
   double found = 0.0;
   double required = 0.0;  ///< of significance: the least fall of the sum of squares
   std::size_t tried = 0;  ///< of significance: hypotheses and settings among which it was chosen

@@ -86,6 +86,15 @@ bool Hypothesis::is_of_instrument() const {
   return quantity_list()[strengths.front()].signal.has_value();
 }
 
+std::pair<double, double> Hypothesis::range_tried(std::size_t shape) const {
+  double least = INFINITY, most = -INFINITY;
+  for (const std::vector<double>& setting : settings) {
+    least = std::min(least, setting[shape]);
+    most = std::max(most, setting[shape]);
+  }
+  return {least, most};
+}
+
 bool is_part_of(const Hypothesis& part, const Hypothesis& whole) {
   return part.extends == whole.name && whole.extends.empty() &&
          (whole.kind == transmission || quantity_list()[part.strengths.front()].effect ==

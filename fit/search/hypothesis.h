@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fit/data/job.h"
@@ -46,6 +47,8 @@ struct Hypothesis {
   std::vector<double> probes = {};
   std::string extends = {};  ///< the effect beside which alone it is offered; empty: any model
 
+  /// The least and the most that is tried of one of its shapes.
+  std::pair<double, double> range_tried(std::size_t shape) const;
   bool estimates_shapes() const { return kind != HypothesisKind::curve; }
   /// Whether it is in what is read of the machine, not in the machine.
   bool is_of_instrument() const;

@@ -66,10 +66,9 @@ struct SearchOptions {
     /// Standard deviations of that fall to expect, beyond which an effect that is there passes in
     /// nine of ten such recordings. Below, the recordings cannot judge.
     double power = 4.4;
-    double alias = 1e-10;  ///< part of an effect that nothing imitates: below is rounding
-    /// Times what was tried of a shape, beyond which the effect is a simpler one.
-    double beyond_tried = 3.0;
-    double odds = 100.0;  ///< of two models, that make one clearly worse (by BIC)
+    double alias = 1e-10;      ///< part of an effect that nothing imitates: below is rounding
+    double times_tried = 3.0;  ///< of a shape, beyond which the effect is a simpler one
+    double odds = 100.0;       ///< of two models, that make one clearly worse (by BIC)
   } acceptance;
 
   /// One round: which hypothesis explains the most.

@@ -198,11 +198,7 @@ bool is_tried_first(const Hypothesis& hypothesis, std::size_t setting,
 /// The least and the most that is tried of one shape.
 std::pair<double, double> range_of_settings(const Hypothesis& hypothesis, std::size_t shape,
                                             const SearchOptions::Scoring& options) {
-  double least = INFINITY, most = -INFINITY;
-  for (const auto& setting : hypothesis.settings) {
-    least = std::min(least, setting[shape]);
-    most = std::max(most, setting[shape]);
-  }
+  const auto [least, most] = hypothesis.range_tried(shape);
   const double beyond = options.beyond_tried * std::max(std::abs(least), std::abs(most));
   return {least - beyond, most + beyond};
 }

@@ -1,7 +1,6 @@
 #include "fit/search/tried.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "fit/estimate/recipes.h"
 #include "fit/solve/parameters.h"
@@ -70,12 +69,8 @@ std::optional<Rejection> rejection_as_simpler(const Job& job, const FitResult& f
     if (found == job.free.end()) continue;
     const ParameterResult& p = fit.parameters[static_cast<std::size_t>(found - job.free.begin())];
     if (p.uncertainty.at_bound) return Rejection{.test = Rejection::Test::bound, .parameter = p.id};
-    double least = INFINITY, most = 0.0;
-    for (const std::vector<double>& setting : hypothesis.settings) {
-      least = std::min(least, setting[k]);
-      most = std::max(most, setting[k]);
-    }
-    const double beyond = options.acceptance.beyond_tried;
+    const auto [least, most] = hypothesis.range_tried(k);
+    const double beyond = options.acceptance.times_tried;
     if (hypothesis.settings.size() > 1 && least > 0.0 &&
         (p.value > beyond * most || p.value < least / beyond))
       return Rejection{.test = Rejection::Test::span, .found = p.value, .parameter = p.id};

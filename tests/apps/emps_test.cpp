@@ -1,7 +1,6 @@
 // The EMPS benchmark, a real axis: the fit finds what others have found.
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <map>
 #include <string>
 
@@ -13,16 +12,14 @@
 namespace axisfit {
 namespace {
 
-namespace fs = std::filesystem;
-
 // A. Janot, M. Gautier and M. Brunot, "Data Set and Reference Models of EMPS", 2019: least squares
 // estimates. Their offset is on the side of the friction, F_0 on that of the force.
 TEST(EmpsTest, FitAgreesWithThePublishedEstimates) {
-  const fs::path folder = foreign_recordings("emps");  // where to get them: configs/jobs/emps.yaml
-  AXISFIT_SKIP_WITHOUT(folder, "DATA_EMPS.mat");
-  AXISFIT_SKIP_WITHOUT(folder, "DATA_EMPS_PULSES.mat");
-
-  const JobFile file = read_job_file(AXISFIT_CONFIGS "/jobs/emps.yaml", folder.string());
+  // Where to get them: configs/jobs/emps.yaml.
+  const ForeignRecordings data =
+      foreign_recordings("emps", {"DATA_EMPS.mat", "DATA_EMPS_PULSES.mat"});
+  if (!data.missing.empty()) GTEST_SKIP() << data.missing;
+  const JobFile file = read_job_file(AXISFIT_CONFIGS "/jobs/emps.yaml", data.folder.string());
   const FitResult result = estimate(file.job);
   EXPECT_TRUE(result.verdict.has_minimum());
   EXPECT_TRUE(result.is_usable()) << result.message;

@@ -365,10 +365,10 @@ TEST_F(InitJobTest, AReferenceIsNotFitted) {
 }
 
 TEST_F(InitJobTest, TheEmpsAxisIsFoundFromItsFilesAlone) {
-  const fs::path data = foreign_recordings("emps");
-  AXISFIT_SKIP_WITHOUT(data, "DATA_EMPS.mat");
-  AXISFIT_SKIP_WITHOUT(data, "DATA_EMPS_PULSES.mat");
-  make({(data / "DATA_EMPS.mat").string(), (data / "DATA_EMPS_PULSES.mat").string()});
+  const ForeignRecordings data =
+      foreign_recordings("emps", {"DATA_EMPS.mat", "DATA_EMPS_PULSES.mat"});
+  if (!data.missing.empty()) GTEST_SKIP() << data.missing;
+  make({(data.folder / "DATA_EMPS.mat").string(), (data.folder / "DATA_EMPS_PULSES.mat").string()});
   const auto found = fitted(read());
   constexpr double kGain = 35.15065188248547;  // N/V, published; the job takes 1 N/V
   EXPECT_NEAR(kGain * found.at("M"), 95.1089, 0.03 * 95.1089);
@@ -380,10 +380,10 @@ TEST_F(InitJobTest, TheEmpsAxisIsFoundFromItsFilesAlone) {
 // A hobby servo: whole numbers without a sign for its duty, a supply beside them, no units, and a
 // weight that no column tells of.
 TEST_F(InitJobTest, AServoWithAPendulumIsReadFromItsFileAlone) {
-  const fs::path data = foreign_recordings("bam");
-  AXISFIT_SKIP_WITHOUT(data, "sin_sin_8.csv");
+  const ForeignRecordings data = foreign_recordings("bam", {"sin_sin_8.csv"});
+  if (!data.missing.empty()) GTEST_SKIP() << data.missing;
   constexpr double kGain = 0.38670 / 4.0171 * 7.3 / 885.0;  // N m per count, published (model m1)
-  make({(data / "sin_sin_8.csv").string()}, {}, kGain,
+  make({(data.folder / "sin_sin_8.csv").string()}, {}, kGain,
        {.columns = {read_answer("position=position:rad")}});
   const std::string job = folder_.read("job.yaml");
   EXPECT_NE(job.find("command: {column: load, unit: V, signed_bits: 16}"), std::string::npos)
@@ -400,9 +400,9 @@ TEST_F(InitJobTest, AServoWithAPendulumIsReadFromItsFileAlone) {
 // changes, so that the current is that of friction; its inertia shows within a period of the
 // cogging. By least squares with the cogging of its two orders, 2.4e-4 A s^2/rad.
 TEST_F(InitJobTest, AMassThatOnlyCoggingMovesIsSeen) {
-  const fs::path data = foreign_recordings("laas");
-  AXISFIT_SKIP_WITHOUT(data, "speed_test1.txt");
-  make({(data / "speed_test1.txt").string()}, {}, {},
+  const ForeignRecordings data = foreign_recordings("laas", {"speed_test1.txt"});
+  if (!data.missing.empty()) GTEST_SKIP() << data.missing;
+  make({(data.folder / "speed_test1.txt").string()}, {}, {},
        {.columns = {read_answer("position=Position:rad"), read_answer("velocity=Velocity:rad/s")}});
   EXPECT_NEAR(read().job.model.axis.M, 2.4e-4, 0.6e-4);
 }
