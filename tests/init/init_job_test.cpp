@@ -39,7 +39,7 @@ TEST_F(InitJobTest, ThePapersAxisIsRecognised) {
 
 TEST_F(InitJobTest, ATemperatureAndASupplyBecomeChannels) {
   for (const char* name : {"a.csv", "b.csv"}) {
-    Table table = driven(name[0]);
+    Table table = driven(static_cast<std::uint64_t>(name[0]));
     const std::size_t rows = table.columns[0].values.size();
     Column warm{"T_oil [degC]", {}}, bus{"bus voltage [V]", {}}, fixed{"temperature", {}},
         other{"humidity", {}};
