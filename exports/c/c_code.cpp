@@ -164,6 +164,7 @@ class Filling {
     flag("friction_curve", is.needs.friction_curve);
     flag("hysteresis", is.needs.hysteresis);
     flag("needs_dahl", has_any({"dahl_friction", "second_dahl_friction"}));
+    flag("needs_harmonics", has_any({"periodic_force", "second_periodic_force"}));
     flag("needs_load",
          has_any({"load_friction", "quadratic_load_friction", "stribeck_load_friction"}));
     flag("needs_direction",
@@ -174,8 +175,8 @@ class Filling {
                                "warming_friction", "running_in_friction"}));
     flag("needs_pow",
          has_any({"stribeck_friction", "quadratic_drag", "torque_droop", "force_droop"}));
-    flag("needs_sin",
-         has_any({"cogging_torque", "torque_ripple", "pendulum_gravity", "periodic_force"}));
+    flag("needs_sin", has_any({"cogging_torque", "torque_ripple", "pendulum_gravity",
+                               "periodic_force", "second_periodic_force"}));
     flag("needs_floor", has("force_over_motor_angle"));
     flag("dead_time", model_.axis.T_d > 0.0);
     all_.set("state_count", std::to_string(states + 1));

@@ -50,17 +50,16 @@
 namespace axisfit {
 
 template <class T>
-using Effects =
-    std::tuple<CoulombFriction<T>, ConstantForce<T>, QuadraticDrag<T>, DirectionalFriction<T>,
-               StribeckFriction<T>, PositionFriction<T>, FrictionBump<T>, LoadFriction<T>,
-               QuadraticLoadFriction<T>, StribeckLoadFriction<T>, DahlFriction<T>,
-               SecondDahlFriction<T>, WarmingFriction<T>, WarmingGrease<T>, RunningInFriction<T>,
-               StrokeSpring<T>, PendulumGravity<T>, PeriodicForce<T>, AddedMass<T>, ElasticMode<T>,
-               SoftTransmission<T>, CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>,
-               ForceDroop<T>, TorqueFade<T>, DriveLag<T>, CommandOffset<T>, SupplyResistance<T>,
-               ChannelForce<T>, ChannelFriction<T>, ChannelDamping<T>, ChannelGain<T>,
-               ChannelMass<T>, ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>,
-               ForceOverTime<T>, FrictionOverVelocity<T>, FrictionOverPosition<T>>;
+using Effects = std::tuple<
+    CoulombFriction<T>, ConstantForce<T>, QuadraticDrag<T>, DirectionalFriction<T>,
+    StribeckFriction<T>, PositionFriction<T>, FrictionBump<T>, LoadFriction<T>,
+    QuadraticLoadFriction<T>, StribeckLoadFriction<T>, DahlFriction<T>, SecondDahlFriction<T>,
+    WarmingFriction<T>, WarmingGrease<T>, RunningInFriction<T>, StrokeSpring<T>, PendulumGravity<T>,
+    PeriodicForce<T>, SecondPeriodicForce<T>, AddedMass<T>, ElasticMode<T>, SoftTransmission<T>,
+    CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>, ForceDroop<T>, TorqueFade<T>, DriveLag<T>,
+    CommandOffset<T>, SupplyResistance<T>, ChannelForce<T>, ChannelFriction<T>, ChannelDamping<T>,
+    ChannelGain<T>, ChannelMass<T>, ForceOverVelocity<T>, ForceOverPosition<T>,
+    ForceOverMotorAngle<T>, ForceOverTime<T>, FrictionOverVelocity<T>, FrictionOverPosition<T>>;
 
 inline constexpr std::size_t kEffects = std::tuple_size_v<Effects<double>>;
 

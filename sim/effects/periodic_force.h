@@ -12,10 +12,16 @@ namespace axisfit {
 ///
 ///   F = F_s1 sin(q) + F_c1 cos(q) + F_s2 sin(2 q) + F_c2 cos(2 q) + F_s3 sin(3 q) + F_c3 cos(3 q),
 ///   q = 2 pi y0 / period
-template <class T>
-struct PeriodicForce {
-  static constexpr std::string_view name = "periodic_force";
-  static constexpr std::string_view meaning = "force that is periodic along the stroke";
+///
+/// A motor whose magnets and slots cog with two periods, of which neither is a low harmonic of the
+/// other, has two such elements, the second an effect of its own.
+template <class T, int kElement>
+struct PeriodicElement {
+  static constexpr bool kIsFirst = kElement == 1;
+  static constexpr std::string_view name = kIsFirst ? "periodic_force" : "second_periodic_force";
+  static constexpr std::string_view meaning =
+      kIsFirst ? "force that is periodic along the stroke"
+               : "a second force that is periodic along the stroke, with another period";
   static constexpr ActsOn acts_on = ActsOn::arm_force;
   static constexpr std::string_view excitation = "slow motion over many periods";
 
@@ -38,16 +44,18 @@ struct PeriodicForce {
         Quantity{"F_c3", "N", "cosine coefficient, third harmonic", -1e5, 1e5, 0.0}.typically(-1.5),
         self.F_c3);
     visit(Quantity{"period", "m", "spatial period", 1e-5, 1e3, kRequired, UsedBy::every_axis, true}
-              .typically(0.036),
+              .typically(kIsFirst ? 0.036 : 0.007),
           self.period);
   }
 
   static std::vector<SearchEntry> search(const SearchScales& scales) {
-    return {{.strengths = {"F_s1", "F_c1"},
-             .shapes = {"period"},
-             .settings = one_by_one(scales.periods),
-             .largest = {scales.position_high - scales.position_low},
-             .has_phase = true},
+    SearchEntry element{.strengths = {"F_s1", "F_c1"},
+                        .shapes = {"period"},
+                        .settings = one_by_one(scales.periods),
+                        .largest = {scales.position_high - scales.position_low},
+                        .has_phase = true};
+    if (!kIsFirst) element.extends = PeriodicElement<T, 1>::name;
+    return {element,
             {.strengths = {"F_s2", "F_c2"}, .extends = name, .has_phase = true},
             {.strengths = {"F_s3", "F_c3"}, .extends = name, .has_phase = true}};
   }
@@ -61,5 +69,10 @@ struct PeriodicForce {
            F_c3 * (c2 * c1 - s2 * s1);
   }
 };
+
+template <class T>
+using PeriodicForce = PeriodicElement<T, 1>;
+template <class T>
+using SecondPeriodicForce = PeriodicElement<T, 2>;
 
 }  // namespace axisfit

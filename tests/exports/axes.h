@@ -47,6 +47,7 @@ inline std::map<std::string, Rig> axes() {
   add_effect<StribeckFriction>(smooth) = {3.0, 0.05, 1.0};
   add_effect<QuadraticDrag>(smooth).c = 5.0;
   add_effect<PeriodicForce>(smooth) = {2.0, -1.0, 0.4, 0.3, 0.2, -0.15, 0.036};
+  add_effect<SecondPeriodicForce>(smooth) = {0.7, 0.5, -0.2, 0.1, 0.0, 0.3, 0.0047};
   add_effect<DahlFriction>(smooth) = {2.0, 2e-4, 0.0};
   all.emplace("smooth", of_model(smooth));
   Model<double> voltage = paper_axis();

@@ -157,8 +157,8 @@ TEST_F(WithHypothesis, ThatExtendsAnEffectPredictsTheSameAtNeutralStrength) {
            std::ranges::any_of(hypotheses_,
                                [&](const Hypothesis& old) { return old.strengths == c.strengths; });
   });
-  // Two exponents, damping, second element, two harmonics; and two changes of dry friction.
-  EXPECT_EQ(extensions.size(), 8u);
+  // Two exponents, damping, two second elements, two harmonics; and two changes of dry friction.
+  EXPECT_EQ(extensions.size(), 9u);
   expect_the_same(extensions);
 }
 
