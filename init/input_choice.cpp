@@ -112,7 +112,8 @@ bool is_velocity_idle(const RecordingGuess& recording, const std::vector<double>
   const GuessedColumn *position = recording.find(Kind::position),
                       *velocity = recording.find(Kind::velocity);
   if (position == nullptr || velocity == nullptr) return false;
-  const double rate = suggested_observer_gain(recording.time.values, position->values, {}, input);
+  const double rate =
+      suggested_observer_gain(recording.time.values, position->values, {}, input, 0.0).rate;
   // The slope of a line through the positions of that time, beside the mean of the velocities.
   constexpr double kSlope = 3.46, kClear = 2.0;
   const double noise =

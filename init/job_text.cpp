@@ -244,24 +244,25 @@ std::string fit_text(const JobDraft& draft) {
            "rough\n";
   if (!is_open || position == nullptr) return {};
   const std::vector<double> none;
-  const double rate = suggested_observer_gain(first.time.values, position->values,
-                                              velocity && !velocity->idle ? velocity->values : none,
-                                              draft.recordings.front().input_column().values);
+  const SuggestedGain gain = suggested_observer_gain(
+      first.time.values, position->values, velocity && !velocity->idle ? velocity->values : none,
+      draft.recordings.front().input_column().values, draft.look ? draft.look->mass.value : 0.0);
+  const std::string why =
+      gain.is_of_noise
+          ? "At a gain below this one the noise of the input would add up in the simulation"
+          : "At this gain, an unmodelled hundredth of the acceleration would show as ten times the "
+            "noise";
   return "fit:\n" +
-         comment(
-             "The position is an open-loop integral of the " + draft.say("force") +
-                 ": a free-running simulation "
-                 "drifts away however good the fit. An observer therefore makes the simulation "
-                 "track "
-                 "the recording, and the fit minimises the prediction error. At this gain, an "
-                 "unmodelled hundredth of the acceleration would show as ten times the noise; a "
-                 "higher gain hides more. What is missing bends the estimates, by more at one "
-                 "gain "
-                 "than "
-                 "at another: if half the gain changes them by more than their standard errors, "
-                 "those are too small.",
-             2) +
-         fmt::format("  observer: {{fixed: {} 1/s}}\n", round_to_digits(rate, 2));
+         comment("The position is an open-loop integral of the " + draft.say("force") +
+                     ": a free-running simulation drifts away however good the fit. An observer "
+                     "therefore makes the simulation track the recording, and the fit minimises "
+                     "the prediction error. " +
+                     why +
+                     "; a higher gain hides more. What is missing bends the estimates, by more at "
+                     "one gain than at another: if half the gain changes them by more than their "
+                     "standard errors, those are too small.",
+                 2) +
+         fmt::format("  observer: {{fixed: {} 1/s}}\n", round_to_digits(gain.rate, 2));
 }
 
 std::string job_text(const JobDraft& draft) {

@@ -113,9 +113,11 @@ std::optional<RateRatio> rate_ratio(std::span<const double> times, std::span<con
   return best;
 }
 
-double suggested_observer_gain(std::span<const double> times, std::span<const double> position,
-                               std::span<const double> velocity, std::span<const double> command) {
-  constexpr double kMissing = 0.01, kAboveNoise = 10.0, kBias = 0.25;
+SuggestedGain suggested_observer_gain(std::span<const double> times,
+                                      std::span<const double> position,
+                                      std::span<const double> velocity,
+                                      std::span<const double> command, double mass) {
+  constexpr double kMissing = 0.01, kAboveNoise = 10.0, kBias = 0.25, kNoticeable = 0.03;
   const bool of_velocity = !velocity.empty();
   const std::span<const double> values = of_velocity ? velocity : position;
   const std::size_t n = times.size();
@@ -132,15 +134,20 @@ double suggested_observer_gain(std::span<const double> times, std::span<const do
   }
   const double acceleration =
       std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, count)));
-  const double moved = kAboveNoise * noise_from_differences(values);
-  const double rate =
-      of_velocity ? kMissing * acceleration / moved : std::sqrt(kMissing * acceleration / moved);
+  const double noise = noise_from_differences(values);
+  const double shown = kMissing * acceleration / (kAboveNoise * noise);
+  const double disturbance = mass > 0.0 ? noise_of_input(command) / mass / noise : 0.0;
+  const double fastest = std::max(shown, disturbance),
+               rate = of_velocity ? fastest : std::sqrt(fastest);
   const Sampling found = sampling(times);
   const double command_noise = noise_of_input(command) / standard_deviation(command);
-  const double highest = std::min(
-      0.3 / found.interval, kBias / (command_noise * std::sqrt(found.interval * found.duration)));
-  return std::isfinite(rate) ? std::clamp(rate, std::min(10.0 / found.duration, highest), highest)
-                             : highest;
+  double highest = 0.3 / found.interval;
+  if (command_noise > kNoticeable)
+    highest =
+        std::min(highest, kBias / (command_noise * std::sqrt(found.interval * found.duration)));
+  if (!std::isfinite(rate)) return {highest};
+  const double lowest = std::min(10.0 / found.duration, highest);
+  return {std::clamp(rate, lowest, highest), disturbance > shown};
 }
 
 namespace {

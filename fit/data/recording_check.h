@@ -67,17 +67,28 @@ struct RateRatio {
 std::optional<RateRatio> rate_ratio(std::span<const double> times, std::span<const double> values,
                                     std::span<const double> rate);
 
-/// A fixed observer gain (job.h) at which missing physics shows: a hundredth of the usual
-/// acceleration of the axis then moves the simulation by ten times the noise. A higher gain hides
-/// more and feeds the noise into the simulation; a lower one lets it drift. 1/s to the velocity, or
-/// where that is empty rad/s to the position.
+/// A fixed observer gain (job.h): 1/s to the velocity, or where that is empty rad/s to the
+/// position.
+struct SuggestedGain {
+  double rate = 0.0;
+  bool is_of_noise = false;  ///< the bandwidth of a Kalman filter; else missing physics shows
+};
+
+/// A gain at which missing physics shows: a hundredth of the usual acceleration of the axis then
+/// moves the simulation by ten times the noise. A higher gain hides more and feeds the noise into
+/// the simulation; a lower one lets it drift. Below the bandwidth of a Kalman filter the command's
+/// noise adds up in the simulation and hides what is missing: the gain is no lower.
 ///
-/// `command` is the force that drives the axis, in any unit, one value per sample. The higher the
-/// gain, the more the command's noise biases the estimates (a mass upwards): in standard errors, by
-/// the ratio of noise to signal, times the gain, times the root of interval and duration. The gain
-/// keeps that below a quarter.
-double suggested_observer_gain(std::span<const double> times, std::span<const double> position,
-                               std::span<const double> velocity, std::span<const double> command);
+/// `command` is the force that drives the axis, in any unit, one value per sample, and `mass` that
+/// of the axis, of that unit per m/s^2; zero where it is not known. The higher the gain, the more
+/// the command's noise biases the estimates (a mass upwards): in standard errors, by the ratio of
+/// noise to signal, times the gain, times the root of interval and duration. The gain keeps that
+/// below a quarter, unless the noise is below 3 % of the signal: no gain then biases an estimate by
+/// more than the square of that, a thousandth.
+SuggestedGain suggested_observer_gain(std::span<const double> times,
+                                      std::span<const double> position,
+                                      std::span<const double> velocity,
+                                      std::span<const double> command, double mass);
 
 /// Two signals of a recording of which one is the rate of the other.
 struct RateCheck {

@@ -21,6 +21,9 @@ constexpr std::size_t kShortestWindow = 8, kLongestWindow = 4096;  // samples
 /// Logarithm of the likelihood ratio, beyond which a delay is one.
 constexpr double kClearlyMore = 10.0;
 constexpr std::size_t kMostDelays = 120;  // of the first search
+/// s, by which the log of an input may come after the motion, and the part of a range that is its
+/// edge.
+constexpr double kLatestLog = -0.25, kEdge = 0.9;
 
 /// The delay at which least of the input remains.
 double best_delay(const Balance& balance, const NoisyRegression& regression,
@@ -32,33 +35,42 @@ double best_delay(const Balance& balance, const NoisyRegression& regression,
     shortest = std::min(shortest, grids[part.grid].duration());
     samples = part.window.value.size() - 1;
   }
-  const double lowest = std::max(options.least_delay, -0.5 * shortest),
-               highest = std::min(options.longest_delay, 0.5 * shortest);
   const auto left = [&](double delay) {
     const VectorXd inputs = balance.inputs(grids, delay);
     return regression.remaining(inputs).squaredNorm() / inputs.squaredNorm();
   };
-  double step = std::max({0.125 * interval * static_cast<double>(samples),
-                          (highest - lowest) / static_cast<double>(kMostDelays), 0.5 * interval});
-  double best = 0.0, least = left(0.0);
-  const auto look_at = [&](double delay) {
-    if (delay < lowest || delay > highest) return;
-    if (const double here = left(delay); here < least) {
-      least = here;
-      best = delay;
-    }
+  const double at_once = left(0.0);
+  struct Found {
+    double delay, left;
   };
-  const double at_once = least;
-  for (double delay = step; delay <= highest; delay += step) look_at(delay);
-  for (double delay = -step; delay >= lowest; delay -= step) look_at(delay);
-  for (; step > 0.02 * interval; step *= 0.5) {
-    const double middle = best;
-    look_at(middle - 0.5 * step);
-    look_at(middle + 0.5 * step);
+  const auto best_within = [&](double lowest, double highest) {
+    double step = std::max({0.125 * interval * static_cast<double>(samples),
+                            (highest - lowest) / static_cast<double>(kMostDelays), 0.5 * interval});
+    Found best{0.0, at_once};
+    const auto look_at = [&](double delay) {
+      if (delay < lowest || delay > highest) return;
+      if (const double here = left(delay); here < best.left) best = {delay, here};
+    };
+    for (double delay = step; delay <= highest; delay += step) look_at(delay);
+    for (double delay = -step; delay >= lowest; delay -= step) look_at(delay);
+    for (; step > 0.02 * interval; step *= 0.5) {
+      const double middle = best.delay;
+      look_at(middle - 0.5 * step);
+      look_at(middle + 0.5 * step);
+    }
+    return best;
+  };
+  const double most = 0.5 * shortest, earliest = std::max(options.least_delay, -most),
+               latest_log = std::max(kLatestLog, -most);
+  Found best = best_within(earliest, std::min(options.longest_delay, most));
+  // A log may come later still. What the model lacks prefers as late a one as there may be.
+  if (best.delay < kEdge * earliest) {
+    const Found late = best_within(latest_log, 0.0);
+    if (late.delay > kEdge * latest_log) best = late;
   }
   // A delay that explains hardly more than none does is none: what the model lacks may prefer any.
   const double independent = static_cast<double>(balance.terms.rows()) / (2.0 * kOverlap);
-  return independent * std::log(at_once / least) > kClearlyMore ? best : 0.0;
+  return independent * std::log(at_once / best.left) > kClearlyMore ? best.delay : 0.0;
 }
 
 FirstLook::Direction direction_of(const FirstLook& look) {

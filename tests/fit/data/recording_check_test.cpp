@@ -62,25 +62,51 @@ TEST(SuggestedObserverGainTest, ShowsAHundredthOfTheAccelerationAboveTheNoise) {
              &velocity = recording.measurements[1].values;
   // An acceleration of 0.1 kRate^2 / sqrt(2), noise of 1e-5 m and 2e-3 m/s.
   const double missing = 0.01 * 0.1 * kRate * kRate / std::sqrt(2.0);
-  EXPECT_NEAR(suggested_observer_gain(recording.times, position, {}, {}), std::sqrt(missing / 1e-4),
-              1.0);
+  EXPECT_NEAR(suggested_observer_gain(recording.times, position, {}, {}, 0.0).rate,
+              std::sqrt(missing / 1e-4), 1.0);
   // The loosest: ten times in two seconds.
   EXPECT_NEAR(missing / 2e-2, 2.4, 0.1);
-  EXPECT_NEAR(suggested_observer_gain(recording.times, {}, velocity, {}), 10.0 / 2.0, 0.1);
+  EXPECT_NEAR(suggested_observer_gain(recording.times, {}, velocity, {}, 0.0).rate, 10.0 / 2.0,
+              0.1);
   // The firmest: with next to no noise all shows.
   std::mt19937_64 generator(1);
   std::normal_distribution<double> noise(0.0, 4e-8);
   std::vector<double> clean;
   for (const double t : recording.times)
     clean.push_back(0.1 * std::sin(kRate * t) + noise(generator));
-  EXPECT_NEAR(suggested_observer_gain(recording.times, clean, {}, {}), 0.3 / kInterval, 1e-6);
+  EXPECT_NEAR(suggested_observer_gain(recording.times, clean, {}, {}, 0.0).rate, 0.3 / kInterval,
+              1e-6);
   // A noisy command biases the estimates the more, the higher the gain.
   std::vector<double> command;
   for (const double t : recording.times)
     command.push_back(std::sin(kRate * t) + 0.1 * std::sqrt(0.5) * noise(generator) / 4e-8);
   const double duration = recording.times.back() - recording.times.front();
   const double biased = 0.25 / (0.1 * std::sqrt(kInterval * duration));
-  EXPECT_NEAR(suggested_observer_gain(recording.times, clean, {}, command), biased, 0.1 * biased);
+  EXPECT_NEAR(suggested_observer_gain(recording.times, clean, {}, command, 0.0).rate, biased,
+              0.1 * biased);
+}
+
+TEST(SuggestedObserverGainTest, IsNoLowerThanThatOfAKalmanFilter) {
+  const Recording recording = moving();
+  const auto &position = recording.measurements[0].values,
+             &velocity = recording.measurements[1].values;
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  std::vector<double> command;
+  for (const double t : recording.times) command.push_back(std::sin(kRate * t) + noise(generator));
+  // Noise of 0.01 in the command moves this mass by 100 m/s^2; that of the readings is 1e-5 m and
+  // 2e-3 m/s. At 1.4 % of the command it is too small to bias a mass.
+  const SuggestedGain found = suggested_observer_gain(recording.times, position, {}, command, 1e-4);
+  EXPECT_TRUE(found.is_of_noise);
+  EXPECT_NEAR(found.rate, std::min(0.3 / kInterval, std::sqrt(100.0 / 1e-5)), 0.1 * found.rate);
+  const SuggestedGain light = suggested_observer_gain(recording.times, position, {}, command, 0.1);
+  EXPECT_TRUE(light.is_of_noise);
+  EXPECT_NEAR(light.rate, std::sqrt(0.1 / 1e-5), 0.1 * light.rate);
+  const SuggestedGain of_velocity =
+      suggested_observer_gain(recording.times, {}, velocity, command, 0.1);
+  EXPECT_NEAR(of_velocity.rate, 0.1 / 2e-3, 0.1 * of_velocity.rate);
+  // Little noise moves a heavy mass hardly.
+  EXPECT_FALSE(suggested_observer_gain(recording.times, position, {}, command, 1e3).is_of_noise);
 }
 
 TEST(RateRatioTest, FindsFactorAndSignThroughNoiseAndBias) {

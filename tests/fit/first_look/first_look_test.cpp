@@ -103,7 +103,7 @@ TEST(FirstLook, ErrsAsItsErrorsSay) {
 }
 
 TEST(FirstLook, FindsADelay) {
-  for (const double delay : {-0.004, 0.0025, 0.03, 0.2}) {
+  for (const double delay : {-0.1, -0.004, 0.0025, 0.03, 0.2}) {
     Machine machine;
     machine.delay = delay;
     const Recorded run = record(machine, wave, 6.0);
