@@ -5,6 +5,8 @@
 #include <limits>
 #include <string>
 
+#include "base/work_times.h"
+
 namespace axisfit {
 
 struct Progress {
@@ -14,6 +16,7 @@ struct Progress {
   /// Reduced chi-square of the best model so far; not a number before there is one.
   double best = std::numeric_limits<double>::quiet_NaN();
   std::string finished{};  ///< what has just ended and how, to be kept in view; mostly empty
+  Work work = Work::fits;  ///< that the phase is
 };
 
 /// Called from several threads, one at a time.

@@ -1,7 +1,6 @@
 #include "fit/run.h"
 
 #include <algorithm>
-#include <chrono>
 #include <initializer_list>
 #include <stdexcept>
 
@@ -91,7 +90,8 @@ void close_loop(RunResult& result, const RunContext& context) {
 void analyse_residual(RunResult& result, const RunContext& context) {
   const FitResult& fit = result.fit();
   if (fit.recordings.empty()) return;
-  context.report({"analysing the residual", 0, 0, fit.reduced_chi_square});
+  context.report(
+      {.phase = "analysing the residual", .best = fit.reduced_chi_square, .work = Work::errors});
   Diagnosis diagnosis = diagnose(result.job(), fit);
   // Where nothing can be simulated there is nothing to tell.
   if (diagnosis.tests.empty() && std::ranges::none_of(diagnosis.forces, &MissingForce::found))
@@ -110,7 +110,7 @@ void find_profiles(RunResult& result, const RunContext& context) {
 
 void find_other_days(RunResult& result, const RunContext& context) {
   if (!result.diagnosis) return;
-  context.report({.phase = "does a recording differ in a few parameters?"});
+  context.report({.phase = "does a recording differ in a few parameters?", .work = Work::errors});
   result.other_days = other_days(result.job(), result.fit(), *result.diagnosis, {}, context);
 }
 
@@ -141,8 +141,9 @@ void design_experiments(RunResult& result, const RunContext& context) {
   const bool safe = result.grade.is_usable() && !held_by_bound(result.job(), result.fit());
   if (result.selection)
     for (const Substitution& rivals : result.selection->substitutions) {
-      context.report({"discriminating between " + rivals.chosen + " and " + rivals.rival, 0, 0,
-                      result.fit().reduced_chi_square});
+      context.report({.phase = "discriminating between " + rivals.chosen + " and " + rivals.rival,
+                      .best = result.fit().reduced_chi_square,
+                      .work = Work::errors});
       result.discriminations.push_back(
           discriminate(*result.selection, rivals, safe, context.quiet()));
     }
@@ -157,7 +158,7 @@ void score_models(RunResult& result) {
 }
 
 void find_gain_errors(RunResult& result, const RunContext& context) {
-  context.report({.phase = "does the observer gain matter?"});
+  context.report({.phase = "does the observer gain matter?", .work = Work::errors});
   const Job& job = result.job();
   FitResult& fit = final_fit(result);
   const std::vector<FitResult> others = fits_at_other_gains(job, fit, context);
@@ -306,28 +307,34 @@ void run_stages(RunResult& result, const RunContext& context,
 
 RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   validate(job);
-  const auto begin = std::chrono::steady_clock::now();
   RunResult result;
   result.baseline = std::move(job);
   result.options = options;
   parameters_to_profile(result.baseline, options);  // fails before the fit
-  choose_criterion(result, context);
-  fit_declared_model(result, context);
+  WorkTimes watch;
+  RunContext timed = context;
+  timed.progress = [&](const Progress& now) {
+    watch.enter(now.work);
+    context.report(now);
+  };
+  choose_criterion(result, timed);
+  fit_declared_model(result, timed);
   run_stages(
-      result, context,
+      result, timed,
       {fit_from_inverse_dynamics, close_loop, analyse_residual, find_profiles, find_other_days});
+  watch.enter(Work::errors);
   result.checks = check_recordings(result.baseline);
   judge(result);
-  run_stages(result, context, {design_experiments, find_gain_errors, find_model_errors});
+  run_stages(result, timed, {design_experiments, find_gain_errors, find_model_errors});
   score_models(result);
   combine_errors(result);
-  run_stages(result, context, {predict, compare});
+  run_stages(result, timed, {predict, compare});
   result.second_opinion = second_opinion(result.job(), result.fit());
   find_guess_influences(result);
   find_hold_shifts(result.job(), final_fit(result));
   take_final_estimates(result);
-  const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - begin;
-  result.wall_time = wall_time.count();
+  result.times = watch.times();
+  for (const WorkTime& time : result.times) result.wall_time += time.wall;
   return result;
 }
 

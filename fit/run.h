@@ -2,10 +2,12 @@
 // tried to explain that. Text and JSON are made from it.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/work_times.h"
 #include "fit/data/job.h"
 #include "fit/data/recording_check.h"
 #include "fit/design/discrimination.h"
@@ -82,6 +84,7 @@ struct RunResult {
   bool interrupted = false;                      ///< not all that was asked for was finished
   std::optional<double> time_limit{};            ///< s, if a time limit was what interrupted it
   double wall_time = 0.0;                        ///< s
+  std::array<WorkTime, kWorkNames.size()> times{};  ///< of which each kind of work took so much
 
   /// Job and fit of the final model: the result of the search, or else the baseline.
   const Job& job() const { return selection ? selection->result.job : baseline; }

@@ -182,6 +182,14 @@ Json other_day_json(const Job& job, const OtherDay& day) {
 }
 
 /// What is known of the parameters together.
+Json work_json(const std::array<WorkTime, kWorkNames.size()>& times) {
+  Json json = Json::object();
+  for (std::size_t k = 0; k < times.size(); ++k)
+    json[std::string(kWorkNames[k])] = {{"wall_time_s", times[k].wall},
+                                        {"processor_time_s", times[k].processor}};
+  return json;
+}
+
 Json identifiability_json(const Job& job, const Eigen::MatrixXd& correlation,
                           const Identifiability& known) {
   const auto name = [&](std::size_t i) { return name_of(job, job.free[i]); };
@@ -651,7 +659,8 @@ Json result_json(const RunResult& run_result) {
                                    })},
                    {"iterations", fit.iterations},
                    {"seed", run_result.baseline.options.seed},
-                   {"wall_time_s", run_result.wall_time}});
+                   {"wall_time_s", run_result.wall_time},
+                   {"work", work_json(run_result.times)}});
   if (fit.better_gain) json["better_observer_gain"] = *fit.better_gain;
   if (fit.quiet_gain) json["quiet_observer_gain"] = *fit.quiet_gain;
   return json;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -186,6 +187,9 @@ struct FitOptions {
   int threads = 0;             ///< 0: as many as the machine has
   double step = 0.5e-3;        ///< s, of the integrator
   int input_noise_draws = 64;  ///< see input_noise.h; their standard deviation errs by 9 %
+  /// A reduced cost (stage.h) that the fit must come below to be of use. Where at its pace it would
+  /// not, the last stage ends without a minimum.
+  double give_up_above = std::numeric_limits<double>::infinity();
 
   bool is_continued() const { return continuation && !tracks(criterion); }
 };

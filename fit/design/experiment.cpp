@@ -88,8 +88,11 @@ std::vector<Linearization> sensitivities_of(const std::vector<Experiment>& candi
       sensitivities[i].residuals.setZero();  // of rounding, which has a colour
     }
     const std::lock_guard lock(mutex);
-    context.report(
-        {"trying motions", ++done, static_cast<int>(candidates.size()), fit.reduced_chi_square});
+    context.report({.phase = "trying motions",
+                    .done = ++done,
+                    .of = static_cast<int>(candidates.size()),
+                    .best = fit.reduced_chi_square,
+                    .work = Work::errors});
   });
   return sensitivities;
 }

@@ -154,6 +154,13 @@ FitVerdict verdict_of(const Job& job, const FitResult& result, const SolveResult
 
 }  // namespace
 
+double reduced_cost(const FitResult& result) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const StartResult& start : result.starts)
+    if (start.usable) least = std::min(least, start.reduced_cost);
+  return least;
+}
+
 std::vector<double> draw_start(const Job& job, int start) {
   std::seed_seq seeds{job.options.seed & 0xffffffffu, job.options.seed >> 32,
                       static_cast<std::uint64_t>(start)};

@@ -113,6 +113,9 @@ struct FitResult {
 /// for the others, by the job's seed and spread and the start's number alone.
 std::vector<double> draw_start(const Job& job, int start);
 
+/// Of the best start (StartResult); infinite where none is usable.
+double reduced_cost(const FitResult& result);
+
 /// The values of the free parameters.
 std::vector<double> values_of(const FitResult& result);
 

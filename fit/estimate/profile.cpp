@@ -133,7 +133,11 @@ std::vector<Profile> profiles(const Job& job, const FitResult& fit,
   parallel_for(sides.size(), [&](std::size_t i) {
     sides[i] = Walk(job, fit, parameters[i / 2], i % 2 == 0 ? -1.0 : 1.0, context).run();
     const std::lock_guard lock(mutex);
-    context.report({"profiles", ++done, static_cast<int>(sides.size()), fit.reduced_chi_square});
+    context.report({.phase = "profiles",
+                    .done = ++done,
+                    .of = static_cast<int>(sides.size()),
+                    .best = fit.reduced_chi_square,
+                    .work = Work::errors});
   });
   const ParameterSpace space(job);
   std::vector<Profile> list;

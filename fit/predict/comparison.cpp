@@ -130,7 +130,8 @@ std::optional<Comparison> compare_models(const std::vector<ModelEntry>& models,
   std::vector<std::vector<double>> judged;
   for (const ModelEntry& model : models) {
     context.check_stop();
-    context.report({.phase = "comparing " + (model.name.empty() ? "models" : model.name)});
+    context.report({.phase = "comparing " + (model.name.empty() ? "models" : model.name),
+                    .work = Work::errors});
     ComparedModel& compared = comparison.models.emplace_back();
     compared.name = model.name;
     compared.parameters = model.fit.parameters;

@@ -246,7 +246,7 @@ std::vector<RecordingPrediction> predict_recordings(const Job& job, const FitRes
   for (std::size_t r = 0; r < job.recordings.size(); ++r) {
     if (job.recordings[r].role != Role::validate || !fit.recordings[r].free_running.finished)
       continue;
-    context.report({.phase = "predicting " + job.recordings[r].name});
+    context.report({.phase = "predicting " + job.recordings[r].name, .work = Work::errors});
     predictions.push_back(predict_recording(job, fit, r, uncertainty, context));
   }
   return predictions;

@@ -183,6 +183,16 @@ double least_gain(const Hypothesis& hypothesis, double samples, std::size_t trie
          2.0 * std::log(static_cast<double>(std::max<std::size_t>(1, tried)));
 }
 
+std::optional<Rejection> rejection_as_chance(const Hypothesis& hypothesis, const Improvement& gain,
+                                             std::size_t tried) {
+  const double required = least_gain(hypothesis, gain.samples, tried);
+  if (!gain.comparable || gain.fit_gain >= required) return std::nullopt;
+  return Rejection{.test = Rejection::Test::significance,
+                   .found = std::max(0.0, gain.fit_gain),
+                   .required = required,
+                   .tried = tried};
+}
+
 std::optional<Rejection> rejection_of(const Hypothesis& hypothesis, const Improvement& gain,
                                       const Determination& determined, const Strictness& strictness,
                                       const SearchOptions& options) {
@@ -190,12 +200,7 @@ std::optional<Rejection> rejection_of(const Hypothesis& hypothesis, const Improv
   const SearchOptions::Acceptance& limits = options.acceptance;
   const auto& [tried, chance, replicates] = strictness;
   if (!gain.comparable) return Rejection{.test = simulation};
-  const double required = least_gain(hypothesis, gain.samples, tried);
-  if (gain.fit_gain < required)
-    return Rejection{.test = significance,
-                     .found = std::max(0.0, gain.fit_gain),
-                     .required = required,
-                     .tried = tried};
+  if (auto rejection = rejection_as_chance(hypothesis, gain, tried)) return rejection;
   const bool fails = !replicates && gain.p_value > chance;
   const bool is_unseen = fails && gain.expected_z < limits.power;
   if (fails && !is_unseen) return Rejection{.test = validation, .found = gain.p_value};

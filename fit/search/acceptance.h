@@ -87,14 +87,17 @@ struct Rejection {
     strength,         ///< the data leave its strength open
     share,            ///< it lowers the validation error too little where most remains unexplained
     misfit,           ///< the declared model does not fit, with it or without
+    force,            ///< it raises the missing force of a recording that validates
     period,           ///< the recordings to validate, fitted by themselves, show another period
   };
   Test test = Test::fit;
   /// By test, significance: the fall of the sum of squares; validation and power: the p-value;
   /// validation_size: the fall of the validation error, %; share: that beyond the noise; strength:
-  /// the standard errors from zero; period: that which they show; span: the shape.
+  /// the standard errors from zero; period: that which they show; span: the shape; force: the
+  /// missing force, % of the drive's.
   double found = 0.0;
-  double required = 0.0;  ///< of significance: the least fall of the sum of squares
+  /// Of significance: the least fall of the sum of squares; of force: the missing force without it.
+  double required = 0.0;
   std::size_t tried = 0;  ///< of significance: hypotheses and settings among which it was chosen
   std::optional<ParameterId> parameter{};  ///< of bound, span and shape
 
@@ -104,6 +107,10 @@ struct Rejection {
 /// The fall of the sum of squares that a hypothesis must bring: the price of its parameters by
 /// Schwarz's criterion, and that of having been chosen among so many.
 double least_gain(const Hypothesis& hypothesis, double samples, std::size_t tried);
+
+/// Where the sum of squares falls by less.
+std::optional<Rejection> rejection_as_chance(const Hypothesis& hypothesis, const Improvement& gain,
+                                             std::size_t tried);
 
 /// How strict the acceptance test is.
 struct Strictness {

@@ -66,7 +66,10 @@ struct SearchOptions {
     /// Standard deviations of that fall to expect, beyond which an effect that is there passes in
     /// nine of ten such recordings. Below, the recordings cannot judge.
     double power = 4.4;
-    double alias = 1e-10;      ///< part of an effect that nothing imitates: below is rounding
+    double alias = 1e-10;  ///< part of an effect that nothing imitates: below is rounding
+    /// The missing force of a recording that validates is raised that is more than so many times
+    /// what it was, and by so many per cent of the drive's.
+    double force_times = 1.5, force_percent = 2.0;
     double times_tried = 3.0;  ///< of a shape, beyond which the effect is a simpler one
     double odds = 100.0;       ///< of two models, that make one clearly worse (by BIC)
   } acceptance;
@@ -109,6 +112,9 @@ struct SearchOptions {
     /// The same where the roles of the recordings were exchanged: a second try finds more by
     /// chance.
     double of_model_exchanged = 70.0;
+    /// Along the motion, of an effect with a period: what it could imitate does not repeat as
+    /// often, so that it is named whatever part it explains.
+    double periods = 30.0;
   } far_from_noise;
 
   /// What is tried of another transmission.

@@ -1,5 +1,7 @@
 #include "fit/search/pruning.h"
 
+#include <algorithm>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -11,7 +13,8 @@ namespace {
 std::optional<Replication> found_elsewhere(SearchState& state, const Hypothesis& hypothesis,
                                            const SearchContext& context) {
   if (!state.chain.has_elsewhere())
-    state.report_progress(context.run, "do the recordings to validate tell the same?");
+    state.report_progress(context.run, "do the recordings to validate tell the same?",
+                          Work::trials);
   const std::optional<FitResult>& elsewhere = state.chain.elsewhere();
   if (!elsewhere) return std::nullopt;
   return replication(state.current().job, state.current().fit, *elsewhere, hypothesis,
@@ -22,6 +25,36 @@ bool is_alike_elsewhere(SearchState& state, const Hypothesis& hypothesis,
                         const SearchContext& context) {
   const auto found = found_elsewhere(state, hypothesis, context);
   return found && found->is_alike;
+}
+
+/// Along the motion of a fitted recording, the periods of an effect with a phase.
+double periods_passed(const FittedModel& model, const Hypothesis& hypothesis) {
+  double distance = 0.0;
+  for (std::size_t r = 0; r < model.job.recordings.size(); ++r) {
+    if (model.job.recordings[r].role != Role::fit) continue;
+    const auto& samples = model.fit.recordings[r].as_fitted().samples;
+    if (samples.empty()) continue;
+    const auto [low, high] = std::ranges::minmax(samples, {}, &Sample::position);
+    distance = std::max(distance, high.position - low.position);
+  }
+  Model<double> fitted = fitted_model(model.job, model.fit);
+  const auto member = members(fitted);
+  const auto effect = quantity_list()[hypothesis.strengths.front()].effect;
+  for (const QuantityEntry& entry : quantity_list())
+    if (entry.effect == effect && entry.quantity.shape) {
+      const double value = *member[entry.index];
+      return entry.quantity.unit == "m"
+                 ? distance / value
+                 : value * distance / (2.0 * std::numbers::pi * motor_radius(fitted));
+    }
+  return 0.0;
+}
+
+/// Nothing else that may be missing repeats as often along the way.
+bool repeats_often(const FittedModel& model, const Hypothesis& hypothesis,
+                   const SearchOptions& options) {
+  return hypothesis.has_phase &&
+         periods_passed(model, hypothesis) >= options.far_from_noise.periods;
 }
 
 }  // namespace
@@ -79,6 +112,7 @@ void drop_imitators(SearchState& state, const SearchContext& context) {
     for (std::size_t a = 0; a < state.accepted().size(); ++a) {
       const Hypothesis& hypothesis = state.accepted()[a].hypothesis;
       if (hypothesis.kind == HypothesisKind::curve ||
+          repeats_often(state.current(), hypothesis, context.options) ||
           is_alike_elsewhere(state, hypothesis, context))
         continue;
       state.report_progress(context.run, "what does " + hypothesis.name + " explain?");
@@ -100,7 +134,8 @@ void drop_unreplicated_of_a_poor_model(SearchState& state, const SearchContext& 
   const std::optional<Rejection> rejection = rejection_of_all(state, context.options);
   for (std::size_t a = 0; rejection && a < state.accepted().size();) {
     const Hypothesis hypothesis = state.accepted()[a].hypothesis;
-    if (!hypothesis.is_of_instrument() && is_alike_elsewhere(state, hypothesis, context)) {
+    if (repeats_often(state.current(), hypothesis, context.options) ||
+        (!hypothesis.is_of_instrument() && is_alike_elsewhere(state, hypothesis, context))) {
       ++a;
       continue;
     }

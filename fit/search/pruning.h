@@ -17,8 +17,8 @@ bool drop_degenerate(SearchState& state, const SearchOptions& options);
 void eliminate_backward(SearchState& state, const SearchContext& context);
 
 /// Where the fit stays far from the noise, a flexible effect lowers every error a little, whatever
-/// is missing: named is only what accounts for a good part of it, or what other recordings show
-/// alike.
+/// is missing: named is only what accounts for a good part of it, what other recordings show alike,
+/// or what repeats many times along the motion.
 void drop_imitators(SearchState& state, const SearchContext& context);
 
 /// A model that takes too little of the error away (SearchOptions::FarFromNoise) keeps only the

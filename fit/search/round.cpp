@@ -45,13 +45,19 @@ class RoundTrial {
     // Where nothing but noise is left, what lowers no error elsewhere is chance.
     if (!options_.explained && !options_.held_out_blocks && all_are_rejected(result_.models))
       try_elsewhere();
+    reject_what_raises_the_force();
     choose();
     return std::move(result_);
   }
 
  private:
-  void report_progress(const std::string& phase, int done = 0, int of = 0) const {
-    context_.run.report({phase, done, of, model_.fit.reduced_chi_square});
+  void report_progress(const std::string& phase, int done = 0, int of = 0,
+                       Work work = Work::trials) const {
+    context_.run.report({.phase = phase,
+                         .done = done,
+                         .of = of,
+                         .best = model_.fit.reduced_chi_square,
+                         .work = work});
   }
 
   /// A simulation that is far from the data must track them to be scored. Where it is close, the
@@ -78,7 +84,7 @@ class RoundTrial {
   /// The places in the shortlist of what is to be refitted.
   std::vector<std::size_t> choice() {
     if (!memory_.list) {
-      report_progress("scoring effects");
+      report_progress("scoring effects", 0, 0, Work::scores);
       memory_.list =
           shortlist(model_.job, values_of(model_.fit), gains_to_score(), options_.curves, context_);
       memory_.refits.resize(memory_.list->entries.size());
@@ -118,6 +124,7 @@ class RoundTrial {
     while (next != places.end() && all_are_rejected(result_.models)) {
       const auto end = std::ranges::upper_bound(next, places.end(), turn(*next), {}, turn);
       refit_all({next, end});
+      reject_what_raises_the_force();
       next = end;
     }
     for (; next != places.end(); ++next)
@@ -168,8 +175,20 @@ class RoundTrial {
   /// With an entry of the shortlist.
   const Tried& refitted(std::size_t place) {
     std::optional<Tried>& known = memory_.refits[place];
-    if (!known) known = try_hypothesis(model_.job, entry(place), context_);
+    if (!known)
+      known = try_hypothesis(model_.job, entry(place), context_, reduced_cost(model_.fit));
     return *known;
+  }
+
+  /// An error of an instrument or of time may follow a recording more closely and yet ask for a
+  /// larger force that the machine does not have.
+  void reject_what_raises_the_force() {
+    for (Tried& e : result_.models) {
+      if (e.rejection) continue;
+      if (!force_before_) force_before_ = missing_percents(model_.job, model_.fit);
+      e.rejection = rejection_by_force(*force_before_, missing_percents(e.job, e.fit),
+                                       context_.options.acceptance);
+    }
   }
 
   /// Drops all but one of several settings of one effect.
@@ -311,6 +330,7 @@ class RoundTrial {
   std::mutex elsewhere_;  // of the memory
   const SearchContext& context_;
   const std::vector<ResidualSeries> before_;
+  std::optional<std::vector<double>> force_before_{};  ///< of missing_percents()
   RoundResult result_;
 };
 

@@ -24,8 +24,9 @@ void SearchState::take_out_all(const Rejection& rejection) {
   chain.restart(chain.declared());
 }
 
-void SearchState::report_progress(const RunContext& context, const std::string& phase) const {
-  context.report({phase, 0, 0, current().fit.reduced_chi_square});
+void SearchState::report_progress(const RunContext& context, const std::string& phase,
+                                  Work work) const {
+  context.report({.phase = phase, .best = current().fit.reduced_chi_square, .work = work});
 }
 
 }  // namespace axisfit

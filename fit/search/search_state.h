@@ -32,7 +32,8 @@ struct SearchState {
   /// Takes out all that was accepted.
   void take_out_all(const Rejection& rejection);
 
-  void report_progress(const RunContext& context, const std::string& phase) const;
+  void report_progress(const RunContext& context, const std::string& phase,
+                       Work work = Work::substitutes) const;
 };
 
 }  // namespace axisfit

@@ -99,7 +99,7 @@ FittedModel final_model(const SearchState& state, const FitResult& first, const 
   if (state.accepted().empty()) {
     last.fit = first;
   } else if (!interrupted) {
-    state.report_progress(rounds.context.run, "final fit");
+    state.report_progress(rounds.context.run, "final fit", Work::fits);
     try {
       FitResult exact = final_fit(last.job, values_of(last.fit), rounds.context.run);
       if (exact.is_usable()) last.fit = std::move(exact);

@@ -80,7 +80,8 @@ bool add_best(SearchState& state, bool curves, double chance, Rounds& rounds) {
       {.phase = "search",
        .best = state.current().fit.reduced_chi_square,
        .finished = fmt::format("round {}, {:.1f} s: {}", rounds.count, time.count(),
-                               best != nullptr ? state.current().added : "none")});
+                               best != nullptr ? state.current().added : "none"),
+       .work = Work::substitutes});
   return best != nullptr;
 }
 

@@ -1,8 +1,10 @@
 #include "fit/search/tried.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "fit/estimate/recipes.h"
+#include "fit/judge/missing_force.h"
 #include "fit/solve/parameters.h"
 
 namespace axisfit {
@@ -22,15 +24,18 @@ FitResult refit_from(Job job, const std::vector<double>& values, const SearchCon
   return refit(job, context);
 }
 
-Tried try_hypothesis(const Job& job, const Scored& start, const SearchContext& context) {
+Tried try_hypothesis(const Job& job, const Scored& start, const SearchContext& context,
+                     double give_up_above) {
   Tried tried;
   tried.hypothesis = *start.hypothesis;
   tried.score = start.gain;
   tried.job = with_hypothesis(job, tried.hypothesis, start.others, start.own);
+  tried.job.options.give_up_above = give_up_above;
   const SearchOptions::Refit& limits = context.options.refit;
   tried.fit = refit(tried.job, context,
                     tried.hypothesis.kind == HypothesisKind::transmission ? limits.many_iterations
                                                                           : limits.iterations);
+  tried.job.options.give_up_above = job.options.give_up_above;
   tried.residuals = residual_series(tried.job, tried.fit);
   return tried;
 }
@@ -48,12 +53,36 @@ void judge(Tried& tried, const std::vector<ResidualSeries>& before, const Strict
   tried.gain = improvement(before, tried.residuals);
   if (!tried.fit.is_usable()) {
     tried.rejection = Rejection{.test = Rejection::Test::fit};
+    // It was given up, or would have gone on for nothing.
+    if (tried.fit.verdict.kind == FitVerdict::Kind::no_minimum)
+      if (auto rejection = rejection_as_chance(tried.hypothesis, tried.gain, strictness.tried))
+        tried.rejection = rejection;
     return;
   }
   tried.rejection =
       rejection_of(tried.hypothesis, tried.gain,
                    determination(tried.job, tried.fit, tried.hypothesis, tried.residuals, options),
                    strictness, options);
+}
+
+std::vector<double> missing_percents(const Job& job, const FitResult& fit) {
+  const bool validates = std::ranges::count(job.recordings, Role::validate, &Recording::role) > 0;
+  std::vector<double> percents;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    if (validates && job.recordings[r].role != Role::validate) continue;
+    const MissingForce force = missing_force(job, fit, r);
+    percents.push_back(force.found ? percent_of_drive(force) : NAN);
+  }
+  return percents;
+}
+
+std::optional<Rejection> rejection_by_force(const std::vector<double>& before,
+                                            const std::vector<double>& after,
+                                            const SearchOptions::Acceptance& limits) {
+  for (std::size_t i = 0; i < before.size(); ++i)
+    if (after[i] > limits.force_times * before[i] + limits.force_percent)
+      return Rejection{.test = Rejection::Test::force, .found = after[i], .required = before[i]};
+  return std::nullopt;
 }
 
 HypothesisValues values_in(const Tried& tried) {

@@ -1,6 +1,7 @@
 // A hypothesis that was added to a model, refitted, and put to the acceptance test.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,8 +31,10 @@ FitResult refit(const Job& job, const SearchContext& context = {});
 /// The same from these values of the free parameters.
 FitResult refit_from(Job job, const std::vector<double>& values, const SearchContext& context = {});
 
-/// Adds a hypothesis, started where its score puts it, and refits.
-Tried try_hypothesis(const Job& job, const Scored& start, const SearchContext& context = {});
+/// Adds a hypothesis, started where its score puts it, and refits. It is given up where it would
+/// not come below a reduced cost (stage.h).
+Tried try_hypothesis(const Job& job, const Scored& start, const SearchContext& context = {},
+                     double give_up_above = std::numeric_limits<double>::infinity());
 
 /// Goes on with a refit that ended for want of iterations.
 void resume(Tried& tried, const SearchContext& context = {});
@@ -39,6 +42,15 @@ void resume(Tried& tried, const SearchContext& context = {});
 /// Puts a refit, chosen as strictly as that, to the acceptance test: against these residuals.
 void judge(Tried& tried, const std::vector<ResidualSeries>& before, const Strictness& strictness,
            const SearchOptions& options = {});
+
+/// The missing force in per cent of the drive's (missing_force.h), of every recording that
+/// validates, or where none does of all; not a number where it is not known.
+std::vector<double> missing_percents(const Job& job, const FitResult& fit);
+
+/// Whether it is raised in any of them by more than a model's own imperfection.
+std::optional<Rejection> rejection_by_force(const std::vector<double>& before,
+                                            const std::vector<double>& after,
+                                            const SearchOptions::Acceptance& limits);
 
 /// What its quantities are.
 HypothesisValues values_in(const Tried& tried);

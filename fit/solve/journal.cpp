@@ -137,15 +137,15 @@ Hash& operator<<(Hash& hash, const FreeParameter& parameter) {
 Hash& operator<<(Hash& hash, const FitOptions& options) {
   // How the fit goes about it is in the start and the options of each problem.
   const auto& [criterion, continuation, loss, huber_width, max_iterations, tolerance, attempts,
-               starts, spread, seed, threads, step, input_noise_draws] = options;
+               starts, spread, seed, threads, step, input_noise_draws, give_up_above] = options;
   return hash << window_length(criterion) << loss << huber_width << step;
 }
 
 Hash& operator<<(Hash& hash, const SolveOptions& options) {
   const auto& [max_iterations, function_tolerance, parameter_tolerance,
-               penalize_distance_from_start, fixed, stop] = options;
+               penalize_distance_from_start, fixed, give_up_above, stop] = options;
   return hash << max_iterations << function_tolerance << parameter_tolerance
-              << penalize_distance_from_start << fixed;
+              << penalize_distance_from_start << fixed << give_up_above;
 }
 
 Hash& operator<<(Hash& hash, const Job& job) {

@@ -8,6 +8,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <iterator>
 #include <limits>
@@ -253,24 +254,52 @@ class BoundConstraints {
   std::vector<int> changes_;
 };
 
-/// Ends a solution as soon as a step arrives at a bound at which it did not begin, or it is to
-/// stop.
+/// Whether the iterations that are left lead to a cost, at the pace of the last ones.
+class Pace {
+ public:
+  Pace(double cost, int iterations) : cost_(cost), left_(iterations) {}
+
+  /// Enters an iteration, counted from the start of the solution.
+  void enter(const ceres::IterationSummary& summary) {
+    --left_;
+    falls_[static_cast<std::size_t>(summary.iteration) % falls_.size()] =
+        summary.step_is_successful ? std::max(0.0, summary.cost_change) : 0.0;
+    if (summary.step_is_successful || summary.iteration == 0) now_ = summary.cost;
+    is_known_ = summary.iteration >= static_cast<int>(falls_.size());
+  }
+  bool is_too_slow() const {
+    return is_known_ && now_ - std::max(0, left_) * std::ranges::max(falls_) > cost_;
+  }
+
+ private:
+  double cost_, now_ = 0.0;
+  int left_;
+  std::array<double, 4> falls_{};  ///< of the cost, in the latest iterations
+  bool is_known_ = false;
+};
+
+/// Ends a solution as soon as a step arrives at a bound at which it did not begin, it is too slow
+/// to be of use, or it is to stop.
 class EarlyTermination : public ceres::IterationCallback {
  public:
-  EarlyTermination(const BoundConstraints& point, std::size_t size, const StopFlag* stop)
-      : point_(point), stop_(stop) {
+  EarlyTermination(const BoundConstraints& point, std::size_t size, Pace pace, const StopFlag* stop)
+      : point_(point), pace_(pace), stop_(stop) {
     for (std::size_t i = 0; i < size; ++i) began_there_.push_back(point.at_bound(i));
   }
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (is_set(stop_)) return ceres::SOLVER_ABORT;
+    pace_.enter(summary);
+    if (pace_.is_too_slow()) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     for (std::size_t i = 0; i < began_there_.size() && summary.step_is_successful; ++i)
       if (!began_there_[i] && point_.at_bound(i)) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     return ceres::SOLVER_CONTINUE;
   }
+  bool was_too_slow() const { return pace_.is_too_slow(); }
 
  private:
   const BoundConstraints& point_;
+  Pace pace_;
   const StopFlag* stop_;
   std::vector<bool> began_there_;
 };
@@ -320,10 +349,12 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
           problem.Evaluate({}, &result.cost, nullptr, nullptr, nullptr);
       break;
     }
-    EarlyTermination end(point, space.size(), options.stop);
-    solver.callbacks = {&end};
     solver.max_num_iterations =
         is_last ? kLastIterations : std::max(1, options.max_iterations - result.iterations);
+    const Pace pace(0.5 * options.give_up_above * problem.NumResiduals(),
+                    solver.max_num_iterations);
+    EarlyTermination end(point, space.size(), pace, options.stop);
+    solver.callbacks = {&end};
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
     result.usable = summary.IsSolutionUsable();
@@ -332,7 +363,7 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
     result.cost = result.usable ? summary.final_cost : std::numeric_limits<double>::infinity();
     result.iterations += static_cast<int>(summary.iterations.size());
     result.message = summary.message;
-    if (!result.usable || !point.any_at_bound() || is_last) break;
+    if (!result.usable || !point.any_at_bound() || is_last || end.was_too_slow()) break;
     if (result.iterations > options.max_iterations) {
       if (result.converged || !point.fix_at_bounds()) break;
       is_last = true;

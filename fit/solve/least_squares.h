@@ -4,6 +4,7 @@
 #include <ceres/cost_function.h>
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,6 +26,9 @@ struct SolveOptions {
   /// that the data do not show then stays where it is instead of running off to a bound.
   bool penalize_distance_from_start = false;
   std::vector<std::size_t> fixed;  ///< parameters that stay as they are
+  /// A reduced cost: a solution ends early, not converged, that would stay above it even if every
+  /// iteration left to it did as much as the best of the last ones.
+  double give_up_above = std::numeric_limits<double>::infinity();
   const StopFlag* stop = nullptr;  ///< ends the solution, which is not usable then
 };
 

@@ -50,6 +50,10 @@ std::string rejection_text(const Job& job, const Rejection& rejection) {
                          rejection.found);
     case misfit:
       return "the declared model does not fit, with it or without";
+    case force:
+      return fmt::format(
+          "raises the missing {} of a recording to validate from {:.2g} to {:.2g} % of the drive's",
+          words_on(job.vocabulary(), "force"), rejection.required, rejection.found);
     case period:
       return fmt::format(
           "the recordings to validate, fitted by themselves, show another period, {:.3g}: a slow "
@@ -245,6 +249,13 @@ std::string grade_text(const Job& job, const FitGrade& grade, const FitResult& f
              ": these recordings determine none of the free parameters. Record a motion that shows "
              "them, or free fewer.";
     case simulation:
+      if (grade.uses.missing_force_percent < GradeOptions().largest_force &&
+          grade.uses.missing_force_percent && !std::isnan(grade.percent))
+        return fmt::format(
+            "{}: {} The free-running simulation {}. Units and signs are right, for most of the {} "
+            "is explained: the model lacks an effect.",
+            heading, uses_text(job, grade.uses), followed_text(grade.percent, signal()),
+            words_on(vocabulary, "force"));
       return fmt::format(
           "{}: {}. Check the units and signs of the columns, and try other initial values or "
           "--starts 20.",

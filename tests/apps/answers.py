@@ -31,7 +31,7 @@ def numbers(name, text):
         return None
     result = json.loads(text)
     for part in (result, *result.get("axes", {}).values()):
-        for other in ("message", "axisfit", "wall_time_s"):
+        for other in ("message", "axisfit", "wall_time_s", "work"):
             part.pop(other, None)
         # A rejected effect may have no minimum, and where its parameters stop is chance.
         part["effects"] = [e for e in part.get("effects", []) if e["decision"] != "rejected"]

@@ -65,7 +65,8 @@ TEST(ResultTest, JsonHasItsDocumentedKeys) {
                                                   "minima",
                                                   "iterations",
                                                   "seed",
-                                                  "wall_time_s"}));
+                                                  "wall_time_s",
+                                                  "work"}));
   ASSERT_EQ(json.at("correlation").size(), json.at("parameters").size());
   for (std::size_t i = 0; i < json.at("correlation").size(); ++i)
     EXPECT_DOUBLE_EQ(json.at("correlation")[i][i], 1.0);
@@ -502,7 +503,8 @@ TEST(ResultTest, AClosedLoopTellsWhatItAddedAndWhatThatDid) {
                                                   "minima",
                                                   "iterations",
                                                   "seed",
-                                                  "wall_time_s"}));
+                                                  "wall_time_s",
+                                                  "work"}));
   EXPECT_EQ(keys(json.at("selection")),
             (std::vector<std::string>{"verdict", "explained", "held_out_blocks", "roles_exchanged",
                                       "hints"}));

@@ -59,6 +59,26 @@ TEST(DropDegenerate, TakesOutWhatHasBecomeASimplerEffect) {
   EXPECT_FALSE(drop_degenerate(state, {}));
 }
 
+// A gain of the velocity is most of what is missing. Of what repeats along the motion, only what
+// does so a few times could imitate it.
+TEST(DropImitators, KeepsWhatRepeatsManyTimes) {
+  Model<double> truth = slide();
+  hidden_effect_named("velocity.gain").put_into(truth);
+  add_effect<PeriodicForce>(truth) = {4.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.01};
+  const Job job = two_recordings(truth, slide(), {"M", "B_a"});
+  const auto found = [&](const SearchOptions& options) {
+    SearchState state = accepted_in(job, {{"periodic_force", {{4.0, 3.0}, {0.01}}}});
+    drop_imitators(state, {options});
+    drop_unreplicated_of_a_poor_model(state, {options});
+    return names_in(state);
+  };
+  SearchOptions strict;
+  strict.replication.far = 1e9;  // nothing is alike elsewhere
+  EXPECT_EQ(found(strict), Names{"periodic_force"});
+  strict.far_from_noise.periods = 1e9;
+  EXPECT_EQ(found(strict), Names{});
+}
+
 TEST(RejectionOfAll, IsForAModelThatLeavesMostOfTheError) {
   Model<double> truth = slide();
   hidden_effect_named("coulomb_friction").put_into(truth);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "sim/model.h"
 #include "tests/fit/search/selection.h"
 
@@ -53,6 +55,25 @@ TEST_F(AsSimplerTest, IsNoneWhereShapesAreNotEstimated) {
   fit_.parameters[2].uncertainty.at_bound = true;
   hypothesis_.kind = HypothesisKind::curve;
   EXPECT_EQ(found(), std::nullopt);
+}
+
+TEST(RejectionByForce, IsForOneThatRisesInAnyRecording) {
+  const SearchOptions::Acceptance limits;
+  EXPECT_EQ(rejection_by_force({12.5, 3.0}, {14.0, 2.0}, limits), std::nullopt);
+  EXPECT_EQ(rejection_by_force({0.1, 3.0}, {1.9, 2.0}, limits), std::nullopt);
+  EXPECT_EQ(rejection_by_force({12.5, NAN}, {10.0, 300.0}, limits), std::nullopt);
+  EXPECT_EQ(rejection_by_force({3.0, 12.5}, {2.0, 343.0}, limits),
+            (Rejection{.test = Rejection::Test::force, .found = 343.0, .required = 12.5}));
+}
+
+TEST(MissingPercents, AreOfTheRecordingsThatValidate) {
+  const HiddenEffect secret = hidden_effect_named("coulomb_friction");
+  Job job = secret.job();
+  const std::vector<double> of_one = missing_percents(job, estimate(job));
+  ASSERT_EQ(of_one.size(), 1u);
+  EXPECT_NEAR(of_one[0], 1.26, 0.1);
+  for (Recording& r : job.recordings) r.role = Role::fit;
+  EXPECT_EQ(missing_percents(job, estimate(job)).size(), 2u);
 }
 
 TEST(Resume, GoesOnToTheMinimum) {

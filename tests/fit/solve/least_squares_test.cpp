@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -75,6 +76,42 @@ TEST(LeastSquares, AsksForAJacobianOncePerPoint) {
     EXPECT_GT(a.jacobians.size(), 4u);
     for (const auto& [u, times] : a.jacobians) EXPECT_EQ(times, 1) << u;
   }
+}
+
+/// The cubes of both parameters and one, which is left; a step takes away a third of a parameter.
+class Cubes : public ceres::CostFunction {
+ public:
+  Cubes() {
+    set_num_residuals(3);
+    mutable_parameter_block_sizes()->push_back(2);
+  }
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    residuals[2] = 1.0;
+    for (int i = 0; i < 2; ++i) residuals[i] = std::pow(parameters[0][i], 3);
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    std::fill_n(jacobians[0], 6, 0.0);
+    for (int i = 0; i < 2; ++i) jacobians[0][3 * i] = 3.0 * std::pow(parameters[0][i], 2);
+    return true;
+  }
+};
+
+TEST(LeastSquares, GivesUpWhatWouldNotComeBelowACost) {
+  const auto solved = [](double give_up_above) {
+    Costs costs;
+    costs.push_back(std::make_unique<Cubes>());
+    SolveOptions options;
+    options.function_tolerance = 1e-15;
+    options.give_up_above = give_up_above;
+    return minimize(two_parameters(), std::move(costs), Eigen::Vector2d(3.0, 3.0), options);
+  };
+  const SolveResult whole = solved(1e9), given_up = solved(0.3);
+  ASSERT_TRUE(whole.converged);
+  EXPECT_NEAR(whole.reduced_cost, 1.0 / 3.0, 1e-6);
+  EXPECT_EQ(solved(0.34).iterations, whole.iterations);
+  EXPECT_TRUE(given_up.usable);
+  EXPECT_FALSE(given_up.converged);
+  EXPECT_LT(given_up.iterations, whole.iterations);
 }
 
 TEST(LeastSquares, KnowsTheJacobianAtItsSolution) {
