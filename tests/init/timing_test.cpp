@@ -84,7 +84,8 @@ std::string flywheel(const Measured& measured) {
   std::string rows = "Timestamp,AppliedVolts,VelocityRadPerSec\n";
   std::vector<double> speeds{0.0};
   for (int i = 0; i < 12000; ++i) {
-    const double volts = 9.0 * std::sin(2.3 * double(i / 1500 + 1)), speed = speeds.back();
+    const int level = i / 1500 + 1;
+    const double volts = 9.0 * std::sin(2.3 * level), speed = speeds.back();
     if (i % 20 == 0)
       rows +=
           fmt::format("{:.3f},{:.6f},{:.6f}\n", 1e-3 * i, volts, measured(speeds) + 0.1 * normal());
