@@ -253,7 +253,7 @@ std::string grade_text(const Job& job, const FitGrade& grade, const FitResult& f
           grade.uses.missing_force_percent && !std::isnan(grade.percent))
         return fmt::format(
             "{}: {} The free-running simulation {}. Units and signs are right, for most of the {} "
-            "is explained: the model lacks an effect.",
+            "is explained: something is missing.",
             heading, uses_text(job, grade.uses), followed_text(grade.percent, signal()),
             words_on(vocabulary, "force"));
       return fmt::format(
