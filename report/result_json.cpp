@@ -181,7 +181,7 @@ Json other_day_json(const Job& job, const OtherDay& day) {
           {"missing_force_percent_as_fitted", day.percent_before}};
 }
 
-/// What is known of the parameters together.
+/// Where the time went.
 Json work_json(const std::array<WorkTime, kWorkNames.size()>& times) {
   Json json = Json::object();
   for (std::size_t k = 0; k < times.size(); ++k)
@@ -190,6 +190,7 @@ Json work_json(const std::array<WorkTime, kWorkNames.size()>& times) {
   return json;
 }
 
+/// What is known of the parameters together.
 Json identifiability_json(const Job& job, const Eigen::MatrixXd& correlation,
                           const Identifiability& known) {
   const auto name = [&](std::size_t i) { return name_of(job, job.free[i]); };

@@ -89,12 +89,12 @@ class Descent {
     SolveOptions options;
     options.max_iterations = job_.options.max_iterations;
     options.function_tolerance = job_.options.tolerance;
-    options.give_up_above = job_.options.give_up_above;
-    if (!final) {
+    if (final) {
+      options.give_up_above = job_.options.give_up_above;
+    } else {
       options.max_iterations = std::min(options.max_iterations, options_.iterations);
       options.function_tolerance = options_.tolerance;
       options.penalize_distance_from_start = true;
-      options.give_up_above = std::numeric_limits<double>::infinity();
     }
     SolveResult solved = solve(job_, space_, start, gain, options, context_);
     iterations_ += solved.iterations;

@@ -43,9 +43,10 @@ class RoundTrial {
     refit_in_turns(choice());
     keep_the_best_setting();
     // Where nothing but noise is left, what lowers no error elsewhere is chance.
-    if (!options_.explained && !options_.held_out_blocks && all_are_rejected(result_.models))
+    if (!options_.explained && !options_.held_out_blocks && all_are_rejected(result_.models)) {
       try_elsewhere();
-    reject_what_raises_the_force();
+      reject_what_raises_the_force();
+    }
     choose();
     return std::move(result_);
   }
