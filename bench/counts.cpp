@@ -30,7 +30,8 @@ SimulationResult simulated_once(const Evaluation& evaluation, double rate) {
   return simulate<double>(
       evaluation.job().model, recording.command, recording.times,
       [](std::size_t, const Integrator<double>&) {}, observer_for(recording, rate), {target, {}},
-      recording_options(recording.times, FitOptions{}.step));
+      recording_options(recording.times, static_cast<double>(recording.command.times.size()),
+                        FitOptions{}.step));
 }
 
 void count(const Rig& rig, const std::string& name, double rate) {
@@ -88,7 +89,8 @@ void count_late() {
   for (const double t : recording.times) command.append(t, 6.0 * std::sin(10.0 * t));
   const SimulationResult outcome = simulate<double>(
       job.model, command, recording.times, [](std::size_t, const Integrator<double>&) {}, {}, {},
-      recording_options(recording.times, FitOptions{}.step));
+      recording_options(recording.times, static_cast<double>(recording.command.times.size()),
+                        FitOptions{}.step));
   fmt::print("late.steps {}\n", outcome.steps);
 }
 

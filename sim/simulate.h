@@ -48,14 +48,18 @@ struct SimulationResult {
 };
 
 /// Options for a simulation that is compared with a recording, with budgets that such a simulation
-/// stays far below: less than one event per sample, and twenty steps for each sample and each
-/// `step` (s). Parameters with which the axis chatters or oscillates faster are rejected.
-inline IntegratorOptions recording_options(std::span<const double> times, double step) {
+/// stays far below: one event for two samples, six more for each switch of the command, after
+/// which limits are reached and left and teeth part and meet, and twenty steps for each sample and
+/// each `step` (s). Parameters with which the axis chatters or oscillates faster are rejected. More
+/// switches than one for four samples count no more: they are small.
+inline IntegratorOptions recording_options(std::span<const double> times, double switches,
+                                           double step) {
   const double samples = static_cast<double>(times.size());
   constexpr double kMost = 1e15;  // fits a long
   IntegratorOptions options;
   options.step = step;
-  options.event_budget = 200 + static_cast<long>(0.5 * samples);
+  options.event_budget =
+      200 + static_cast<long>(0.5 * samples + 6.0 * std::min(switches, 0.25 * samples));
   options.step_budget =
       10'000 +
       static_cast<long>(std::min(kMost, 20.0 * (samples + (times.back() - times.front()) / step)));

@@ -172,7 +172,7 @@ class Filling {
                                          "directional_friction", "friction_over_velocity"}));
     flag("needs_exp", has_any({"dahl_friction", "second_dahl_friction", "warming_grease",
                                "stribeck_friction", "friction_bump", "stribeck_load_friction",
-                               "warming_friction", "running_in_friction"}));
+                               "warming_friction", "running_in_friction", "torque_fade"}));
     flag("needs_pow",
          has_any({"stribeck_friction", "quadratic_drag", "torque_droop", "force_droop"}));
     flag("needs_sin", has_any({"cogging_torque", "torque_ripple", "pendulum_gravity",
@@ -220,6 +220,7 @@ class Filling {
         one.set(symbol, member);
         if (symbol == "n" && *values_[entry.index] != entry.quantity.default_value)
           one.set("has_exponent", true);
+        if (symbol == "a_t" && *values_[entry.index] != 0.0) one.set("has_time_constant", true);
         if (const auto channel = entry.quantity.channel) {
           data term = object();
           term.set("k", member);

@@ -35,10 +35,13 @@ SimulationResult run(const Job& job, const Recording& recording, const Model<T>&
                      std::vector<ModeChange>* modes = nullptr, const StopFlag* stop = nullptr,
                      std::span<const Disturbance<T>> disturbances = {}, bool seeded = false) {
   // A controller switches the command at each of its samples.
-  const double step = recording.command.meaning == Meaning::reference
-                          ? std::min(job.options.step, model.controller.timing.command_period())
-                          : job.options.step;
-  IntegratorOptions options = recording_options(recording.times, step);
+  const bool is_controlled = recording.command.meaning == Meaning::reference;
+  const double period = model.controller.timing.command_period();
+  const double step = is_controlled ? std::min(job.options.step, period) : job.options.step;
+  const double switches = is_controlled
+                              ? (recording.times.back() - recording.times.front()) / period
+                              : static_cast<double>(recording.command.times.size());
+  IntegratorOptions options = recording_options(recording.times, switches, step);
   options.step = job.options.step;
   options.modes = modes;
   options.stop = stop;

@@ -111,7 +111,7 @@ std::vector<LawCase> laws() {
   add(
       "quadratic_drag", [](auto& m) { add_effect<QuadraticDrag>(m).c = 40.0; },
       [](double, double, double v) { return -40.0 * v * std::abs(v); });
-  for (const double n : {1.3, 3.0})
+  for (const double n : {0.5, 1.3, 3.0})
     add(
         "quadratic_drag.n",
         [=](auto& m) {
@@ -120,7 +120,10 @@ std::vector<LawCase> laws() {
         [=](double, double, double v) {
           return -40.0 * v * std::abs(v) * std::pow(v * v + 1e-6, 0.5 * (n - 2.0));
         },
-        n < 2.0 ? 1e-7 : 1e-9);
+        // The lower it is, the more the force bends at 1 mm/s.
+        n < 1.0   ? 1e-5
+        : n < 2.0 ? 1e-7
+                  : 1e-9);
   add(
       "directional_friction.dB_a",
       [](auto& m) {
@@ -161,6 +164,16 @@ std::vector<LawCase> laws() {
       [](double t, double, double) {
         return pushing(three_pushes(), t) * (1.0 / (1.0 + 0.4 * t) - 1.0);
       });
+  for (const double a_t : {1e-3, 2.0})
+    add(
+        "torque_fade.a_t",
+        [=](auto& m) {
+          add_effect<TorqueFade>(m) = {0.4, a_t};
+        },
+        [=](double t, double, double) {
+          const double loss = -0.4 * std::expm1(-a_t * t) / a_t;
+          return pushing(three_pushes(), t) * (1.0 / (1.0 + loss) - 1.0);
+        });
   add(
       "force_droop", [](auto& m) { add_effect<ForceDroop>(m).c_f = 4e-3; },
       [](double t, double, double) {
@@ -354,7 +367,7 @@ TEST(ForceLaw, OfStribeckFrictionHoldsAndSlides) {
 
 TEST(ForceLaw, OfDragHasAnExponent) {
   Instant<double> at{};
-  for (const double n : {1.2, 1.7, 2.0, 2.5, 4.0})
+  for (const double n : {0.3, 0.7, 1.2, 1.7, 2.0, 2.5, 4.0})
     for (const double v : {-2.0, -0.3, 0.02, 0.5}) {
       at.velocity = v;
       const double drag = 60.0 * std::pow(std::abs(v), n);

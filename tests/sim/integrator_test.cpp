@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <iostream>
+#include <numbers>
 #include <string>
+#include <vector>
 
 #include "tests/sim/axes.h"
 #include "tests/sim/reference.h"
@@ -266,6 +269,29 @@ TEST(Integrator, ARestIsExact) {
   const auto result = run(model, {}, instants(10, 0.1));
   for (const State<double>& y : result.states)
     for (const double value : y) EXPECT_EQ(value, 0.0);
+}
+
+// A velocity loop near its limits has several events after each step of a command that rises
+// smoothly in steps of 5 ms: teeth that part and meet, limits that are reached and left.
+TEST(Integrator, FollowsAChirpInStepsWithinTheBudgetOfARecording) {
+  Model<double> model = paper_axis();
+  model.axis.V_L = 3.276;
+  model.axis.B_a = 260.5;
+  model.axis.b_g = 1475.0;
+  model.axis.k_g = 7.874e6;
+  model.axis.T_p = 0.03781;
+  constexpr double kDuration = 4.0, kPeriod = 5e-3;
+  Schedule chirp;
+  for (int k = 0; k < 800; ++k) {
+    const double t = k * kPeriod;
+    chirp.append(t, 5.0 * std::sin(2.0 * std::numbers::pi * (0.35 + 0.15 * t) * t));
+  }
+  const std::vector<double> times = instants(4000, kDuration / 4000.0);
+  const SimulationResult result = simulate<double>(
+      model, chirp, times, [](std::size_t, const Integrator<double>&) {}, {}, {},
+      recording_options(times, static_cast<double>(chirp.times.size()), 0.5e-3));
+  EXPECT_TRUE(result.finished);
+  EXPECT_GT(result.events, 200 + 0.5 * 4000.0) << "one event for two samples is not enough";
 }
 
 TEST(Integrator, GivesUpOnANumberThatIsNotFinite) {

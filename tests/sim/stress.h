@@ -85,9 +85,10 @@ inline Ordeal ordeal(std::uint64_t draw) {
   for (const SignalInfo& s : kSignalTable)
     if (has_signal(s.signal, model.structure)) signals.push_back(s.signal);
   Recorder<double> recorder(model.instruments, signals, times);
-  result.options = recording_options(times, 0.5e-3);
+  const Schedule command = schedule_of(motion, 0.2, 5e-3);
+  result.options = recording_options(times, static_cast<double>(command.times.size()), 0.5e-3);
   result.simulation_result = simulate<double>(
-      model, schedule_of(motion, 0.2, 5e-3), recorder.instants(),
+      model, command, recorder.instants(),
       [&](std::size_t, const Integrator<double>& axis) { recorder.read(axis); }, {}, {},
       result.options);
   for (std::size_t s = 0; s < signals.size(); ++s)
