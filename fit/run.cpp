@@ -6,7 +6,6 @@
 
 #include "base/parallel.h"
 #include "fit/data/validation.h"
-#include "fit/errors/gain_error.h"
 #include "fit/errors/guesses.h"
 #include "fit/errors/hold_shift.h"
 #include "fit/errors/rival_error.h"
@@ -161,22 +160,8 @@ void find_gain_errors(RunResult& result, const RunContext& context) {
   context.report({.phase = "does the observer gain matter?", .work = Work::errors});
   const Job& job = result.job();
   FitResult& fit = final_fit(result);
-  const std::vector<FitResult> others = fits_at_other_gains(job, fit, context);
-  fit.better_gain = better_gain(job, fit, others);
-  std::vector<EstimatesAtGain> estimates;
-  for (const FitResult& other : others)
-    estimates.push_back({other.observer_gain, other.parameters});
-  const auto shifts = gain_errors(fit.parameters, estimates);
-  for (std::size_t i = 0; i < shifts.size(); ++i) fit.parameters[i].budget.gain = shifts[i];
+  fit.better_gain = better_gain(job, fit, add_gain_errors(job, fit, context));
   if (!result.horizon) fit.quiet_gain = quiet_gain(job, fit);
-}
-
-std::optional<Scatter> find_scatter_errors(const Job& job, FitResult& fit) {
-  std::optional<Scatter> scatter = scatter_of(job, fit.parameters, fit.observer_gain);
-  if (scatter)
-    for (const ParameterScatter& p : scatter->parameters)
-      fit.parameters[p.parameter].budget.scatter = p.error;
-  return scatter;
 }
 
 void find_rival_errors(EffectSelection& selection) {
@@ -188,7 +173,8 @@ void find_rival_errors(EffectSelection& selection) {
 /// What scatter and rivals add to the errors. Of a wrong model it would tell nothing.
 void find_model_errors(RunResult& result, const RunContext&) {
   if (!result.grade.is_usable()) return;
-  result.scatter = find_scatter_errors(result.job(), final_fit(result));
+  FitResult& fit = final_fit(result);
+  result.scatter = add_scatter(result.job(), fit.parameters, fit.observer_gain);
   if (result.selection) find_rival_errors(*result.selection);
 }
 
@@ -238,7 +224,8 @@ void compare(RunResult& result, const RunContext& context) {
       ModelEntry& entry = models.emplace_back(ModelEntry{added, job, fit});
       entry.forces = result.scores[i].forces;
       if (!fit.is_usable()) continue;
-      const std::optional<Scatter> scatter = find_scatter_errors(job, entry.fit);
+      const std::optional<Scatter> scatter =
+          add_scatter(job, entry.fit.parameters, entry.fit.observer_gain);
       combine_errors(job, entry.fit);
       entry.uncertainty = axis_uncertainty(job, entry.fit, scatter, entry.forces);
     }

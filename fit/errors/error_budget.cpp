@@ -132,15 +132,14 @@ ParameterUncertainty combined(const ErrorBudget& budget, double value, const Fre
     set_one_sided(sampling, noise.half, scale, free, found);
     return found;
   }
-  const double size = scale.size_of(noise);
-  found.determined = size < options.largest_error || scale.is_small(value + noise.half);
-  found.weak = found.determined && size > options.weak_error;
-  if (!found.determined) {
-    inflate(noise.error);
-    return found;
-  }
   const Spread total = of_all_but_rivals(budget, value).and_also(move_of(budget.rival, value));
   inflate(total.error);
+  const double size = scale.size_of(total);
+  const double largest =
+      free.scale == Scale::logarithmic ? options.largest_log_error : options.largest_error;
+  found.determined = size < largest || scale.is_small(value + total.half);
+  if (!found.determined) return found;
+  found.weak = size > options.weak_error;
   found.standard_error = total.error;
   const double half = scale.length(total.half);
   found.lower = scale.value_at(-half);

@@ -87,9 +87,10 @@ struct ErrorBudget {
 ErrorBudget without_rival(ErrorBudget budget);
 
 /// The combined uncertainty of an estimate `value`. Intervals are on the parameter's scale, within
-/// its bounds. An estimate that noise alone leaves open has no standard error, whatever else is in
-/// its budget, and one at a bound has a one-sided interval, where the likelihood ratio is not
-/// significant with all others free.
+/// its bounds. An estimate is determined if the total is small enough: what moves to another order
+/// of magnitude at another gain is as open as what noise leaves open, and neither has a standard
+/// error. One at a bound has a one-sided interval, where the likelihood ratio is not significant
+/// with all others free.
 ParameterUncertainty combined(const ErrorBudget& budget, double value, const FreeParameter& free,
                               const ErrorOptions& options = {});
 

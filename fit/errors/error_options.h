@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 
 namespace axisfit {
 
@@ -14,10 +15,13 @@ struct ErrorOptions {
   /// Part of a combination without effect that leaves a parameter open. Smaller ones come from
   /// rounding.
   double open_part = 0.1;
-  /// On the scale of a parameter. An error of more than a factor of e, or an interval as wide as
-  /// the allowed range, carries no information.
+  /// An interval as wide as the allowed range carries no information, nor does an error from zero
+  /// as large as the value ...
   double largest_error = 1.0;
-  /// On the same scale: a larger error tells no more than the order of magnitude.
+  /// ... nor, on a logarithmic scale, one that twice to either side spans a decade: not even the
+  /// order of magnitude is known.
+  double largest_log_error = 0.25 * std::numbers::ln10;
+  /// On the scale of a parameter: a larger error tells no more than the order of magnitude.
   double weak_error = 0.25;
   /// Correlation beyond which two estimates are hardly determined apart: their errors are three
   /// times what either has with the other known.

@@ -66,7 +66,7 @@ Identifiability identifiability(const ParameterSpace& space, const Eigen::Vector
           std::exp(u[static_cast<Eigen::Index>(a)] + exponent * u[static_cast<Eigen::Index>(b)]);
       c.standard_error = c.value * error;
       // Unless another weak direction hides it, too.
-      if (error < options.largest_error && std::isfinite(c.value)) {
+      if (error < options.largest_log_error && std::isfinite(c.value)) {
         weak.combination = c;
         result.combinations.push_back(c);
       }

@@ -15,15 +15,14 @@ std::vector<std::optional<RivalShift>> rival_errors(const Job& job,
   for (RivalModels pair : rivals)
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       const ParameterResult& p = parameters[i];
-      if (!is_of_machine(job, i) || !p.uncertainty.determined ||
-          std::ranges::find(pair.own, p.id) != pair.own.end())
-        continue;
-      const double error =
-          combined(without_rival(p.budget), p.value, job.free[i], options).standard_error;
+      if (!is_of_machine(job, i) || std::ranges::find(pair.own, p.id) != pair.own.end()) continue;
+      const ParameterUncertainty alone =
+          combined(without_rival(p.budget), p.value, job.free[i], options);
+      if (!alone.determined) continue;
       const std::size_t quantity = job.free[i].quantity;
       const double move =
           *members(pair.with_rival)[quantity] - *members(pair.with_chosen)[quantity];
-      if (std::abs(move) > options.rival_errors * error &&
+      if (std::abs(move) > options.rival_errors * alone.standard_error &&
           (!shifts[i] || std::abs(move) > std::abs(shifts[i]->value - p.value)))
         shifts[i] = RivalShift{pair.chosen, pair.rival, p.value + move};
     }

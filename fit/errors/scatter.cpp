@@ -319,4 +319,13 @@ std::optional<Scatter> scatter_of(const Job& job, std::span<const ParameterResul
   return scatter;
 }
 
+std::optional<Scatter> add_scatter(const Job& job, std::span<ParameterResult> parameters,
+                                   double observer_gain, const ErrorOptions& options) {
+  std::optional<Scatter> scatter = scatter_of(job, parameters, observer_gain, options);
+  if (scatter)
+    for (const ParameterScatter& p : scatter->parameters)
+      parameters[p.parameter].budget.scatter = p.error;
+  return scatter;
+}
+
 }  // namespace axisfit

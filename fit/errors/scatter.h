@@ -70,4 +70,8 @@ bool is_of_machine(const Job& job, std::size_t parameter);
 std::optional<Scatter> scatter_of(const Job& job, std::span<const ParameterResult> parameters,
                                   double observer_gain, const ErrorOptions& options = {});
 
+/// The same, entered in their budgets.
+std::optional<Scatter> add_scatter(const Job& job, std::span<ParameterResult> parameters,
+                                   double observer_gain, const ErrorOptions& options = {});
+
 }  // namespace axisfit

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "base/parallel.h"
+#include "fit/errors/gain_error.h"
 #include "fit/estimate/recipes.h"
 #include "fit/solve/parameters.h"
 
@@ -47,6 +48,17 @@ std::vector<FitResult> fits_at_other_gains(const Job& job, const FitResult& fit,
   });
   std::erase_if(fits, [](const FitResult& f) { return !f.is_usable(); });
   return fits;
+}
+
+std::vector<FitResult> add_gain_errors(const Job& job, FitResult& fit, const RunContext& context,
+                                       const ErrorOptions& options) {
+  std::vector<FitResult> others = fits_at_other_gains(job, fit, context, options);
+  std::vector<EstimatesAtGain> estimates;
+  for (const FitResult& other : others)
+    estimates.push_back({other.observer_gain, other.parameters});
+  const auto shifts = gain_errors(fit.parameters, estimates, options);
+  for (std::size_t i = 0; i < shifts.size(); ++i) fit.parameters[i].budget.gain = shifts[i];
+  return others;
 }
 
 std::optional<double> better_gain(const Job& job, const FitResult& fit,

@@ -16,6 +16,11 @@ std::vector<FitResult> fits_at_other_gains(const Job& job, const FitResult& fit,
                                            const RunContext& context = {},
                                            const ErrorOptions& options = {});
 
+/// The same, with the moves that they show entered in the fit's budgets (gain_error.h).
+std::vector<FitResult> add_gain_errors(const Job& job, FitResult& fit,
+                                       const RunContext& context = {},
+                                       const ErrorOptions& options = {});
+
 /// The gain of the other fit whose estimates predict the recordings to validate best, simulated
 /// freely; none where none does clearly better than the fit.
 std::optional<double> better_gain(const Job& job, const FitResult& fit,

@@ -20,7 +20,7 @@ double percent_from(const MissingForce& force, std::size_t first) {
 /// What may differ from day to day, the likeliest alone first, then together: places in Job::free.
 std::vector<std::vector<std::size_t>> candidates(const Job& job) {
   std::vector<std::size_t> found;
-  for (const char* name : {"constant_force.F_0", "coulomb_friction.F_c", "F_s", "B_a"}) {
+  for (const char* name : {"constant_force.F_0", "coulomb_friction.F_c", "F_s", "B_a", "M"}) {
     const auto at =
         std::ranges::find(job.free, ParameterId{quantity_index(name), {}}, &FreeParameter::id);
     if (at != job.free.end()) found.push_back(static_cast<std::size_t>(at - job.free.begin()));

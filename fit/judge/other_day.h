@@ -1,10 +1,10 @@
-// Recordings of another day: to validate, and of the same machine, but warmer, or on a table that
-// tilts a little.
+// Recordings of another day: to validate, and of the same machine, but warmer, on a table that
+// tilts a little, or with another payload.
 //
 // Such a recording shows a missing force that those which were fitted lack, although the model is
-// right. On trial it gets offset and friction of its own, as few of them as do, from its first half
-// alone; what the model then leaves of the second half, which none of them has seen, tells whether
-// that is what differs.
+// right. On trial it gets offset, friction and mass of its own, as few of them as do, from its
+// first half alone; what the model then leaves of the second half, which none of them has seen,
+// tells whether that is what differs.
 #pragma once
 
 #include <optional>
@@ -27,7 +27,7 @@ struct OtherDay {
 };
 
 /// Those of a usable fit, or of one that only recordings to validate speak against. What differs
-/// are free parameters of offset, dry and viscous friction.
+/// are free parameters of offset, dry and viscous friction, and the mass.
 std::vector<OtherDay> other_days(const Job& job, const FitResult& fit, const Diagnosis& diagnosis,
                                  const GradeOptions& options = {}, const RunContext& context = {});
 

@@ -186,14 +186,14 @@ AxisUncertainty axis_uncertainty(const Job& job, const FitResult& fit,
   for (std::size_t i = 0; i < space.size(); ++i) {
     const ParameterResult& p = fit.parameters[i];
     const FreeParameter& free = space[i];
-    if (!is_of_machine(job, i) || p.uncertainty.at_bound || !p.uncertainty.determined) continue;
-    const double error = combined(without_rival(p.budget), p.value, free).standard_error;
+    const ParameterUncertainty alone = combined(without_rival(p.budget), p.value, free);
+    if (!is_of_machine(job, i) || !alone.determined) continue;
+    const double error = alone.standard_error;
     // On a logarithmic scale the errors are those of the logarithm; and so they may be far from
     // zero.
     constexpr double kFar = 0.25;
-    const bool is_relative =
-        free.scale == Scale::logarithmic ||
-        (free.scale == Scale::from_zero && p.uncertainty.standard_error < kFar * p.value);
+    const bool is_relative = free.scale == Scale::logarithmic ||
+                             (free.scale == Scale::from_zero && error < kFar * p.value);
     const double per_unit = is_relative ? 1.0 / p.value : 1.0;
     UncertainQuantity q{free.quantity, is_relative, error * per_unit, 0.0, 1.0};
     // A parameter that changes from stretch to stretch changes during a prediction, too: the change

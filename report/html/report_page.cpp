@@ -126,8 +126,7 @@ class Page {
   Html verdict() {
     Html summary = paragraph_of(overall_verdict(run_result_));
     if (!run_result_.selection && run_result_.diagnosis)
-      summary += paragraph_of(residual_verdict(job_, *run_result_.diagnosis, run_result_.suspects,
-                                               run_result_.options.select_effects));
+      summary += paragraph_of(residual_verdict(run_result_));
     Html all = html(R"(<div class="verdict {}">{}</div>)", verdict_class(), summary);
     for (const Discrimination& s : run_result_.discriminations)
       all += paragraph_of(discrimination_text(s, job_.vocabulary()));
@@ -261,10 +260,7 @@ class Page {
     Html all =
         html(R"(<span class="badge {}">{}</span>)", kind(), std::string(verdict_name(u.verdict())));
     if (!p.rests_on.empty()) all += html(" <small>{}</small>", guesses_text(job_, p.rests_on));
-    if (const auto& gain = p.budget.gain)
-      all += html(" <small>{}</small>", gain_shift_text(*gain, unit));
-    if (const auto& rival = p.budget.rival)
-      all += html(" <small>{}</small>", rival_shift_text(*rival, unit));
+    for (const std::string& move : moves_text(p, unit)) all += html(" <small>{}</small>", move);
     if (p.other_hold) all += html(" <small>{}</small>", hold_shift_text(job_, *p.other_hold, unit));
     return all;
   }
@@ -334,10 +330,7 @@ class Page {
   Html residual() {
     if (!run_result_.diagnosis) return {};
     const Diagnosis& diagnosis = *run_result_.diagnosis;
-    Html all = run_result_.selection
-                   ? Html()
-                   : paragraph_of(residual_verdict(job_, diagnosis, run_result_.suspects,
-                                                   run_result_.options.select_effects));
+    Html all = run_result_.selection ? Html() : paragraph_of(residual_verdict(run_result_));
     all += tests(diagnosis);
     if (const std::string faults = instruments_text(job_, diagnosis); !faults.empty())
       all += html("<h3>Instruments</h3>{}", paragraph_of(faults));

@@ -203,9 +203,7 @@ std::string report_text(const RunResult& run_result, bool colour) {
   text += paragraph(overall_verdict(run_result, colour));
   for (const Discrimination& s : run_result.discriminations)
     text += paragraph(discrimination_text(s, job.vocabulary()));
-  if (!run_result.selection && run_result.diagnosis)
-    text += residual_verdict(job, *run_result.diagnosis, run_result.suspects,
-                             run_result.options.select_effects, colour);
+  if (!run_result.selection && run_result.diagnosis) text += residual_verdict(run_result, colour);
   if (run_result.interrupted) {
     const int starts = std::max(1, job.options.starts);
     return text + "\n" +

@@ -34,6 +34,9 @@ std::string suspected_effects_text(const Job& job, const Diagnosis& diagnosis,
 std::string residual_verdict(const Job& job, const Diagnosis& diagnosis,
                              const std::vector<Scored>& suspects, bool loop_was_asked_for = false,
                              bool colour = false);
+/// That of a run that has a diagnosis. Recordings that differ from the fitted ones are left out:
+/// the grade says what differs.
+std::string residual_verdict(const RunResult& run_result, bool colour = false);
 
 /// Its part on the closed loop: effects that were tried, and the errors before and after.
 std::string selection_text(const RunResult& run_result, bool colour = false);

@@ -175,4 +175,15 @@ std::string residual_verdict(const Job& job, const Diagnosis& diagnosis,
   return paragraph(text);
 }
 
+std::string residual_verdict(const RunResult& run_result, bool colour) {
+  Diagnosis usual = *run_result.diagnosis;
+  for (const OtherDay& day : run_result.other_days)
+    std::erase_if(usual.tests,
+                  [&](const SeriesTest& t) { return t.series.recording == day.recording; });
+  if (!run_result.other_days.empty())
+    usual.explained = std::ranges::all_of(usual.tests, &SeriesTest::explained);
+  return residual_verdict(run_result.job(), usual, run_result.suspects,
+                          run_result.options.select_effects, colour);
+}
+
 }  // namespace axisfit

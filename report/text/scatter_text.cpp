@@ -56,11 +56,12 @@ std::string scatter_text(const RunResult& run_result) {
   for (const ParameterScatter& p : scatter.parameters) {
     const ParameterResult& found = fit.parameters[p.parameter];
     const std::string name = name_of(job, found.id);
-    if (p.deviation > 0.0) scattered.push_back(name);
+    const bool is_known = found.uncertainty.determined;
+    if (p.deviation > 0.0 && is_known) scattered.push_back(name);
     rows.push_back({name, fmt::format("{:.2g}", p.within),
                     p.deviation > 0.0 ? fmt::format("{:.2g}", p.deviation) : "none seen",
                     fmt::format("{:.2g} .. {:.2g}", p.lower, p.upper),
-                    fmt::format("{:.2g}", found.uncertainty.standard_error),
+                    is_known ? fmt::format("{:.2g}", found.uncertainty.standard_error) : "-",
                     std::string(quantity_of(job, found.id).unit)});
   }
   using enum Alignment;

@@ -65,12 +65,8 @@ std::string remarks_text(const Job& job, const FitResult& result) {
       text += paragraph(fmt::format("{}: {}.", name, far), 2);
     if (!p.rests_on.empty())
       text += paragraph(fmt::format("{}: {}.", name, guesses_text(job, p.rests_on)), 2);
-    if (p.budget.gain)
-      text += paragraph(
-          fmt::format("{}: {}.", name, gain_shift_text(*p.budget.gain, unit_of(job, i))), 2);
-    if (p.budget.rival)
-      text += paragraph(
-          fmt::format("{}: {}.", name, rival_shift_text(*p.budget.rival, unit_of(job, i))), 2);
+    for (const std::string& move : moves_text(p, unit_of(job, i)))
+      text += paragraph(fmt::format("{}: {}.", name, move), 2);
     if (p.other_hold)
       text += paragraph(
           fmt::format("{}: {}.", name, hold_shift_text(job, *p.other_hold, unit_of(job, i))), 2);

@@ -378,9 +378,9 @@ std::string other_day_text(const Job& job, const FitResult& fit, const OtherDay&
         with_unit(with_digits_of(usual.value, error), quantity_of(job, usual.id).unit)));
   }
   return fmt::format(
-      " {} is as of another day: with {}, found in its first half, the model leaves {:.2g} % of "
-      "the "
-      "{} of the second half unexplained, and not {:.2g} %. The grade counts it so.",
+      " {} differs from the fitted recordings: with {}, found in its first half, the model leaves "
+      "{:.2g} % of the {} of the second half unexplained, and not {:.2g} %. The grade counts it "
+      "so.",
       job.recordings[day.recording].name, fmt::join(own, " and "), day.percent,
       words_on(job.vocabulary(), "drive force"), day.percent_before);
 }
@@ -418,6 +418,11 @@ std::string reason_text(const Job& job, const Outcome& trial) {
           "explains the residual best: {:.3g} % lower error on held-out blocks of the fitted "
           "recordings, since those to validate could not have shown it",
           trial.improvement.validate_percent);
+    case Reason::explains_beside:
+      return fmt::format(
+          "explains the residual together with {}, without which it is hidden: {:.3g} % lower "
+          "validation error ({:.3g} standard deviations above chance)",
+          trial.other, trial.improvement.validate_percent, trial.improvement.z);
     case Reason::explains_less:
       return "explains less than " + trial.other;
     case Reason::replaced:
@@ -466,15 +471,19 @@ std::string simulation_name(const FitOptions& options, bool tracks) {
   return "tracking simulation";
 }
 
-std::string gain_shift_text(const GainShift& shift, std::string_view unit) {
-  return fmt::format("{} at an observer gain of {:.3g} 1/s, which its error allows for",
-                     with_unit(fmt::format("{:.4g}", shift.value), unit), shift.observer_gain);
-}
-
-std::string rival_shift_text(const RivalShift& shift, std::string_view unit) {
-  return fmt::format("{} with {} in place of {}, which its error allows for",
-                     with_unit(fmt::format("{:.4g}", shift.value), unit), shift.rival,
-                     shift.chosen);
+std::vector<std::string> moves_text(const ParameterResult& p, std::string_view unit) {
+  const auto text = [&](double value, const std::string& where) {
+    return fmt::format("{} {}, which {}", with_unit(fmt::format("{:.4g}", value), unit), where,
+                       p.uncertainty.determined ? "its error allows for" : "leaves it open");
+  };
+  std::vector<std::string> moves;
+  if (const auto& gain = p.budget.gain)
+    moves.push_back(
+        text(gain->value, fmt::format("at an observer gain of {:.3g} 1/s", gain->observer_gain)));
+  if (const auto& rival = p.budget.rival)
+    moves.push_back(
+        text(rival->value, fmt::format("with {} in place of {}", rival->rival, rival->chosen)));
+  return moves;
 }
 
 std::string hold_shift_text(const Job& job, const HoldShift& shift, std::string_view unit) {

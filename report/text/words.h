@@ -5,6 +5,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "fit/run.h"
 
@@ -44,10 +45,10 @@ std::string guesses_text(const Job& job, const std::vector<GuessInfluence>& gues
 /// "simulation in windows of 2 s" or "free-running simulation".
 std::string simulation_name(const FitOptions& options, bool tracks);
 
-/// "157 N s/m at an observer gain of 100 1/s, which its error allows for".
-std::string gain_shift_text(const GainShift& shift, std::string_view unit);
-/// "17.6 N s/m with added_mass in place of velocity.gain, which its error allows for".
-std::string rival_shift_text(const RivalShift& shift, std::string_view unit);
+/// What another observer gain and another effect make of an estimate, where its budget has them:
+/// "157 N s/m at an observer gain of 100 1/s, which its error allows for",
+/// "17.6 N s/m with added_mass in place of velocity.gain, which leaves it open".
+std::vector<std::string> moves_text(const ParameterResult& p, std::string_view unit);
 /// "17.6 N s/m if each value of the input held until the next, which the recordings do not
 /// exclude".
 std::string hold_shift_text(const Job& job, const HoldShift& shift, std::string_view unit);

@@ -1,8 +1,10 @@
 #include "fit/errors/error_budget.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 namespace axisfit {
 namespace {
@@ -207,10 +209,11 @@ TEST(ErrorBudget, WhatNoiseLeavesOpenHasNoStandardError) {
     EXPECT_FALSE(found.has_interval());
     EXPECT_EQ(found.inflation, 7.0);
   }
-  // A factor of e, or an interval as wide as the bounds.
+  // A decade by twice the error to either side, or an interval as wide as the bounds.
+  const double decade = 0.25 * std::log(10.0);
   for (const double part : {0.2, 0.9, 1.1})
     for (const auto& [error, free] :
-         {std::pair(10.0 * part, kLogarithmic),
+         {std::pair(10.0 * decade * part, kLogarithmic),
           std::pair(990.0 * part / kOfEight, between(-980.0, 1000.0, false))}) {
       const ParameterUncertainty found = combined(sampling(error), 10.0, free);
       EXPECT_EQ(found.determined, part < 1.0);
@@ -220,13 +223,28 @@ TEST(ErrorBudget, WhatNoiseLeavesOpenHasNoStandardError) {
     }
 }
 
-TEST(ErrorBudget, MovesLeaveAnEstimateDetermined) {
-  ErrorBudget budget = sampling(1.0);
-  budget.gain = {100.0, 100.0};
-  const ParameterUncertainty found = combined(budget, 10.0, kLogarithmic);
-  EXPECT_TRUE(found.determined);
-  EXPECT_FALSE(found.weak);
-  EXPECT_DOUBLE_EQ(found.standard_error, std::hypot(1.0, 90.0));
+// Whatever part of the budget makes it, an error beyond the value's order of magnitude leaves
+// nothing to report.
+TEST(ErrorBudget, EveryPartCountsWhereAnEstimateIsOpen) {
+  const auto verdicts = [](double move) {
+    ErrorBudget gain = sampling(1.0), rival = sampling(1.0), scatter = sampling(1.0);
+    gain.gain = {100.0, 10.0 + move};
+    rival.rival = {"one", "other", 10.0 - move};
+    scatter.scatter = {1.0, move, 3.0};
+    std::vector<ParameterVerdict> found;
+    for (const ErrorBudget& budget : {gain, rival, scatter}) {
+      const ParameterUncertainty known = combined(budget, 10.0, kLogarithmic);
+      found.push_back(known.verdict());
+      EXPECT_EQ(known.has_interval(), known.determined);
+      EXPECT_NEAR(known.standard_error, known.determined ? std::hypot(1.0, move) : 0.0, 1e-12);
+      EXPECT_NEAR(known.inflation, 1.5 * std::hypot(1.0, move), 1e-9);
+    }
+    return found;
+  };
+  using enum ParameterVerdict;
+  EXPECT_THAT(verdicts(2.0), ::testing::Each(determined));
+  EXPECT_THAT(verdicts(4.0), ::testing::Each(weakly_determined));
+  EXPECT_THAT(verdicts(90.0), ::testing::Each(not_determined));
 }
 
 }  // namespace

@@ -10,7 +10,6 @@ namespace {
 ParameterResult estimate_of(const char* name, double value, double error) {
   ParameterResult p{id_of(name), value, {}};
   p.budget.sampling.standard_error = error;
-  p.uncertainty.determined = true;
   return p;
 }
 
@@ -72,6 +71,11 @@ TEST_F(RivalErrorsTest, AreComparedWithTheRestOfTheBudget) {
   parameters_[0].budget.rival = found()[0];
   EXPECT_TRUE(found()[0]);
   parameters_[0].budget.gain = {100.0, 10.6};
+  EXPECT_FALSE(found()[0]);
+}
+
+TEST_F(RivalErrorsTest, LeaveWhatIsOpenAnyway) {
+  parameters_[0].budget.sampling.standard_error = 1e4;
   EXPECT_FALSE(found()[0]);
 }
 

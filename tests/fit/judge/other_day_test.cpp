@@ -57,11 +57,22 @@ TEST(OtherDay, IsNoneForTheSameMachine) {
   EXPECT_TRUE(TwoDays(slide_with(5.0, 12.0)).days.empty());
 }
 
-// What offset and friction do not explain is another machine.
-TEST(OtherDay, IsNoneForAnotherMass) {
+TEST(OtherDay, IsAnotherPayloadToo) {
   Model<double> heavy = slide_with(5.0, 12.0);
-  heavy.axis.M *= 1.5;
-  EXPECT_TRUE(TwoDays(heavy).days.empty());
+  heavy.axis.M *= 1.3;
+  const TwoDays two(heavy);
+  ASSERT_EQ(two.days.size(), 1u);
+  const OtherDay& day = two.days[0];
+  ASSERT_EQ(day.differing, std::vector<std::size_t>{0});
+  EXPECT_NEAR(day.parameters[0].value, heavy.axis.M,
+              4.0 * day.parameters[0].uncertainty.standard_error);
+}
+
+// What none of these explains is another machine.
+TEST(OtherDay, IsNoneForASpring) {
+  Model<double> other = slide_with(5.0, 12.0);
+  add_effect<StrokeSpring>(other).k_s = 150.0;
+  EXPECT_TRUE(TwoDays(other).days.empty());
 }
 
 }  // namespace

@@ -153,6 +153,18 @@ TEST(ResidualTextTest, TheVerdictNamesTheWorstSignalAndItsCause) {
   EXPECT_EQ(verdict(diagnosis).find("As much is left by "), std::string::npos);
 }
 
+TEST(ResidualTextTest, TheVerdictLeavesOutRecordingsThatDiffer) {
+  RunResult result;
+  result.baseline = rubbing_file().job;
+  result.diagnosis = Diagnosis{};
+  result.diagnosis->tests = {test_of(0, 5.0), test_of(1, 12.34)};
+  EXPECT_NE(residual_verdict(result).find("12.3 %"), std::string::npos);
+  result.other_days = {{.recording = 1}};
+  EXPECT_NE(residual_verdict(result).find("5 %"), std::string::npos);
+  result.diagnosis->tests[0].explained = true;
+  EXPECT_EQ(residual_verdict(result).find("Unexplained"), std::string::npos);
+}
+
 TEST(ResidualTextTest, TheVerdictOnNoiseSaysOfWhichData) {
   const Job job = rubbing_file().job;
   Diagnosis diagnosis;

@@ -25,8 +25,9 @@ TEST(WordsTest, OfARecordingOfAnotherDay) {
   day.percent_before = 12.3;
   day.percent = 0.45;
   const std::string text = overall_verdict(result);
-  EXPECT_NE(text.find("later is as of another day: with constant_force.F_0 = 40.00 instead of "
-                      "5.00 N, found in its first half, the model leaves 0.45 % of the drive force "
+  EXPECT_NE(text.find("later differs from the fitted recordings: with constant_force.F_0 = "
+                      "40.00 instead of 5.00 N, found in its first half, the model leaves 0.45 % "
+                      "of the drive force "
                       "of the second half unexplained, and not 12 %. The grade counts it so."),
             std::string::npos)
       << text;
@@ -257,6 +258,9 @@ TEST(WordsTest, OfTheDecisionOnAnEffect) {
   EXPECT_EQ(decided(Reason::explains_best),
             "explains the residual best: 12.3 % lower validation error (7.5 standard deviations "
             "above chance)");
+  EXPECT_EQ(decided(Reason::explains_beside),
+            "explains the residual together with drive_lag, without which it is hidden: 12.3 % "
+            "lower validation error (7.5 standard deviations above chance)");
   EXPECT_EQ(decided(Reason::explains_less), "explains less than drive_lag");
   EXPECT_EQ(decided(Reason::replaced), "explains less than drive_lag, which replaced it");
   EXPECT_EQ(decided(Reason::explains_equally), "explains these recordings as well as drive_lag");
