@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <vector>
 
 #include "base/distributions.h"
 #include "base/linear_algebra.h"
 
 namespace axisfit {
 namespace {
+
+using Eigen::Index;
 
 double sum_of_squares(const ResidualSeries& series) {
   return mean_square(series.values) * static_cast<double>(series.values.size());
@@ -34,6 +36,14 @@ double variance_of_products(const std::vector<double>& change, const ResidualSer
   const std::vector<double> ones(products.size(), 1.0);
   return std::max(square * variance_along(change, after.values),
                   static_cast<double>(products.size()) * variance_along(ones, products));
+}
+
+/// Of free quantities, their places among the parameters.
+std::vector<Index> places_of(const std::vector<std::size_t>& quantities, const Job& job) {
+  std::vector<Index> places;
+  for (const std::size_t q : quantities)
+    places.push_back(std::ranges::find(job.free, q, &FreeParameter::quantity) - job.free.begin());
+  return places;
 }
 
 }  // namespace
@@ -124,47 +134,41 @@ Determination determination(const Job& job, const FitResult& result, const Hypot
                             const std::vector<ResidualSeries>& residuals,
                             const SearchOptions& options) {
   Determination d;
-  const std::size_t own = hypothesis.parameters();
-  const std::size_t first = job.free.size() - own;
-  const std::size_t strengths = hypothesis.strengths.size();
-  for (std::size_t i = first; i < job.free.size(); ++i) {
-    const ParameterResult& p = result.parameters[i];
+  const std::vector<Index> strengths = places_of(hypothesis.strengths, job);
+  const auto note = [&](Index place, bool is_shape) {
+    const ParameterResult& p = result.parameters[static_cast<std::size_t>(place)];
     if (p.uncertainty.at_bound && !d.at_bound) d.at_bound = p.id;
-    if (i >= first + strengths && hypothesis.kind != HypothesisKind::transmission &&
-        !p.uncertainty.determined && !d.undetermined)
+    if (is_shape && hypothesis.kind != HypothesisKind::transmission && !p.uncertainty.determined &&
+        !d.undetermined)
       d.undetermined = p.id;
-  }
-  d.required =
-      chi_square_upper_quantile(options.acceptance.strength_chance, static_cast<double>(strengths));
+  };
+  for (const Index i : strengths) note(i, false);
+  if (hypothesis.estimates_shapes())
+    for (const Index i : places_of(hypothesis.shapes, job)) note(i, true);
+  d.required = chi_square_upper_quantile(options.acceptance.strength_chance,
+                                         static_cast<double>(strengths.size()));
 
   const ParameterSpace space(job);
   const Eigen::VectorXd u = space.internal(values_of(result));
   const Linearization& at = *result.at_solution;
   if (!at.finite) return d;
-  Eigen::MatrixXd others(at.jacobian.rows(),
-                         static_cast<Eigen::Index>(job.free.size() - strengths));
-  Eigen::Index k = 0;
-  for (std::size_t i = 0; i < job.free.size(); ++i) {
-    if (i >= first && i < first + strengths) continue;
-    others.col(k) = at.jacobian.col(static_cast<Eigen::Index>(i));
+  std::vector<Index> rest;
+  for (Index i = 0; i < u.size(); ++i)
+    if (std::ranges::find(strengths, i) == strengths.end()) rest.push_back(i);
+  Eigen::MatrixXd others = at.jacobian(Eigen::all, rest);
+  for (Index k = 0; k < others.cols(); ++k)
     if (const double length = others.col(k).norm(); length > 0.0) others.col(k) /= length;
-    ++k;
-  }
-  const Eigen::VectorXd mark =
-      at.jacobian.middleCols(static_cast<Eigen::Index>(first),
-                             static_cast<Eigen::Index>(strengths)) *
-      u.segment(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(strengths));
   // A neutral value that is not zero, as a gain of one, is not part of the strength.
-  Eigen::VectorXd zero(static_cast<Eigen::Index>(strengths));
-  for (std::size_t i = 0; i < strengths; ++i)
+  Eigen::VectorXd way(static_cast<Index>(strengths.size()));
+  for (Index s = 0; s < way.size(); ++s) {
+    const Index place = strengths[static_cast<std::size_t>(s)];
+    const double neutral = hypothesis.neutral[static_cast<std::size_t>(s)];
     // To first order in the compliance, none is one more of the logarithm of the stiffness.
-    zero[static_cast<Eigen::Index>(i)] = std::isinf(hypothesis.neutral[i])
-                                             ? u[static_cast<Eigen::Index>(first + i)] + 1.0
-                                             : space.internal(first + i, hypothesis.neutral[i]);
-  const Eigen::VectorXd shown =
-      mark - at.jacobian.middleCols(static_cast<Eigen::Index>(first),
-                                    static_cast<Eigen::Index>(strengths)) *
-                 zero;
+    way[s] = std::isinf(neutral)
+                 ? -1.0
+                 : u[place] - space.internal(static_cast<std::size_t>(place), neutral);
+  }
+  const Eigen::VectorXd shown = at.jacobian(Eigen::all, strengths) * way;
   Eigen::VectorXd residual = shown;
   if (others.cols() > 0) residual -= others * LeastSquaresSolver(others).solve(shown);
   d.distinct = shown.squaredNorm() > 0.0 ? residual.squaredNorm() / shown.squaredNorm() : 0.0;

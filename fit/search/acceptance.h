@@ -49,7 +49,7 @@ double clear_difference(const SearchOptions& options = {});
 /// Whether this one is.
 bool is_clearly_worse(double bic_difference, const SearchOptions& options = {});
 
-/// What the fit says of a hypothesis's own parameters, the last of the job's.
+/// What the fit says of a hypothesis's own parameters, which are free in the job.
 struct Determination {
   /// Sum of squares that would be lost with strengths of zero, in units as above: the square of
   /// value over standard error where there is one strength.

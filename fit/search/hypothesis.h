@@ -65,6 +65,12 @@ struct HypothesisValues {
 /// Whether they are the same hypothesis, whatever the shape.
 inline bool is_same(const Hypothesis& a, const Hypothesis& b) { return a.strengths == b.strengths; }
 
+/// Whether they have the same shapes, too: an effect may be offered with a shape, and without it as
+/// the simpler law that it then is.
+inline bool is_same_form(const Hypothesis& a, const Hypothesis& b) {
+  return is_same(a, b) && a.shapes == b.shapes;
+}
+
 /// Whether one is a part of another's effect that does nothing without it.
 bool is_part_of(const Hypothesis& part, const Hypothesis& whole);
 

@@ -73,7 +73,14 @@ void ModelChain::fit_without(const std::vector<std::size_t>& places) {
 }
 
 FittedModel ModelChain::reduce(std::size_t place) const {
-  return accepted_.size() == 1 ? declared() : with_accepted(declared().job, place);
+  if (accepted_.size() == 1) return declared();
+  FittedModel reduced = with_accepted(declared().job, place);
+  // From where the present model is, all at once may be too far, or a derivative not exist.
+  if (!reduced.fit.is_usable() && declared().fit.is_usable()) {
+    set_initial_values(reduced.job, values_of(declared().fit));
+    reduced.fit = refit(reduced.job, *context_);
+  }
+  return reduced;
 }
 
 template <class Kept>

@@ -86,6 +86,11 @@ struct SearchOptions {
     std::size_t blocks = 10;  ///< of a recording, every second of which is held out
   } round;
 
+  /// Two effects that hide each other.
+  struct Pairs {
+    std::size_t refitted = 2;  ///< of all that gain together what neither does
+  } pairs;
+
   /// Whether other recordings, fitted by themselves, tell the same.
   struct Replication {
     double far = 4.0;              ///< standard errors from zero that leave no doubt

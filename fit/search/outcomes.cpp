@@ -11,6 +11,7 @@ Decision decision_on(Reason reason) {
     case Reason::explains_best:
     case Reason::replicates:
     case Reason::shown_by_blocks:
+    case Reason::explains_beside:
       return Decision::accepted;
     case Reason::explains_equally:
       return Decision::undecided;
@@ -49,6 +50,15 @@ void Outcomes::record(const Tried& tried, const Tried* best, int round) {
     *known = std::move(outcome);
   else
     list_.push_back(std::move(outcome));
+}
+
+void Outcomes::record_pair(const Tried& first, const Tried& second, int round) {
+  for (const auto& [tried, other] : {std::pair(&first, &second), std::pair(&second, &first)}) {
+    record(*tried, tried, round);
+    Outcome& outcome = *find(tried->hypothesis);
+    outcome.reason = Reason::explains_beside;
+    outcome.other = other->hypothesis.name;
+  }
 }
 
 Outcome* Outcomes::find(const Hypothesis& hypothesis) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fit/search/closed_form.h"
@@ -22,6 +23,7 @@ enum class Reason {
   explains_best,    ///< of all that were tried in its round
   replicates,       ///< the recordings to validate, fitted by themselves, tell the same of it
   shown_by_blocks,  ///< held out from the fitted recordings, since those to validate could not
+  explains_beside,  ///< the other: each hides the other while one is missing
   // Undecided
   explains_equally,  ///< as well as the other
   // Rejected
@@ -55,10 +57,15 @@ struct Outcome {
 /// Of every hypothesis its last outcome.
 class Outcomes {
  public:
+  Outcomes() = default;
+  explicit Outcomes(std::vector<Outcome> list) : list_(std::move(list)) {}
+
   const std::vector<Outcome>& list() const { return list_; }
 
   /// Enters what became of a hypothesis in a round that added `best`, or nothing (null).
   void record(const Tried& tried, const Tried* best, int round);
+  /// Enters two that passed together.
+  void record_pair(const Tried& first, const Tried& second, int round);
   /// Null for one that was never refitted.
   Outcome* find(const Hypothesis& hypothesis);
   /// Writes down that one is out, and why; does nothing where it was never refitted.

@@ -1,9 +1,13 @@
 #include "fit/search/pruning.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 #include <vector>
+
+#include "fit/errors/scatter.h"
+#include "fit/estimate/other_gains.h"
 
 namespace axisfit {
 namespace {
@@ -55,6 +59,22 @@ bool repeats_often(const FittedModel& model, const Hypothesis& hypothesis,
                    const SearchOptions& options) {
   return hypothesis.has_phase &&
          periods_passed(model, hypothesis) >= options.far_from_noise.periods;
+}
+
+/// How many standard errors a single strength is from neutral where its interval contains that;
+/// none where it does not, there are several strengths, or what is neutral is infinite.
+std::optional<double> errors_of_nothing(const Job& job,
+                                        const std::vector<ParameterResult>& parameters,
+                                        const Hypothesis& hypothesis) {
+  const double neutral = hypothesis.neutral.front();
+  if (hypothesis.strengths.size() != 1 || !std::isfinite(neutral)) return std::nullopt;
+  const auto free =
+      std::ranges::find(job.free, hypothesis.strengths.front(), &FreeParameter::quantity);
+  const ParameterResult& p = parameters[static_cast<std::size_t>(free - job.free.begin())];
+  const ParameterUncertainty known = combined(p.budget, p.value, *free);
+  if (!known.determined) return 0.0;
+  if (neutral < known.lower || neutral > known.upper) return std::nullopt;
+  return std::abs(p.value - neutral) / known.standard_error;
 }
 
 }  // namespace
@@ -157,6 +177,37 @@ void drop_other_periods(SearchState& state, const SearchContext& context) {
                         {.test = Rejection::Test::period, .found = found->parameters.back().value});
     state.take_out(a, state.chain.without(a));
   }
+}
+
+bool drop_undetermined(SearchState& state, const FittedModel& last, const SearchContext& context) {
+  if (!last.fit.is_usable() || state.accepted().empty()) return false;
+  const auto residuals = residual_series(last.job, last.fit);
+  FitResult whole = last.fit;  // with its whole error
+  // A complete model has the same estimates at every gain.
+  if (!state.explained()) add_gain_errors(last.job, whole, context.run.quiet());
+  add_scatter(last.job, whole.parameters, whole.observer_gain);
+  std::optional<std::size_t> worst;
+  Rejection rejection;
+  double least = INFINITY;  // standard errors from zero
+  for (std::size_t a = 0; a < state.accepted().size(); ++a) {
+    const Hypothesis& hypothesis = state.accepted()[a].hypothesis;
+    const Determination d =
+        determination(last.job, last.fit, hypothesis, residuals, context.options);
+    double errors = d.wald < d.required ? std::sqrt(d.wald) : INFINITY;
+    if (const auto known = errors_of_nothing(last.job, whole.parameters, hypothesis);
+        known && !is_alike_elsewhere(state, hypothesis, context))
+      errors = std::min(errors, *known);
+    if (d.at_bound) errors = 0.0;
+    if (errors >= least) continue;
+    least = errors;
+    worst = a;
+    rejection = d.at_bound ? Rejection{.test = Rejection::Test::bound, .parameter = d.at_bound}
+                           : Rejection{.test = Rejection::Test::strength, .found = errors};
+  }
+  if (!worst || !state.chain.without(*worst).fit.is_usable()) return false;
+  state.outcomes.fail(state.accepted()[*worst].hypothesis, rejection);
+  state.take_out(*worst, state.chain.without(*worst));
+  return true;
 }
 
 std::optional<Rejection> rejection_of_all(SearchState& state, const SearchOptions& options) {

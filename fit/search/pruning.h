@@ -30,6 +30,12 @@ void drop_unreplicated_of_a_poor_model(SearchState& state, const SearchContext& 
 /// by.
 void drop_other_periods(SearchState& state, const SearchContext& context);
 
+/// Takes out the effect whose strength the final fit, of which the search had a less accurate one,
+/// leaves open the most: a bound holds it, or its interval, with scatter and the moves at other
+/// gains, contains zero, and the recordings to validate do not tell the same. Whether there was
+/// one.
+bool drop_undetermined(SearchState& state, const FittedModel& last, const SearchContext& context);
+
 /// Why no effect is named of a model that takes too little of the error away.
 std::optional<Rejection> rejection_of_all(SearchState& state, const SearchOptions& options);
 

@@ -74,7 +74,7 @@ std::vector<Tried> try_rivals(const SearchState& state, std::size_t place, Count
   std::erase_if(rivals, [&](const Scored& rival) {
     return !counts(*rival.hypothesis) ||
            std::ranges::any_of(state.accepted(), [&](const Accepted& other) {
-             return is_same(other.hypothesis, *rival.hypothesis);
+             return is_same_form(other.hypothesis, *rival.hypothesis);
            });
   });
   std::vector<Tried> list(std::min(rivals.size(), context.options.rivals.refitted));

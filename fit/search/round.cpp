@@ -95,7 +95,7 @@ class RoundTrial {
     std::iota(places.begin(), places.end(), 0);
     std::erase_if(places, [&](std::size_t place) {
       const auto is_this = [&other = *entry(place).hypothesis](const Hypothesis& c) {
-        return is_same(c, other);
+        return is_same_form(c, other);
       };
       return is_hopeless(entry(place)) || std::ranges::any_of(options_.excluded, is_this);
     });

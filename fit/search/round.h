@@ -31,6 +31,7 @@ struct RoundMemory {
   std::map<std::vector<double>, std::optional<FitResult>> elsewhere{};
   /// The residuals of the model fitted to every second block, see with_held_out_blocks().
   std::optional<std::vector<ResidualSeries>> on_blocks{};
+  bool has_no_pair = false;  ///< no two hypotheses that hide each other (pairs.h) pass
 };
 
 struct RoundResult {

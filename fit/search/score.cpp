@@ -5,35 +5,22 @@
 #include <numeric>
 #include <optional>
 
-#include "base/linear_algebra.h"
 #include "base/parallel.h"
 #include "fit/criterion/gains.h"
-#include "fit/estimate/recipes.h"
 #include "fit/search/catalogue.h"
-#include "fit/search/effect_columns.h"
 #include "fit/search/periods.h"
+#include "fit/search/scorer.h"
 #include "fit/solve/residual.h"
 #include "sim/sampling.h"
 
 namespace axisfit {
 namespace {
 
-/// Orthonormal columns that span those of a matrix; a column of zeros where they span nothing, for
-/// of a matrix without columns Eigen takes no blocks.
-Eigen::MatrixXd basis_of(const Eigen::MatrixXd& a) {
-  const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(a.rows(), 1);
-  if (a.cols() == 0) return nothing;
-  Eigen::MatrixXd scaled = a;
-  for (Eigen::Index k = 0; k < a.cols(); ++k)
-    if (const double length = a.col(k).norm(); length > 0.0) scaled.col(k) /= length;
-  const LeastSquaresSolver solver(scaled, 1e-9);
-  return solver.rank() == 0 ? nothing : solver.basis();
-}
-
-SearchScales scales_of(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
-                       double gain, const Linearization& base, const Eigen::MatrixXd& basis,
+SearchScales scales_of(const Job& job, const ScorePoint& point, double gain,
                        const SearchContext& context) {
   SearchScales s{INFINITY, -INFINITY, 0.0, INFINITY, -INFINITY, INFINITY, -INFINITY};
+  const ParameterSpace space(job);
+  const Eigen::VectorXd& u = point.u;
   const Model<double> model = model_at(job, space, u.data(), 0);
   s.mass = Equations<double>(model).moving_mass();
   Eigen::Index row = 0;
@@ -55,8 +42,8 @@ SearchScales scales_of(const Job& job, const ParameterSpace& space, const Eigen:
     for (const bool of_drive : {false, true}) {
       auto& periods = of_drive ? s.drive_periods : s.periods;
       for (const double period :
-           periods_in(recording, simulation, observer, base.residuals.segment(row, rows),
-                      basis.middleRows(row, rows), context.options.scoring.periods, of_drive,
+           periods_in(recording, simulation, observer, point.base.residuals.segment(row, rows),
+                      point.basis.middleRows(row, rows), context.options.scoring.periods, of_drive,
                       context.run.stop))
         periods.push_back(period);
     }
@@ -66,106 +53,16 @@ SearchScales scales_of(const Job& job, const ParameterSpace& space, const Eigen:
   return s;
 }
 
-/// What one step of least squares makes of a hypothesis's columns.
-class Scorer {
- public:
-  Scorer(const Job& job, const ParameterSpace& space, const Eigen::VectorXd& u,
-         const Linearization& base, const Eigen::MatrixXd& basis, const Eigen::VectorXd& residual,
-         const SearchOptions::Scoring& options)
-      : options_(options),
-        job_(job),
-        space_(space),
-        u_(u),
-        base_(base),
-        basis_(basis),
-        residual_(residual),
-        solver_(base.jacobian) {}
-
-  /// Enters what the setting promises where that is more than the score has.
-  void consider(const EffectSetting& setting, const Eigen::MatrixXd& rows, Scored& score) const {
-    const Hypothesis& hypothesis = *setting.hypothesis;
-    if (rows.size() == 0) return;  // its simulation does not finish
-    const Eigen::MatrixXd derivatives = with_priors(rows);
-    const Eigen::MatrixXd columns = projected(derivatives);
-    if (columns.size() == 0) return;
-    const Eigen::VectorXd step = LeastSquaresSolver(columns).solve(-residual_);
-    if (!step.allFinite()) return;
-    const std::vector<double>& strengths = setting.own.strengths;
-    HypothesisValues reached{{}, setting.own.shapes};
-    for (std::size_t k = 0; k < strengths.size(); ++k) {
-      const Quantity& q = job_.entry(hypothesis.strengths[k]).quantity;
-      const double moved = moved_by(hypothesis, strengths[k], step[static_cast<Eigen::Index>(k)]);
-      reached.strengths.push_back(moved);
-      if (strengths.size() == 1 && (moved < q.lower || moved > q.upper)) return;
-    }
-    Eigen::VectorXd change = columns * step;
-    const double gain = residual_.squaredNorm() - (residual_ + change).squaredNorm();
-    if (!(gain > score.gain)) return;
-    score.gain = gain;
-    score.change = std::move(change);
-    score.own = std::move(reached);
-    // The free parameters adapt to the effect, no further than a linear step can be trusted.
-    Eigen::VectorXd way = solver_.solve(-(base_.residuals + derivatives * step));
-    const double most = options_.largest_log_step;
-    for (std::size_t i = 0; i < space_.size(); ++i) {
-      double& by = way[static_cast<Eigen::Index>(i)];
-      if (space_[i].scale != Scale::linear) by = std::clamp(by, -most, most);
-    }
-    score.others = space_.values(u_ + way);
-  }
-
-  /// The step of the shapes, from a score and the derivatives with respect to strengths and shapes
-  /// there; none where they say nothing.
-  std::optional<Eigen::VectorXd> step_of_shapes(const EffectSetting& setting,
-                                                const Eigen::MatrixXd& rows) const {
-    if (rows.size() == 0) return std::nullopt;
-    const Eigen::MatrixXd columns = projected(with_priors(rows));
-    if (columns.size() == 0) return std::nullopt;
-    const auto strengths = static_cast<Eigen::Index>(setting.own.strengths.size());
-    Eigen::VectorXd way(strengths);
-    for (Eigen::Index k = 0; k < strengths; ++k)
-      way[k] = setting.own.strengths[static_cast<std::size_t>(k)] -
-               setting.hypothesis->neutral[static_cast<std::size_t>(k)];
-    const Eigen::VectorXd there = residual_ + columns.leftCols(strengths) * way;
-    const Eigen::VectorXd step = LeastSquaresSolver(columns).solve(-there);
-    if (!step.allFinite()) return std::nullopt;
-    return step.tail(step.size() - strengths);
-  }
-
- private:
-  static double moved_by(const Hypothesis& hypothesis, double value, double step) {
-    if (std::isinf(value)) return 1.0 / step;
-    const QuantityEntry& entry = quantity_list()[hypothesis.strengths.front()];
-    const bool is_logarithmic =
-        hypothesis.kind == HypothesisKind::constant && scale_of(entry, value) == Scale::logarithmic;
-    return is_logarithmic ? value * std::exp(step) : value + step;
-  }
-
-  /// Candidates have no part in what is known of the free parameters.
-  Eigen::MatrixXd with_priors(const Eigen::MatrixXd& rows) const {
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(residual_.size(), rows.cols());
-    all.topRows(rows.rows()) = rows;
-    return all;
-  }
-
-  /// Without what the free parameters do; empty where nothing is left of a column but rounding.
-  Eigen::MatrixXd projected(const Eigen::MatrixXd& derivatives) const {
-    Eigen::MatrixXd columns = derivatives - basis_ * (basis_.transpose() * derivatives);
-    for (Eigen::Index k = 0; k < columns.cols(); ++k)
-      if (!(columns.col(k).norm() >= options_.least_own_part * derivatives.col(k).norm()))
-        return {};
-    return columns;
-  }
-
-  const SearchOptions::Scoring& options_;
-  const Job& job_;
-  const ParameterSpace& space_;
-  const Eigen::VectorXd& u_;
-  const Linearization& base_;
-  const Eigen::MatrixXd& basis_;
-  const Eigen::VectorXd& residual_;
-  const LeastSquaresSolver solver_;
-};
+/// Enters what the setting promises where that is more than the score has.
+void consider(const Scorer& scorer, const EffectSetting& setting,
+              const Eigen::MatrixXd& derivatives, Scored& score) {
+  std::optional<ScoreStep> step = scorer.step({&setting, 1}, {&derivatives, 1}, score.gain);
+  if (!step) return;
+  score.gain = step->gain;
+  score.change = std::move(step->change);
+  score.own = std::move(step->own.front());
+  score.others = std::move(step->others);
+}
 
 /// The mean derivatives up to each of a hypothesis' probes, from the residuals without it.
 std::vector<std::pair<double, Eigen::MatrixXd>> probed(const Job& fixed,
@@ -254,23 +151,8 @@ void refine_shapes(const Job& fixed, const EffectColumns& columns, const Scorer&
       of_next.push_back(chosen[c]);
     }
     const std::vector<Eigen::MatrixXd> there = columns.derivatives(next);
-    for (std::size_t c = 0; c < next.size(); ++c) scorer.consider(next[c], there[c], *of_next[c]);
+    for (std::size_t c = 0; c < next.size(); ++c) consider(scorer, next[c], there[c], *of_next[c]);
   }
-}
-
-/// The fit at an observer gain that a score test starts from. Not usable: nothing finite.
-SolveResult tracking_fit(const Job& job, const ParameterSpace& space,
-                         const std::vector<double>& values, double gain,
-                         const SearchContext& context) {
-  SolveOptions options;
-  options.max_iterations = context.options.scoring.tracking_iterations;
-  options.function_tolerance = context.options.scoring.tracking_tolerance;
-  return solve(job, space, space.internal(values), gain, options, context.run);
-}
-
-Job with_coarse_steps(Job job) {
-  job.options = recipe::coarse(job.options);
-  return job;
 }
 
 /// Looks at those of the scores that have probes, each with simulations of its own.
@@ -283,7 +165,7 @@ void probe(const std::vector<Scored*>& scores, const Job& fixed, double gain,
     const EffectSetting absent{&hypothesis, {hypothesis.neutral, score.own.shapes}};
     for (const auto& [strength, derivative] :
          probed(fixed, hypothesis, score.own.shapes, gain, without))
-      scorer.consider(absent, derivative, score);
+      consider(scorer, absent, derivative, score);
   });
 }
 
@@ -304,27 +186,20 @@ ScoreTest scored(const Job& job, const std::vector<double>& values, double gain,
                  const SearchContext& context) {
   ScoreTest test;
   const SearchOptions::Scoring& options = context.options.scoring;
-  const ParameterSpace space(job);
-  const SolveResult tracking = tracking_fit(job, space, values, gain, context);
-  if (!tracking.usable) return test;
-  const std::vector<double> tracking_values = space.values(tracking.u);
-  const Linearization base = linearize(job, space, tracking, gain);
-  if (!base.finite) return test;
-  const Eigen::MatrixXd basis = basis_of(base.jacobian);
-  test.residuals = base.residuals - basis * (basis.transpose() * base.residuals);
-  test.series = base.series;
+  const std::optional<ScorePoint> point = score_point(job, values, gain, context);
+  if (!point) return test;
+  test.residuals = point->residuals;
+  test.series = point->base.series;
   test.sum_of_squares = test.residuals.squaredNorm();
-  test.mean_square = test.sum_of_squares / static_cast<double>(test.residuals.size());
-  test.usable = std::isfinite(test.sum_of_squares);  // squares may overflow
-  if (!test.usable) return test;
+  test.mean_square = point->mean_square();
+  test.usable = true;
   std::vector<Scored>& scores = test.scores;
   scores =
-      settings_of(catalogue(job, scales_of(job, space, tracking.u, gain, base, basis, context)),
-                  curves, tracking_values);
+      settings_of(catalogue(job, scales_of(job, *point, gain, context)), curves, point->values);
 
-  const Job fixed = fixed_at(job, tracking_values);
+  const Job fixed = fixed_at(job, point->values);
   const EffectColumns columns(fixed, gain, context.run);
-  const Scorer scorer(fixed, space, tracking.u, base, basis, test.residuals, options);
+  const Scorer scorer(job, *point, options);
   std::vector<EffectSetting> settings;
   std::vector<Scored*> of_setting, first, rest;
   for (std::size_t i = 0, setting = 0; i < scores.size(); ++i, ++setting) {
@@ -339,8 +214,8 @@ ScoreTest scored(const Job& job, const std::vector<double>& values, double gain,
   }
   const std::vector<Eigen::MatrixXd> derivatives = columns.derivatives(settings);
   for (std::size_t i = 0; i < settings.size(); ++i)
-    scorer.consider(settings[i], derivatives[i], *of_setting[i]);
-  probe(first, fixed, gain, base.residuals, scorer, context.run);
+    consider(scorer, settings[i], derivatives[i], *of_setting[i]);
+  probe(first, fixed, gain, point->base.residuals, scorer, context.run);
   double best = 0.0;
   for (const Scored& score : scores) best = std::max(best, score.gain);
   std::erase_if(rest, [&](const Scored* other) {
@@ -349,7 +224,7 @@ ScoreTest scored(const Job& job, const std::vector<double>& values, double gain,
              tried->gain >= options.worth_other_settings * best;
     });
   });
-  probe(rest, fixed, gain, base.residuals, scorer, context.run);
+  probe(rest, fixed, gain, point->base.residuals, scorer, context.run);
   refine_shapes(fixed, columns, scorer, options, scores);
   for (Scored& score : scores) score.fraction = score.gain / test.sum_of_squares;
   std::ranges::stable_sort(scores, std::greater{}, &Scored::gain);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "base/parallel.h"
@@ -110,6 +111,29 @@ FittedModel final_model(const SearchState& state, const FitResult& first, const 
   return last;
 }
 
+/// Those of effects that were taken out tell nothing.
+void keep_substitutions_of(const SearchState& state, EffectSelection& selection) {
+  std::erase_if(selection.substitutions, [&](const Substitution& s) {
+    return std::ranges::none_of(state.accepted(),
+                                [&](const Accepted& a) { return a.hypothesis.name == s.chosen; });
+  });
+}
+
+/// The final model, without the effects that it leaves open.
+FittedModel determined_model(SearchState& state, const FitResult& first, const Rounds& rounds,
+                             EffectSelection& selection) {
+  FittedModel last = final_model(state, first, rounds, selection.interrupted);
+  try {
+    while (!selection.interrupted && drop_undetermined(state, last, rounds.context)) {
+      last = final_model(state, first, rounds, selection.interrupted);
+      keep_substitutions_of(state, selection);
+    }
+  } catch (const Interrupted&) {
+    selection.interrupted = true;
+  }
+  return last;
+}
+
 /// For accepted curves, where they pass the test of the curve.
 void propose_closed_forms(SearchState& state, const FittedModel& last,
                           const SearchContext& context) {
@@ -139,10 +163,10 @@ EffectSelection search_effects(const Job& job, const FitResult& first, Rounds& r
       review_stopped(state, rounds, selection);
     }
   }
+  selection.result = determined_model(state, first, rounds, selection);
   selection.verdict.small = small_effects(state, rounds);
   const bool is_noise = state.current().fit.is_usable() && state.explained();
   selection.explained = is_noise && selection.verdict.small.empty();
-  selection.result = final_model(state, first, rounds, selection.interrupted);
   try {
     propose_closed_forms(state, selection.result, rounds.context);
     selection.models = state.chain.models();
@@ -156,6 +180,35 @@ EffectSelection search_effects(const Job& job, const FitResult& first, Rounds& r
   }
   selection.effects = state.outcomes.list();
   return selection;
+}
+
+/// Takes out what the fits by another criterion than that of the search leave open. Throws
+/// Interrupted.
+void drop_what_is_open(EffectSelection& selection, const SearchContext& context) {
+  SearchState state{ModelChain(selection.models.front(), context), Outcomes(selection.effects)};
+  for (const FittedModel& model : std::span(selection.models).subspan(1)) {
+    const auto outcome = std::ranges::find_if(selection.effects, [&](const Outcome& o) {
+      return o.in_model && o.hypothesis.name == model.added;
+    });
+    if (outcome == selection.effects.end()) return;
+    state.chain.append({outcome->hypothesis}, model.job, model.fit);
+  }
+  const std::size_t all = state.accepted().size();
+  FittedModel& last = selection.result;
+  while (drop_undetermined(state, last, context)) {
+    last = state.current();
+    last.fit = final_fit(last.job, values_of(last.fit), context.run);
+  }
+  if (state.accepted().size() == all) return;
+  selection.models = state.chain.models();
+  selection.models.back().fit = last.fit;
+  selection.effects = state.outcomes.list();
+  keep_substitutions_of(state, selection);
+  SelectionVerdict& verdict = selection.verdict;
+  verdict.accepted.clear();
+  verdict.undecided.clear();
+  verdict.corrections.clear();
+  enter_effects(state, last, verdict);
 }
 
 /// What was found by another criterion, with the fits that this one asks for, which was or was not
@@ -186,6 +239,7 @@ EffectSelection with_criterion(EffectSelection selection, const Criterion& crite
       model.fit = refit_from(model.job, values_of(model.fit), context);
     }
   }
+  if (models.size() > 1) drop_what_is_open(selection, context);
   SelectionVerdict& verdict = selection.verdict;
   if (models.size() > 1)
     verdict.validate_percent = improvement(models.front(), models.back()).validate_percent;

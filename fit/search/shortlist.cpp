@@ -63,8 +63,8 @@ std::vector<Scored> best_of(ScoreTest& test, std::size_t length,
     // A clock that is a little off is heard before anything else is blamed.
     const bool is_heard = hypothesis.kind == clock && score.gain >= options.worth * best;
     if ((is_many || is_little) && !is_heard) continue;
-    if (std::ranges::any_of(taken,
-                            [&](const Scored& s) { return is_same(*s.hypothesis, hypothesis); }))
+    if (std::ranges::any_of(
+            taken, [&](const Scored& s) { return is_same_form(*s.hypothesis, hypothesis); }))
       continue;
     constants += hypothesis.kind == constant ? 1 : 0;
     score.scaled_gain = score.gain / unit;
@@ -83,8 +83,8 @@ void note(std::vector<Shortlist::Promise>& promises, const Shortlist::Promise& p
   });
   if (known == promises.end())
     promises.push_back(promise);
-  else
-    known->gain = std::max(known->gain, promise.gain);
+  else if (promise.gain > known->gain)
+    *known = promise;
 }
 
 }  // namespace
@@ -104,13 +104,15 @@ Shortlist shortlist(const Job& job, const std::vector<double>& values,
     ScoreTest test = score_test(job, values, gains[i], curves, context);
     of_gain[i].tried = test.scores.size();
     for (const Scored& score : test.scores)
-      note(of_gain[i].promises, {score.hypothesis, score.gain / std::max(1.0, test.mean_square)});
+      note(of_gain[i].promises,
+           {score.hypothesis, score.own.shapes, score.gain / std::max(1.0, test.mean_square)});
     // Beside simulations that track, the free run is heard for its best, and what nearly equals it.
     const bool is_beside = gains[i] == 0.0 && gains.size() > 1;
     of_gain[i].entries =
         best_of(test, is_beside ? 1 : static_cast<std::size_t>(options.length), options);
   });
   Shortlist result;
+  result.observer_gains = gains;
   for (Shortlist& list : of_gain) {
     result.tried = std::max(result.tried, list.tried);
     for (const Shortlist::Promise& promise : list.promises) note(result.promises, promise);

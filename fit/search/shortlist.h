@@ -14,9 +14,12 @@ struct Shortlist {
   std::vector<Scored> entries;
   std::size_t tried = 1;  ///< hypotheses and settings among which they were chosen
 
+  std::vector<double> observer_gains{};  ///< 1/s, at which they were scored
+
   /// What the score promises of a hypothesis, at its best setting and gain.
   struct Promise {
     std::shared_ptr<const Hypothesis> hypothesis;
+    std::vector<double> shapes{};
     double gain = 0.0;  ///< see Scored::scaled_gain
   };
   std::vector<Promise> promises;  ///< of all that were scored, each once

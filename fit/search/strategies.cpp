@@ -9,6 +9,7 @@
 
 #include "fit/criterion/gains.h"
 #include "fit/search/exchange_score.h"
+#include "fit/search/pairs.h"
 #include "fit/search/pruning.h"
 #include "fit/search/rivals.h"
 
@@ -50,7 +51,7 @@ Accepted accepted_from(const RoundResult& round, const Tried& best, const Search
         {std::make_shared<const Hypothesis>(other.hypothesis), values_in(other)});
   }
   for (const Scored& second : round.seconds)
-    if (!is_same(*second.hypothesis, best.hypothesis) &&
+    if (!is_same_form(*second.hypothesis, best.hypothesis) &&
         second.hypothesis->kind != HypothesisKind::transmission)
       accepted.rivals.push_back({second.hypothesis, {{}, second.own.shapes}});
   return accepted;
@@ -89,6 +90,34 @@ bool add_best(SearchState& state, bool curves, Rounds& rounds) {
   return add_best(state, curves, rounds.context.options.acceptance.chance, rounds);
 }
 
+/// Adds two hypotheses that hide each other; whether there were any.
+bool add_pair(SearchState& state, Rounds& rounds) {
+  const SearchOptions& options = rounds.context.options;
+  if (rounds.of_names.has_no_pair || state.explained() ||
+      state.accepted().size() + 2 > static_cast<std::size_t>(options.max_effects))
+    return false;
+  state.report_progress(rounds.context.run, "do two effects hide each other?", Work::trials);
+  const Shortlist& list = *rounds.of_names.list;
+  std::vector<Shortlist::Promise> hypotheses = list.promises;
+  std::erase_if(hypotheses, [&](const Shortlist::Promise& p) {
+    return std::ranges::any_of(state.degenerate, [&](const Hypothesis& other) {
+      return is_same_form(*p.hypothesis, other);
+    });
+  });
+  for (const ScoredPair& pair :
+       score_pairs(state.current(), list.observer_gains, hypotheses, rounds.context)) {
+    std::optional<TriedPair> found = try_pair(state.current(), pair, rounds.context);
+    if (!found) continue;
+    ++rounds.count;
+    state.outcomes.record_pair(found->first, found->second, rounds.count);
+    for (Tried* one : {&found->first, &found->second})
+      state.chain.append({one->hypothesis}, std::move(one->job), std::move(one->fit));
+    return true;
+  }
+  rounds.of_names.has_no_pair = true;
+  return false;
+}
+
 /// Exchanges the first accepted effect that has a clearly better rival; whether there was one.
 bool exchange(SearchState& state, const Rounds& rounds) {
   std::optional<TriedRival> found = better_rival(state, *rounds.of_names.list, rounds.context);
@@ -110,9 +139,11 @@ void add_named(SearchState& state, Rounds& rounds) {
   do {
     while (has_room(state, rounds)) {
       if (add_best(state, false, rounds)) continue;
-      if (!may_exchange || state.accepted().empty()) break;
-      may_exchange = false;
-      if (!exchange(state, rounds)) break;
+      if (may_exchange && !state.accepted().empty()) {
+        may_exchange = false;
+        if (exchange(state, rounds)) continue;
+      }
+      if (!add_pair(state, rounds)) break;
     }
   } while (drop_degenerate(state, rounds.context.options));
 }

@@ -101,13 +101,13 @@ TEST(Catalogue, HasOneConstantForceOfAForceSource) {
 TEST(Catalogue, EntriesAreComplete) {
   const auto list = catalogue(job_with({Signal::velocity, Signal::position}), scales());
   const auto& quantities = quantity_list();
-  std::set<std::vector<std::size_t>> seen;
+  std::set<std::pair<std::vector<std::size_t>, std::vector<std::size_t>>> seen;
   for (const Hypothesis& c : list) {
     SCOPED_TRACE(c.name);
     EXPECT_FALSE(c.meaning.empty());
     EXPECT_FALSE(c.acts_on.empty());
     ASSERT_FALSE(c.strengths.empty());
-    EXPECT_TRUE(seen.insert(c.strengths).second) << "twice in the catalogue";
+    EXPECT_TRUE(seen.insert({c.strengths, c.shapes}).second) << "twice in the catalogue";
     ASSERT_FALSE(c.settings.empty());
     for (const auto& setting : c.settings) {
       ASSERT_EQ(setting.size(), c.shapes.size());
@@ -256,6 +256,14 @@ void expect_exponent(double neutral, const Effect<double>& effect, double declar
 TEST(Catalogue, OffersAnExponentOnlyBesideItsEffect) {
   expect_exponent<StribeckFriction>(1.0, {12.0, 0.05}, 2.0);
   expect_exponent<QuadraticDrag>(2.0, {60.0}, 1.5);
+}
+
+TEST(Catalogue, OffersATorqueThatFadesStraightAndWithATimeConstant) {
+  const auto list = catalogue(job_with({Signal::velocity}), scales());
+  std::vector<std::size_t> parameters;
+  for (const Hypothesis& h : list)
+    if (h.name == "torque_fade") parameters.push_back(h.parameters());
+  EXPECT_EQ(parameters, (std::vector<std::size_t>{1, 2}));
 }
 
 // "The model lacked position_friction, position_friction" tells nobody what was added.

@@ -25,7 +25,8 @@ Tried tried(const Hypothesis& h, double value) {
 const Hypothesis kFriction = hypothesis("friction", 1), kSpring = hypothesis("spring", 2);
 
 TEST(DecisionOn, IsThatOfTheReason) {
-  for (const Reason r : {Reason::explains_best, Reason::replicates, Reason::shown_by_blocks})
+  for (const Reason r : {Reason::explains_best, Reason::replicates, Reason::shown_by_blocks,
+                         Reason::explains_beside})
     EXPECT_EQ(decision_on(r), Decision::accepted);
   EXPECT_EQ(decision_on(Reason::explains_equally), Decision::undecided);
   for (const Reason r : {Reason::failed_test, Reason::explains_less, Reason::replaced,

@@ -46,6 +46,27 @@ TEST(EliminateBackward, DropsWhatTheModelDoesNotNeed) {
   EXPECT_EQ(state.current().job.free.size(), 3u);
 }
 
+// Neither the data nor what was accepted before leave a friction anything to do.
+TEST(DropUndetermined, TakesOutWhatTheFinalFitLeavesOpen) {
+  SearchState state =
+      accepted_in(hidden_effect_named("coulomb_friction").job(),
+                  {{"coulomb_friction", {{4.0}, {}}}, {"constant_force", {{1.0}, {}}}});
+  EXPECT_TRUE(drop_undetermined(state, state.current(), kContext));
+  EXPECT_EQ(names_in(state), Names{"coulomb_friction"});
+  EXPECT_EQ(state.outcomes.list()[1].rejection->test, Rejection::Test::strength);
+  EXPECT_FALSE(drop_undetermined(state, state.current(), kContext));
+  EXPECT_EQ(names_in(state), Names{"coulomb_friction"});
+}
+
+TEST(DropUndetermined, TakesOutWhatABoundHolds) {
+  SearchState state = accepted_in(hidden_effect_named("coulomb_friction").job(),
+                                  {{"dahl_friction", {{5.0}, {1e-5}}}});
+  ASSERT_TRUE(state.current().fit.parameters.back().uncertainty.at_bound);
+  EXPECT_TRUE(drop_undetermined(state, state.current(), kContext));
+  EXPECT_TRUE(state.accepted().empty());
+  EXPECT_EQ(state.outcomes.list()[0].rejection->test, Rejection::Test::bound);
+}
+
 // Dahl friction without a length is Coulomb friction, which is in the catalogue.
 TEST(DropDegenerate, TakesOutWhatHasBecomeASimplerEffect) {
   SearchState state = accepted_in(hidden_effect_named("coulomb_friction").job(),

@@ -1,0 +1,46 @@
+// Two hypotheses that hide each other: each alone explains next to nothing, both together much, as
+// a neighbour's inertia and a wrist that swings at the same time, or a weight and a friction on an
+// axis that hardly moves.
+//
+// With Q_a and Q_b orthonormal and spanning what each does that the free parameters cannot do, and
+// r the residual as in score.h, the joint score is
+//
+//   gain = g' [I  Q_a'Q_b; Q_b'Q_a  I]^-1 g,   g = [Q_a'r; Q_b'r],
+//
+// so that one Gram matrix gives those of all pairs.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "fit/search/model_chain.h"
+#include "fit/search/shortlist.h"
+
+namespace axisfit {
+
+struct ScoredPair {
+  Scored first, second;  ///< where a refit with both starts; `others` are those of the job alone
+  double gain = 0.0;     ///< of both, in units as Scored::scaled_gain
+};
+
+/// Those of these hypotheses that gain together what neither does: more, beyond the sum of what
+/// each gains alone, than chance makes of the best of all pairs. The best first, no more than
+/// SearchOptions::Pairs::refitted.
+std::vector<ScoredPair> score_pairs(const FittedModel& model,
+                                    std::span<const double> observer_gains,
+                                    std::span<const Shortlist::Promise> hypotheses,
+                                    const SearchContext& context);
+
+/// A pair that passed: refits with the first alone, and with both. The gain of each is that beside
+/// the other.
+struct TriedPair {
+  Tried first, second;
+};
+
+/// Refits with each and with both. None where the pair is no better than chance, or either is not
+/// needed beside the other.
+std::optional<TriedPair> try_pair(const FittedModel& model, const ScoredPair& pair,
+                                  const SearchContext& context);
+
+}  // namespace axisfit
