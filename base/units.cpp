@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -26,6 +27,10 @@ struct Free {
 using System = std::unique_ptr<ut_system, Free<ut_free_system>>;
 using Unit = std::unique_ptr<ut_unit, Free<ut_free>>;
 using Converter = std::unique_ptr<cv_converter, Free<cv_free>>;
+
+/// Throws std::bad_alloc where there is no memory of so many bytes, which the library then asks
+/// for: it does not look whether it was given any.
+void expect_memory(std::size_t bytes) { ::operator delete(::operator new(bytes)); }
 
 using Replacement = std::pair<std::string_view, std::string_view>;
 
@@ -145,6 +150,7 @@ class Database {
   Unit parse(std::string_view text) const {
     const std::string plain = normalized(text);
     if (!is_product_of_powers(plain)) return nullptr;
+    expect_memory(100'000);  // a parse takes less than a kilobyte, and what follows little more
     return Unit(ut_parse(system_.get(), plain.c_str(), UT_UTF8));
   }
 
@@ -169,6 +175,7 @@ class Database {
  private:
   Database() {
     ut_set_error_message_handler(ut_ignore);  // otherwise it writes to stderr
+    expect_memory(1'000'000);                 // reading takes 0.42 MB at most
     system_.reset(ut_read_xml(nullptr));
     if (system_ == nullptr) {
       throw std::runtime_error(
