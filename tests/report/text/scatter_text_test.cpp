@@ -49,6 +49,14 @@ TEST(ScatterTextTest, TellsOfEveryParameterAndOfAStep) {
             "s/m (run-2): 8 standard errors.");
 }
 
+TEST(ScatterTextTest, WhatTheScatterLeavesOpenHasNoErrorForTheMachine) {
+  RunResult run_result = scattered();
+  run_result.first.parameters[1].uncertainty = {};
+  const std::string text = on_one_line(scatter_text(run_result));
+  EXPECT_NE(text.find("B_a 0.25 1.5 0.5 .. 30 - N s/m"), std::string::npos) << text;
+  EXPECT_EQ(text.find("include the scatter"), std::string::npos) << text;
+}
+
 TEST(ScatterTextTest, NoStepIsWithinFourStandardErrorsOrOfWhatIsOpen) {
   RunResult run_result = scattered();
   std::vector<EstimateOfGroup>& groups = run_result.scatter->parameters[1].groups;

@@ -267,6 +267,22 @@ TEST(WordsTest, OfTheDecisionOnAnEffect) {
   EXPECT_EQ(decided(Reason::not_needed), "no longer needed with the effects accepted after it");
 }
 
+TEST(WordsTest, OfMovesSayWhetherTheErrorAllowsForThem) {
+  ParameterResult friction;
+  EXPECT_TRUE(moves_text(friction, "N s/m").empty());
+  friction.budget.gain = {100.0, 157.25};
+  friction.budget.rival = {"velocity.gain", "added_mass", 17.6};
+  friction.uncertainty.determined = true;
+  EXPECT_EQ(
+      moves_text(friction, "N s/m"),
+      (std::vector<std::string>{
+          "157.2 N s/m at an observer gain of 100 1/s, which its error allows for",
+          "17.6 N s/m with added_mass in place of velocity.gain, which its error allows for"}));
+  friction.uncertainty.determined = false;
+  EXPECT_EQ(moves_text(friction, "N s/m").front(),
+            "157.2 N s/m at an observer gain of 100 1/s, which leaves it open");
+}
+
 TEST(WordsTest, OfAWeakDirection) {
   Job job;
   job.free = {free_parameter("initial.y0", 0.0), free_parameter("M", 20.0),
