@@ -106,7 +106,9 @@ void list_parameters(JobDraft& draft) {
     add(name);
   }
   for (const QuantityEntry& entry : quantity_list()) {
-    if (!entry.effect || !is_used(entry, draft.structure) || entry.quantity.shape) continue;
+    // What the axis file leaves to its default is for the search.
+    const bool has_default = !std::isnan(entry.quantity.default_value);
+    if (!entry.effect || !is_used(entry, draft.structure) || has_default) continue;
     const Quantity& q = draft.quantity(entry.name).quantity;
     const bool force = draft.starter && entry.quantity.unit == "N";
     const double most =

@@ -100,7 +100,8 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
   StarterAxis starter;
   starter.structure = seen.structure;
   starter.gain_guessed = gain_guessed;
-  for (const char* effect : {"coulomb_friction", "constant_force"})
+  const bool builds_up = look.presliding > 0.0;
+  for (const char* effect : {builds_up ? "dahl_friction" : "coulomb_friction", "constant_force"})
     starter.structure.effects.set(*effect_named(effect));
   const auto quantity = [&](const char* name) -> const Quantity& {
     return quantity_list(vocabulary)[quantity_index(name)].quantity;
@@ -124,21 +125,31 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
   // The scale of the fit goes by the initial value, which must not be next to nothing.
   const double viscous =
       std::max(look.viscous.value * gain, 0.01 * most / std::max(seen.largest_speed, 1e-3));
+  const double dry = std::max(look.coulomb.value * gain, 0.01 * most);
+  const std::string friction =
+      builds_up ? fmt::format("dahl_friction: {{{}, {}}}   # it builds up over {} after a reversal",
+                              force("dahl_friction.F_d", dry, 0.0),
+                              initial("dahl_friction.l_d", look.presliding),
+                              quantity("dahl_friction.l_d").symbol)
+                : fmt::format("coulomb_friction: {{{}}}", force("coulomb_friction.F_c", dry, 0.0));
   starter.text = fmt::format(
-      "{}# One {} with viscous and Coulomb friction, driven by a {}: the simplest model\n# of an "
-      "axis. fit-params reports what it lacks, and --close-loop adds it. All\n# keys: "
-      "docs/axis-file.md.\nname: starter axis\n{}drive: {}   # driven by {}\ntransmission: rigid   "
+      "{}{}name: starter axis\n{}drive: {}   # driven by {}\ntransmission: rigid   "
       "# motor and {} move as one; backlash needs a motor\n{}parameters:\n{}  K_f: {}\n  # {}\n  "
-      "{}\n  {}\neffects:   # initial values, as above\n  coulomb_friction: {{{}}}\n  {}: {{{}}}   "
+      "{}\n  {}\neffects:   # initial values, as above\n  {}\n  {}: {{{}}}   "
       "# gravity, or an offset of the drive\n",
-      origin(recording), say("mass"), say("force"), turns ? "joint: revolute\n" : "",
-      drive_name(seen.structure.drive, vocabulary.joint), sanitized(seen.column), say("arm"),
+      origin(recording),
+      comment(fmt::format("One {} with viscous and {} friction, driven by a {}: the simplest model "
+                          "of an axis. fit-params reports what it lacks, and --close-loop adds it. "
+                          "All keys: docs/axis-file.md.",
+                          say("mass"), builds_up ? "dry" : "Coulomb", say("force")),
+              0),
+      turns ? "joint: revolute\n" : "", drive_name(seen.structure.drive, vocabulary.joint),
+      sanitized(seen.column), say("arm"),
       gain_guessed ? "guessed: [K_f]   # delete this line when it is that of a data sheet\n" : "",
       gain_comment(seen), with_unit(gain, quantity("K_f").unit),
       seen.look ? "Fitted by the job; initial values from the balance of forces."
                 : "GUESSED, because no balance of forces could be computed; fitted by the job.",
-      initial("M", look.mass.value * gain), initial("B_a", viscous),
-      force("coulomb_friction.F_c", std::max(look.coulomb.value * gain, 0.01 * most), 0.0),
+      initial("M", look.mass.value * gain), initial("B_a", viscous), friction,
       say("constant_force"), force("constant_force.F_0", -look.constant.value * gain, -most));
   if (has_gravity)
     starter.text += fmt::format(

@@ -146,7 +146,7 @@ struct Look {
 /// None where they tell nothing.
 std::optional<Look> look_through(const std::vector<Grid>& grids, std::size_t samples,
                                  bool of_position, const FirstLookOptions& options) {
-  Balance balance = balance_in(grids, samples, of_position, options.with_gravity, 0.0);
+  Balance balance = balance_in(grids, samples, of_position, options, 0.0);
   leave_out_what_is_alike(balance, grids);
   Look result;
   FirstLook& look = result.found;
@@ -157,10 +157,11 @@ std::optional<Look> look_through(const std::vector<Grid>& grids, std::size_t sam
     if (!regression.is_possible()) return std::nullopt;
     look.delay.value = best_delay(balance, regression, grids, options);
     if (std::abs(look.delay.value - near) < interval || near != 0.0) break;
-    balance = balance_in(grids, samples, of_position, options.with_gravity, look.delay.value);
+    balance = balance_in(grids, samples, of_position, options, look.delay.value);
     leave_out_what_is_alike(balance, grids);
   }
   look.only_way = only_way_of(balance);
+  look.presliding = options.presliding;
   const double delay = look.delay.value, h = 0.5 * interval;
   const VectorXd inputs = balance.inputs(grids, delay);
   const VectorXd left = NoisyRegression(balance.terms, balance.noise).remaining(inputs);
@@ -226,6 +227,36 @@ bool changes(std::span<const double> values) {
   return std::ranges::adjacent_find(values, std::not_equal_to<>()) != values.end();
 }
 
+/// The same look with dry friction that builds up over a travel, where that leaves far less of the
+/// input: what else a model lacks makes it a little less.
+std::optional<FirstLook> look_at_presliding(std::span<const DrivenMotion> motions,
+                                            const std::optional<FirstLook>& at_once,
+                                            bool with_gravity) {
+  constexpr double kMuch = 0.1, kFarLess = 0.5;
+  if (!at_once || at_once->unexplained < kMuch || at_once->only_way != 0.0) return std::nullopt;
+  double stroke = 0.0;
+  for (const DrivenMotion& motion : motions)
+    stroke = std::max(stroke, Grid(motion, !motion.position.empty()).stroke());
+  FirstLookOptions options{.with_gravity = with_gravity, .window = at_once->window};
+  double travel = 0.0, least = at_once->unexplained;
+  const auto try_travel = [&](double tried) {
+    options.presliding = tried;
+    const auto look = first_look(motions, options);
+    if (!look || look->unexplained >= least) return;
+    least = look->unexplained;
+    travel = tried;
+  };
+  constexpr int kHalvings = 10;  // to a thousandth of the stroke
+  for (int k = 2; k <= kHalvings; ++k) try_travel(stroke * std::exp2(-k));
+  for (const double step : {0.5, 0.25, 0.125, 0.0625}) {
+    const double middle = travel;
+    try_travel(middle * std::exp2(step));
+    try_travel(middle * std::exp2(-step));
+  }
+  if (!(least < kFarLess * at_once->unexplained)) return std::nullopt;
+  return first_look(motions, {.with_gravity = with_gravity, .presliding = travel});
+}
+
 }  // namespace
 
 std::optional<FirstLook> first_look(std::span<const DrivenMotion> motions,
@@ -244,6 +275,8 @@ std::optional<FirstLook> first_look(std::span<const DrivenMotion> motions,
     }
     for (std::size_t samples = kShortestWindow;
          samples <= std::min(kLongestWindow, longest / kWindowsPerMotion); samples *= 2) {
+      const double length = static_cast<double>(samples) * grids.front().interval();
+      if (options.window > 0.0 && std::abs(length / options.window - 1.0) > 0.1) continue;
       if (const auto look = look_through(grids, samples, of_position, options))
         looks.push_back(*look);
     }
@@ -273,12 +306,20 @@ std::optional<FirstLook> first_look(std::span<const DrivenMotion> motions,
 
 std::optional<FirstLook> first_look(std::span<const DrivenMotion> motions, Joint joint) {
   const auto plain = first_look(motions);
-  if (joint != Joint::revolute) return plain;
+  const auto with_presliding = [&](const std::optional<FirstLook>& at_once, bool with_gravity) {
+    const auto building_up = look_at_presliding(motions, at_once, with_gravity);
+    return building_up ? building_up : at_once;
+  };
+  if (joint != Joint::revolute) return with_presliding(plain, false);
   const auto with_gravity = first_look(motions, {.with_gravity = true});
   constexpr double kClearlyLess = 0.8;
-  return with_gravity && (!plain || with_gravity->unexplained < kClearlyLess * plain->unexplained)
-             ? with_gravity
-             : plain;
+  const bool hangs =
+      with_gravity && (!plain || with_gravity->unexplained < kClearlyLess * plain->unexplained);
+  // What hangs free may be what bends before it slips.
+  const auto bends = with_presliding(plain, false);
+  if (hangs && bends && bends->presliding > 0.0 && bends->unexplained < with_gravity->unexplained)
+    return bends;
+  return hangs ? with_presliding(with_gravity, true) : bends;
 }
 
 }  // namespace axisfit

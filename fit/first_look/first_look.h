@@ -12,6 +12,10 @@
 // the one is taken that tells the most. The time d by which the motion follows the input is where
 // least remains.
 //
+// Where that leaves much, dry friction may build up over a travel instead of at once: in the place
+// of sign(y') stands the state z of P. R. Dahl's law (dahl_friction.h), which follows from the
+// readings alone, with the travel at which least remains.
+//
 // Literature: D. A. Messenger and D. M. Bortz, Journal of Computational Physics 443 (2021), for the
 // weak form; W. A. Fuller, Measurement Error Models (1987), for the subtraction.
 #pragma once
@@ -38,6 +42,9 @@ struct FirstLookOptions {
   bool with_gravity = false;    ///< on a joint; needs positions
   double least_delay = -0.02;   ///< s, from which delays are tried, within half a recording ...
   double longest_delay = 0.25;  ///< s, ... to which
+  /// m, or rad: over which dry friction builds up. Zero: at once.
+  double presliding = 0.0;
+  double window = 0.0;  ///< s, that of windows of one length only; zero: the best
   /// The length of the windows is that which explains the most, not that which tells the most: for
   /// a delay that may be anything, since short windows tell a lot of what is not there.
   bool by_evidence = false;
@@ -62,6 +69,7 @@ struct FirstLook {
   /// 1 or -1 where the motion goes that way only. Nothing then tells a constant force from dry
   /// friction, which it is taken for; otherwise zero.
   double only_way = 0.0;
+  double presliding = 0.0;   ///< m, or rad, over which dry friction builds up; zero: at once
   double unexplained = 1.0;  ///< part of the input's root mean square that remains
   double window = 0.0;       ///< s, length of the windows
 
@@ -96,7 +104,8 @@ struct FirstLook {
 std::optional<FirstLook> first_look(std::span<const DrivenMotion> motions,
                                     const FirstLookOptions& options = {});
 
-/// The same; of a joint with gravity where that leaves clearly less of the input.
+/// The same; of a joint with gravity, and with friction that builds up over a travel, where that
+/// leaves clearly less of the input.
 std::optional<FirstLook> first_look(std::span<const DrivenMotion> motions, Joint joint);
 
 }  // namespace axisfit

@@ -87,6 +87,35 @@ std::vector<double> Grid::input(double delay) const {
   return on_even_grid(motion_.times, motion_.input, delay);
 }
 
+std::vector<double> Grid::travels() const {
+  std::vector<double> by(count_, 0.0);
+  for (std::size_t i = 1; i < count_; ++i)
+    by[i] = positions_.empty() ? 0.5 * (values_[i - 1] + values_[i]) * interval_
+                               : positions_[i] - positions_[i - 1];
+  return by;
+}
+
+std::vector<double> Grid::presliding(double travel) const {
+  std::vector<double> state = travels();
+  double z = 0.0;
+  for (double& by : state) {
+    const double end = by > 0.0 ? 1.0 : -1.0;
+    z = end + (z - end) * std::exp(-std::abs(by) / travel);
+    by = z;
+  }
+  return state;
+}
+
+double Grid::stroke() const {
+  double at = 0.0, low = 0.0, high = 0.0;
+  for (const double by : travels()) {
+    at += by;
+    low = std::min(low, at);
+    high = std::max(high, at);
+  }
+  return high - low;
+}
+
 VectorXd Balance::inputs(const std::vector<Grid>& grids, double delay) const {
   VectorXd result(terms.rows());
   for (const Rows& part : parts) {
@@ -102,8 +131,9 @@ VectorXd Balance::inputs(const std::vector<Grid>& grids, double delay) const {
 }
 
 Balance balance_in(const std::vector<Grid>& grids, std::size_t samples, bool of_position,
-                   bool with_gravity, double delay) {
+                   const FirstLookOptions& options, double delay) {
   Balance balance;
+  const bool with_gravity = options.with_gravity;
   const Index terms = with_gravity ? 6 : 4;
   balance.noise = MatrixXd::Zero(terms, terms);
   std::vector<double> rows;  // one after the other
@@ -121,9 +151,9 @@ Balance balance_in(const std::vector<Grid>& grids, std::size_t samples, bool of_
     double fastest = 0.0;
     for (const double v : speed) fastest = std::max(fastest, std::abs(v));
     const double least = std::max({kSpeedErrors * speed_noise, kRest * fastest, 1e-300});
-    std::vector<double> sign(speed.size());
-    for (std::size_t i = 0; i < speed.size(); ++i)
-      sign[i] = std::clamp(speed[i] / least, -1.0, 1.0);
+    std::vector<double> direction = speed;
+    for (double& x : direction) x = std::clamp(x / least, -1.0, 1.0);
+    if (options.presliding > 0.0) direction = grid.presliding(options.presliding);
     double bend_square = 0.0, slope_square = 0.0, value_square = 0.0;
     const Window& w = part.window;
     for (std::size_t i = 0; i <= samples; ++i) {
@@ -149,7 +179,7 @@ Balance balance_in(const std::vector<Grid>& grids, std::size_t samples, bool of_
           mass -= w.slope[i] * x;
           viscous += w.value[i] * x;
         }
-        coulomb += w.value[i] * sign[at];
+        coulomb += w.value[i] * direction[at];
         constant += w.value[i];
         if (with_gravity) {
           sine += w.value[i] * std::sin(grid.positions()[at]);

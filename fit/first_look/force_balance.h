@@ -34,9 +34,16 @@ class Grid {
   std::vector<double> input(double delay) const;
   const std::vector<double>& values() const { return values_; }
   const std::vector<double>& positions() const { return positions_; }
+  /// What takes the place of the direction where dry friction builds up over a travel, from -1
+  /// to 1.
+  std::vector<double> presliding(double travel) const;
+  /// How far it gets, m or rad.
+  double stroke() const;
   double noise() const { return noise_; }
 
  private:
+  std::vector<double> travels() const;  ///< from sample to sample
+
   DrivenMotion motion_;
   bool of_position_;
   std::size_t count_ = 0;
@@ -62,9 +69,10 @@ struct Balance {
   Eigen::VectorXd inputs(const std::vector<Grid>& grids, double delay) const;
 };
 
-/// Windows of so many samples. Those whose input, so much earlier, was not recorded are left out.
+/// Windows of so many samples, of the terms that the options ask for. Those whose input, so much
+/// earlier, was not recorded are left out.
 Balance balance_in(const std::vector<Grid>& grids, std::size_t samples, bool of_position,
-                   bool with_gravity, double delay);
+                   const FirstLookOptions& options, double delay);
 
 inline constexpr std::size_t kWindowsPerMotion = 8;  ///< at least
 inline constexpr std::size_t kOverlap = 4;           ///< windows over each sample

@@ -42,12 +42,13 @@ struct SearchOptions {
 
   /// Which of the scored hypotheses are worth a refit.
   struct Shortlist {
-    int length = 6;            ///< about as many, at each observer gain
-    double least_gain = 6.0;   ///< of a sum of squares of unit variance: below is chance
-    std::size_t first = 3;     ///< that are taken whatever the best gains
-    double worth = 0.5;        ///< part of the best gain that is taken beyond the first
-    double nearly_best = 0.9;  ///< part of the best gain that is taken beyond the length
-    double same_shape = 0.05;  ///< relative difference of shapes whose refits end in one place
+    int length = 6;             ///< about as many, at each observer gain
+    double least_gain = 6.0;    ///< of a sum of squares of unit variance: below is chance
+    std::size_t first = 3;      ///< that are taken whatever the best gains
+    double worth = 0.5;         ///< part of the best gain that is taken beyond the first
+    double worth_plain = 0.25;  ///< the same of a law of one number beside a richer one
+    double nearly_best = 0.9;   ///< part of the best gain that is taken beyond the length
+    double same_shape = 0.05;   ///< relative difference of shapes whose refits end in one place
   } shortlist;
 
   /// A refit in a search, content with less than a final one.

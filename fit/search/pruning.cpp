@@ -112,9 +112,13 @@ void eliminate_backward(SearchState& state, const SearchContext& context) {
       if (!is_plain(state.accepted()[b])) doubted.push_back(b);
     state.chain.fit_without(doubted);
     const FittedModel& reduced = state.chain.without(a);
-    if (!reduced.fit.is_usable() ||
-        is_needed(improvement(reduced, state.current()), effect.hypothesis.parameters(),
-                  effect.is_seen_elsewhere, context.options)) {
+    const Improvement gain = improvement(reduced, state.current());
+    if (!reduced.fit.is_usable() || is_needed(gain, effect.hypothesis.parameters(),
+                                              effect.is_seen_elsewhere, context.options)) {
+      // What it was tried beside may have been taken out since.
+      if (Outcome* outcome = state.outcomes.find(effect.hypothesis);
+          outcome != nullptr && reduced.fit.is_usable())
+        outcome->improvement = gain;
       ++a;
       continue;
     }

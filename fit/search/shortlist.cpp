@@ -40,6 +40,16 @@ void mark_seconds(std::vector<Scored>& entries, double samples) {
     }
 }
 
+/// Whether it is a law of one number beside a richer one that acts on the same. What is large is
+/// told wrongly to first order: there a bump as wide as the stroke gains more than the plain
+/// friction that it stands for.
+bool is_plain_beside(const std::vector<Scored>& taken, const Hypothesis& hypothesis) {
+  return hypothesis.kind == HypothesisKind::effect && hypothesis.parameters() == 1 &&
+         std::ranges::any_of(taken, [&](const Scored& s) {
+           return s.hypothesis->acts_on == hypothesis.acts_on && s.hypothesis->parameters() > 1;
+         });
+}
+
 /// The best of the scores: no more than `length`, but for those that nearly gain as much.
 std::vector<Scored> best_of(ScoreTest& test, std::size_t length,
                             const SearchOptions::Shortlist& options) {
@@ -61,7 +71,9 @@ std::vector<Scored> best_of(ScoreTest& test, std::size_t length,
                                    (effects >= length && score.gain < options.nearly_best * best);
     const bool is_little = taken.size() >= options.first && score.gain < options.worth * best;
     // A clock that is a little off is heard before anything else is blamed.
-    const bool is_heard = hypothesis.kind == clock && score.gain >= options.worth * best;
+    const bool is_heard =
+        (hypothesis.kind == clock && score.gain >= options.worth * best) ||
+        (score.gain >= options.worth_plain * best && is_plain_beside(taken, hypothesis));
     if ((is_many || is_little) && !is_heard) continue;
     if (std::ranges::any_of(
             taken, [&](const Scored& s) { return is_same_form(*s.hypothesis, hypothesis); }))
