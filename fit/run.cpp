@@ -45,8 +45,13 @@ void choose_criterion(RunResult& result, const RunContext& context) {
   result.baseline.options.criterion = result.horizon->best().criterion;
 }
 
+/// Before a search with two attempts alone: what the model lacks leaves no good end to others.
 void fit_declared_model(RunResult& result, const RunContext& context) {
-  result.first = estimate_with_noise(result.baseline, context);
+  Job job = result.baseline;
+  if (result.options.select_effects) job.options.attempts = 2;
+  result.first = estimate_with_noise(job, context);
+  if (result.options.select_effects && !result.first.is_usable() && !result.first.interrupted)
+    result.first = estimate_with_noise(result.baseline, context);
   result.interrupted = result.first.interrupted;
 }
 
@@ -68,11 +73,24 @@ void exchange_roles(RunResult& result, const RunContext& context) {
   result.selection = std::move(found->selection);
 }
 
+/// A search that leaves something may have begun at a wrong end of the declared model.
+void search_from_elsewhere(RunResult& result, const RunContext& context) {
+  constexpr double kClearlyBetter = 0.9;
+  if (result.selection->explained || result.selection->interrupted) return;
+  FitResult other = estimate_with_noise(result.baseline, context);
+  if (!other.is_usable() || (result.first.is_usable() &&
+                             reduced_cost(other) > kClearlyBetter * reduced_cost(result.first)))
+    return;
+  result.first = std::move(other);
+  result.selection = select_effects(result.baseline, result.first, {}, context);
+}
+
 void close_loop(RunResult& result, const RunContext& context) {
   if (!result.options.select_effects ||
       !(result.first.is_usable() || result.first.verdict.kind == FitVerdict::Kind::no_minimum))
     return;
   result.selection = select_effects(result.baseline, result.first, {}, context);
+  search_from_elsewhere(result, context);
   // Not even while it tracks: there is nothing to begin with.
   if (!result.first.is_usable() && !result.selection->interrupted &&
       result.selection->verdict.kind == SelectionVerdict::Kind::no_usable_fit) {

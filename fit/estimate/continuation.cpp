@@ -207,7 +207,7 @@ class Starts {
     BestEnd best = descend({}, start_, gain_);
     if (attempts < 2) return best.solved;
     best = descend_again(std::move(best));
-    if (best.is_below(options_.explained)) return best.solved;
+    if (attempts < 3 || best.is_below(options_.explained)) return best.solved;
     best = descend_again(descend(std::move(best), start_, gain_ / options_.lower_gain));
     return descend_from_perturbed(std::move(best), attempts).solved;
   }

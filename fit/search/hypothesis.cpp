@@ -95,6 +95,11 @@ std::pair<double, double> Hypothesis::range_tried(std::size_t shape) const {
   return {least, most};
 }
 
+bool is_plain_beside(const Hypothesis& hypothesis, const Hypothesis& other) {
+  return hypothesis.kind == effect && hypothesis.parameters() == 1 && other.parameters() > 1 &&
+         hypothesis.acts_on == other.acts_on;
+}
+
 bool is_part_of(const Hypothesis& part, const Hypothesis& whole) {
   return part.extends == whole.name && whole.extends.empty() &&
          (whole.kind == transmission || quantity_list()[part.strengths.front()].effect ==

@@ -71,6 +71,11 @@ inline bool is_same_form(const Hypothesis& a, const Hypothesis& b) {
   return is_same(a, b) && a.shapes == b.shapes;
 }
 
+/// Whether it is a law of one number, and the other a richer one that acts on the same. What is
+/// large is told wrongly to first order: there a bump as wide as the stroke gains more than the
+/// plain friction that it stands for.
+bool is_plain_beside(const Hypothesis& hypothesis, const Hypothesis& other);
+
 /// Whether one is a part of another's effect that does nothing without it.
 bool is_part_of(const Hypothesis& part, const Hypothesis& whole);
 

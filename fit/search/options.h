@@ -48,7 +48,10 @@ struct SearchOptions {
     double worth = 0.5;         ///< part of the best gain that is taken beyond the first
     double worth_plain = 0.25;  ///< the same of a law of one number beside a richer one
     double nearly_best = 0.9;   ///< part of the best gain that is taken beyond the length
-    double same_shape = 0.05;   ///< relative difference of shapes whose refits end in one place
+    /// Part of what is missing that one explains, to first order, at the first gain: then no other
+    /// is scored, unless nothing passes.
+    double most = 0.6;
+    double same_shape = 0.05;  ///< relative difference of shapes whose refits end in one place
   } shortlist;
 
   /// A refit in a search, content with less than a final one.

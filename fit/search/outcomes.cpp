@@ -40,7 +40,7 @@ void Outcomes::record(const Tried& tried, const Tried* best, int round) {
                      : tried.on_blocks ? Reason::shown_by_blocks
                                        : Reason::explains_best;
     outcome.replication = tried.replication;
-  } else if (tried.rejection) {
+  } else if (tried.rejection && !(tried.is_outdone && best != nullptr)) {
     outcome.rejection = tried.rejection;
   } else {
     outcome.reason = Reason::explains_less;

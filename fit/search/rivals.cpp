@@ -51,20 +51,6 @@ Scored with_strengths(Scored rival, const Job& others, const SearchContext& cont
   return rival;
 }
 
-/// A reduced cost at which a model with `parameters` other ones is clearly worse than the present
-/// one, whose residuals are given, and twice as much, for the units are those of other residuals.
-double worthless_cost(const FittedModel& present, const std::vector<ResidualSeries>& residuals,
-                      double parameters, const SearchOptions& options) {
-  double unit = 0.0, count = 0.0;
-  for (const ResidualSeries& series : residuals) {
-    if (!series.fitted) continue;
-    unit = std::max(unit, mean_square(series.values) * autocorrelation_time(series.values));
-    count += static_cast<double>(series.values.size());
-  }
-  const double loss = clear_difference(options) + parameters * std::log(samples_of(residuals));
-  return reduced_cost(present.fit) + 2.0 * loss * unit / std::max(1.0, count);
-}
-
 /// Refits those of an accepted hypothesis' rivals that `counts` in its place, from where all else
 /// is.
 template <class Counts>
@@ -81,15 +67,15 @@ std::vector<Tried> try_rivals(const SearchState& state, std::size_t place, Count
   if (list.empty()) return list;
   const Job others = state.chain.job_with_accepted(state.chain.declared().job, place);
   const FittedModel& present = state.current();
-  const double worthless = worthless_cost(
-      present, residual_series(present.job, present.fit),
-      static_cast<double>(state.accepted()[place].hypothesis.parameters()), context.options);
+  const double worthless =
+      worthless_cost(present.fit, residual_series(present.job, present.fit),
+                     state.accepted()[place].hypothesis.parameters(), context.options);
   parallel_for(list.size(), [&](std::size_t i) {
     const auto score = exchange_score(present, state.accepted(), others, rivals[i]);
     if (score && is_out_of_reach(*score, context.options)) return;
     Scored start = with_strengths(rivals[i], others, context);
     if (start.others.empty()) start.others = initial_values(others);
-    list[i] = try_hypothesis(others, start, context, worthless);
+    list[i] = try_hypothesis(others, start, context, {.give_up_above = worthless});
   });
   std::erase_if(list, [](const Tried& t) { return !t.fit.is_usable(); });
   return list;

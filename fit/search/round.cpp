@@ -41,6 +41,11 @@ class RoundTrial {
 
   RoundResult run() && {
     refit_in_turns(choice());
+    if (all_are_rejected(result_.models) && score_the_rest()) {
+      result_.models.clear();
+      result_.unrefitted.clear();
+      refit_in_turns(choice());
+    }
     keep_the_best_setting();
     // Where nothing but noise is left, what lowers no error elsewhere is chance.
     if (!options_.explained && !options_.held_out_blocks && all_are_rejected(result_.models)) {
@@ -61,15 +66,23 @@ class RoundTrial {
                          .work = work});
   }
 
-  /// A simulation that is far from the data must track them to be scored. Where it is close, the
-  /// free run is scored, too: an instrument that errs misleads whatever tracks it.
-  std::vector<double> gains_to_score() const {
-    const bool is_free = !tracks(model_.job.options.criterion);
-    if (is_free && options_.explained) return {0.0};
+  bool is_free() const { return !tracks(model_.job.options.criterion); }
+  bool is_close() const { return model_.fit.reduced_chi_square < limits().close_chi_square; }
+
+  /// A simulation that is far from the data must track them to be scored.
+  double first_gain() const {
+    return is_free() && options_.explained ? 0.0 : score_gains(model_.job).front();
+  }
+
+  /// What is large is tried at a high gain, too, and the free run is scored where it is close: an
+  /// instrument that errs misleads whatever tracks it.
+  std::vector<double> other_gains() const {
+    if (is_free() && options_.explained) return {};
     std::vector<double> gains = score_gains(model_.job);
+    gains.erase(gains.begin());
     if (const auto close = close_gain(model_.job, values_of(model_.fit), context_))
-      gains.insert(gains.begin(), *close);
-    if (is_free && model_.fit.reduced_chi_square < limits().close_chi_square) gains.push_back(0.0);
+      gains.push_back(*close);
+    if (is_free() && is_close()) gains.push_back(0.0);
     return gains;
   }
 
@@ -85,9 +98,8 @@ class RoundTrial {
   /// The places in the shortlist of what is to be refitted.
   std::vector<std::size_t> choice() {
     if (!memory_.list) {
-      report_progress("scoring effects", 0, 0, Work::scores);
-      memory_.list =
-          shortlist(model_.job, values_of(model_.fit), gains_to_score(), options_.curves, context_);
+      memory_.list = scored({first_gain()});
+      if (!memory_.list->has_most) score_the_rest();
       memory_.refits.resize(memory_.list->entries.size());
     }
     result_.tried = memory_.list->tried;
@@ -102,6 +114,22 @@ class RoundTrial {
     return places;
   }
 
+  Shortlist scored(const std::vector<double>& gains) const {
+    report_progress("scoring effects", 0, 0, Work::scores);
+    return shortlist(model_.job, values_of(model_.fit), gains, options_.curves, context_);
+  }
+
+  /// At the gains that the list lacks; whether there were any.
+  bool score_the_rest() {
+    if (memory_.is_whole) return false;
+    memory_.is_whole = true;
+    const std::vector<double> gains = other_gains();
+    if (gains.empty()) return false;
+    memory_.list->add(scored(gains), context_.options);
+    memory_.refits.resize(memory_.list->entries.size());
+    return true;
+  }
+
   /// Whether the acceptance test would find it no better than chance. A score holds to
   /// first order: the refit may find more, above all where the score is large.
   bool is_hopeless(const Scored& entry) const {
@@ -110,26 +138,65 @@ class RoundTrial {
     return entry.promise < limits().promise * least && entry.scaled_gain < limits().much * least;
   }
 
-  /// A hypothesis that promises little beside the best is refitted only where that does not pass,
-  /// and one that a simpler one equals only where none of these does.
+  /// When an entry is refitted: the first three until one passes that leaves nothing but noise.
+  enum class Turn {
+    simpler,  ///< than the best, which it would go before if it does as well
+    best,
+    near_it,
+    less,    ///< it promises little beside the best: only where none of the above passes
+    second,  ///< a simpler one promises as much: likewise
+  };
+
+  Turn turn_of(const Scored& entry, const Scored& best) const {
+    const Hypothesis &own = *entry.hypothesis, &other = *best.hypothesis;
+    if (&entry == &best) return Turn::best;
+    if (is_plain_beside(own, other)) return Turn::simpler;
+    if (entry.is_second) return Turn::second;
+    if (entry.scaled_gain < limits().rival_part * best.scaled_gain) return Turn::less;
+    const bool goes_before =
+        own.kind == HypothesisKind::clock || own.parameters() < other.parameters();
+    return goes_before ? Turn::simpler : Turn::near_it;
+  }
+
   void refit_in_turns(std::vector<std::size_t> places) {
-    double promised = 0.0;
+    const Scored* best = nullptr;
     for (const std::size_t place : places)
-      if (!entry(place).is_second) promised = std::max(promised, entry(place).scaled_gain);
+      if (const Scored& e = entry(place);
+          !e.is_second && (best == nullptr || e.scaled_gain > best->scaled_gain))
+        best = &e;
     const auto turn = [&](std::size_t place) {
-      if (entry(place).is_second) return 2;
-      return entry(place).scaled_gain >= limits().rival_part * promised ? 0 : 1;
+      return best == nullptr ? Turn::second : turn_of(entry(place), *best);
     };
     std::ranges::stable_sort(places, {}, turn);
     auto next = places.begin();
-    while (next != places.end() && all_are_rejected(result_.models)) {
+    while (next != places.end()) {
+      const bool none_passes = all_are_rejected(result_.models);
+      if (!none_passes && (turn(*next) > Turn::near_it || any_explains())) break;
       const auto end = std::ranges::upper_bound(next, places.end(), turn(*next), {}, turn);
       refit_all({next, end});
       reject_what_raises_the_force();
       next = end;
     }
     for (; next != places.end(); ++next)
-      if (entry(*next).is_second) result_.seconds.push_back(entry(*next));
+      if (turn(*next) != Turn::less) result_.unrefitted.push_back(entry(*next));
+  }
+
+  /// Whether one that passes leaves nothing but noise.
+  bool any_explains() const {
+    return std::ranges::any_of(result_.models, [](const Tried& e) {
+      return !e.rejection && explains(FittedModel{"", e.job, e.fit});
+    });
+  }
+
+  /// The reduced cost below which a refit must come: that of the model, or of one that is clearly
+  /// worse than the best that passes.
+  double cost_to_reach() const {
+    double cost = reduced_cost(model_.fit);
+    for (const Tried& e : result_.models)
+      if (!e.rejection)
+        cost = std::min(
+            cost, worthless_cost(e.fit, e.residuals, e.hypothesis.parameters(), context_.options));
+    return cost;
   }
 
   /// Refits with each of these and judges it.
@@ -143,6 +210,7 @@ class RoundTrial {
     std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) {
       return entry(places[i]).hypothesis->parameters();
     });
+    const double cost = cost_to_reach();
     int done = 0;
     std::mutex mutex;
     parallel_for(order.size(), [&](std::size_t k) {
@@ -155,7 +223,7 @@ class RoundTrial {
       };
       report(0);
       Tried& e = models[first + order[k]];
-      e = refitted(place);
+      e = refitted(place, cost);
       judge(e, before_, strictness(), context_.options);
       if (is_cut_short(e)) {
         resume(e, context_);
@@ -168,17 +236,22 @@ class RoundTrial {
 
   /// Whether a refit promises to pass, but for want of iterations.
   bool is_cut_short(const Tried& e) const {
-    return e.fit.verdict.kind == FitVerdict::Kind::no_minimum && e.gain.comparable &&
-           e.gain.p_value < options_.chance &&
+    return e.fit.verdict.kind == FitVerdict::Kind::no_minimum && !e.is_outdone &&
+           e.gain.comparable && e.gain.p_value < options_.chance &&
            e.gain.fit_gain > least_gain(e.hypothesis, e.gain.samples, result_.tried);
   }
 
-  /// With an entry of the shortlist.
-  const Tried& refitted(std::size_t place) {
+  /// With an entry of the shortlist, given up above a reduced cost.
+  Tried refitted(std::size_t place, double cost) {
     std::optional<Tried>& known = memory_.refits[place];
-    if (!known)
-      known = try_hypothesis(model_.job, entry(place), context_, reduced_cost(model_.fit));
-    return *known;
+    if (known) return *known;
+    const double present = reduced_cost(model_.fit);
+    Tried tried = try_hypothesis(
+        model_.job, entry(place), context_,
+        {.give_up_above = cost, .cost_nearby = is_close() ? std::optional(present) : std::nullopt});
+    tried.is_outdone = cost < present && !tried.fit.is_usable() && reduced_cost(tried.fit) > cost;
+    if (!tried.is_outdone) known = tried;  // another round may lack what outdid it
+    return tried;
   }
 
   /// An error of an instrument or of time may follow a recording more closely and yet ask for a

@@ -26,6 +26,7 @@ struct RoundOptions {
 struct RoundMemory {
   std::vector<double> of{};  ///< values and observer gain of the model
   std::optional<Shortlist> list{};
+  bool is_whole = false;                       ///< the list, scored at all gains
   std::vector<std::optional<Tried>> refits{};  ///< of the list's entries, not judged
   /// By the values of the extended model, see fit_elsewhere().
   std::map<std::vector<double>, std::optional<FitResult>> elsewhere{};
@@ -38,7 +39,8 @@ struct RoundResult {
   std::vector<Tried> models;          ///< refitted and judged, each hypothesis once
   std::optional<std::size_t> best{};  ///< of them; none: none passes
   std::size_t tried = 1;              ///< hypotheses and settings among which they were chosen
-  std::vector<Scored> seconds{};      ///< not refitted, since a simpler one gained as much
+  /// Not refitted: the best leaves nothing but noise, or a simpler one promised as much.
+  std::vector<Scored> unrefitted{};
 };
 
 /// Scores all hypotheses, refits a shortlist, and takes the best that passes the acceptance test.

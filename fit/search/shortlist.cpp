@@ -40,14 +40,15 @@ void mark_seconds(std::vector<Scored>& entries, double samples) {
     }
 }
 
-/// Whether it is a law of one number beside a richer one that acts on the same. What is large is
-/// told wrongly to first order: there a bump as wide as the stroke gains more than the plain
-/// friction that it stands for.
-bool is_plain_beside(const std::vector<Scored>& taken, const Hypothesis& hypothesis) {
-  return hypothesis.kind == HypothesisKind::effect && hypothesis.parameters() == 1 &&
-         std::ranges::any_of(taken, [&](const Scored& s) {
-           return s.hypothesis->acts_on == hypothesis.acts_on && s.hypothesis->parameters() > 1;
-         });
+/// Whether it is the best of the plain laws beside what gains more.
+bool is_best_plain(const std::vector<Scored>& taken, const Hypothesis& hypothesis) {
+  const auto is_richer = [&](const Scored& s) {
+    return is_plain_beside(hypothesis, *s.hypothesis);
+  };
+  const auto is_plain = [&](const Scored& s) {
+    return s.hypothesis->acts_on == hypothesis.acts_on && s.hypothesis->parameters() == 1;
+  };
+  return std::ranges::any_of(taken, is_richer) && std::ranges::none_of(taken, is_plain);
 }
 
 /// The best of the scores: no more than `length`, but for those that nearly gain as much.
@@ -73,7 +74,7 @@ std::vector<Scored> best_of(ScoreTest& test, std::size_t length,
     // A clock that is a little off is heard before anything else is blamed.
     const bool is_heard =
         (hypothesis.kind == clock && score.gain >= options.worth * best) ||
-        (score.gain >= options.worth_plain * best && is_plain_beside(taken, hypothesis));
+        (score.gain >= options.worth_plain * best && is_best_plain(taken, hypothesis));
     if ((is_many || is_little) && !is_heard) continue;
     if (std::ranges::any_of(
             taken, [&](const Scored& s) { return is_same_form(*s.hypothesis, hypothesis); }))
@@ -99,12 +100,34 @@ void note(std::vector<Shortlist::Promise>& promises, const Shortlist::Promise& p
     *known = promise;
 }
 
+/// Whether the best of a score explains most of what is beyond the noise.
+bool has_most(const ScoreTest& test, const SearchOptions::Shortlist& options) {
+  if (test.scores.empty()) return false;
+  const double samples = test.sum_of_squares / std::max(1e-300, test.mean_square);
+  const double beyond = test.sum_of_squares - samples;
+  return beyond > 0.0 && test.scores.front().gain >= options.most * beyond;
+}
+
 }  // namespace
 
 std::optional<double> Shortlist::promised_by(const Hypothesis& hypothesis) const {
   const auto found = std::ranges::find_if(
       promises, [&](const Promise& p) { return is_same(*p.hypothesis, hypothesis); });
   return found == promises.end() ? std::nullopt : std::optional(found->gain);
+}
+
+void Shortlist::add(Shortlist other, const SearchOptions& options) {
+  observer_gains.insert(observer_gains.end(), other.observer_gains.begin(),
+                        other.observer_gains.end());
+  tried = std::max(tried, other.tried);
+  has_most = has_most || other.has_most;
+  for (const Promise& promise : other.promises) note(promises, promise);
+  for (Scored& entry : other.entries) {
+    const bool known = std::ranges::any_of(entries, [&](const Scored& s) {
+      return nearly_same(s, entry, options.shortlist.same_shape);
+    });
+    if (!known) entries.push_back(std::move(entry));
+  }
 }
 
 Shortlist shortlist(const Job& job, const std::vector<double>& values,
@@ -114,7 +137,9 @@ Shortlist shortlist(const Job& job, const std::vector<double>& values,
   std::vector<Shortlist> of_gain(gains.size());
   parallel_for(gains.size(), [&](std::size_t i) {
     ScoreTest test = score_test(job, values, gains[i], curves, context);
+    of_gain[i].observer_gains = {gains[i]};
     of_gain[i].tried = test.scores.size();
+    of_gain[i].has_most = has_most(test, options);
     for (const Scored& score : test.scores)
       note(of_gain[i].promises,
            {score.hypothesis, score.own.shapes, score.gain / std::max(1.0, test.mean_square)});
@@ -124,17 +149,7 @@ Shortlist shortlist(const Job& job, const std::vector<double>& values,
         best_of(test, is_beside ? 1 : static_cast<std::size_t>(options.length), options);
   });
   Shortlist result;
-  result.observer_gains = gains;
-  for (Shortlist& list : of_gain) {
-    result.tried = std::max(result.tried, list.tried);
-    for (const Shortlist::Promise& promise : list.promises) note(result.promises, promise);
-    for (Scored& entry : list.entries) {
-      const bool known = std::ranges::any_of(result.entries, [&](const Scored& s) {
-        return nearly_same(s, entry, options.same_shape);
-      });
-      if (!known) result.entries.push_back(std::move(entry));
-    }
-  }
+  for (Shortlist& one : of_gain) result.add(std::move(one), context.options);
   return result;
 }
 

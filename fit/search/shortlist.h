@@ -15,6 +15,7 @@ struct Shortlist {
   std::size_t tried = 1;  ///< hypotheses and settings among which they were chosen
 
   std::vector<double> observer_gains{};  ///< 1/s, at which they were scored
+  bool has_most = false;  ///< to first order, one of them explains most of what is missing
 
   /// What the score promises of a hypothesis, at its best setting and gain.
   struct Promise {
@@ -24,6 +25,8 @@ struct Shortlist {
   };
   std::vector<Promise> promises;  ///< of all that were scored, each once
 
+  /// Adds what other gains tell.
+  void add(Shortlist other, const SearchOptions& options);
   /// Nothing where it was not scored.
   std::optional<double> promised_by(const Hypothesis& hypothesis) const;
 };

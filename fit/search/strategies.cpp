@@ -50,10 +50,10 @@ Accepted accepted_from(const RoundResult& round, const Tried& best, const Search
     accepted.rivals.push_back(
         {std::make_shared<const Hypothesis>(other.hypothesis), values_in(other)});
   }
-  for (const Scored& second : round.seconds)
-    if (!is_same_form(*second.hypothesis, best.hypothesis) &&
-        second.hypothesis->kind != HypothesisKind::transmission)
-      accepted.rivals.push_back({second.hypothesis, {{}, second.own.shapes}});
+  for (const Scored& other : round.unrefitted)
+    if (!is_same_form(*other.hypothesis, best.hypothesis) &&
+        other.hypothesis->kind != HypothesisKind::transmission)
+      accepted.rivals.push_back({other.hypothesis, {{}, other.own.shapes}});
   return accepted;
 }
 

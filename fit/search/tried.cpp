@@ -25,19 +25,38 @@ FitResult refit_from(Job job, const std::vector<double>& values, const SearchCon
 }
 
 Tried try_hypothesis(const Job& job, const Scored& start, const SearchContext& context,
-                     double give_up_above) {
+                     const Try& how) {
   Tried tried;
   tried.hypothesis = *start.hypothesis;
   tried.score = start.gain;
   tried.job = with_hypothesis(job, tried.hypothesis, start.others, start.own);
-  tried.job.options.give_up_above = give_up_above;
+  tried.job.options.give_up_above = how.give_up_above;
   const SearchOptions::Refit& limits = context.options.refit;
-  tried.fit = refit(tried.job, context,
-                    tried.hypothesis.kind == HypothesisKind::transmission ? limits.many_iterations
-                                                                          : limits.iterations);
+  const bool is_other_transmission = tried.hypothesis.kind == HypothesisKind::transmission;
+  if (how.cost_nearby && !is_other_transmission) {
+    Job near = tried.job;
+    near.options = recipe::polish(near.options);
+    tried.fit = refit(near, context);
+  }
+  if (!how.cost_nearby || !(reduced_cost(tried.fit) < *how.cost_nearby))
+    tried.fit = refit(tried.job, context,
+                      is_other_transmission ? limits.many_iterations : limits.iterations);
   tried.job.options.give_up_above = job.options.give_up_above;
   tried.residuals = residual_series(tried.job, tried.fit);
   return tried;
+}
+
+double worthless_cost(const FitResult& fit, const std::vector<ResidualSeries>& residuals,
+                      std::size_t parameters, const SearchOptions& options) {
+  double unit = 0.0, count = 0.0;
+  for (const ResidualSeries& series : residuals) {
+    if (!series.fitted) continue;
+    unit = std::max(unit, mean_square(series.values) * autocorrelation_time(series.values));
+    count += static_cast<double>(series.values.size());
+  }
+  const double loss =
+      clear_difference(options) + static_cast<double>(parameters) * std::log(samples_of(residuals));
+  return reduced_cost(fit) + 2.0 * loss * unit / std::max(1.0, count);
 }
 
 void resume(Tried& tried, const SearchContext& context) {

@@ -21,7 +21,8 @@ struct Tried {
   Improvement gain;                          ///< against the model before
   std::optional<Rejection> rejection;        ///< by the acceptance test; none: it may stay
   std::optional<Replication> replication{};  ///< where it was asked for
-  bool on_blocks = false;  ///< accepted by held-out blocks of the fitted recordings
+  bool on_blocks = false;   ///< accepted by held-out blocks of the fitted recordings
+  bool is_outdone = false;  ///< given up, since it did not come near another one that passes
 };
 
 /// Fits from close by, content with less than a final fit: one start, one continuation.
@@ -31,10 +32,24 @@ FitResult refit(const Job& job, const SearchContext& context = {});
 /// The same from these values of the free parameters.
 FitResult refit_from(Job job, const std::vector<double>& values, const SearchContext& context = {});
 
-/// Adds a hypothesis, started where its score puts it, and refits. It is given up where it would
-/// not come below a reduced cost (stage.h).
+/// What a refit with a hypothesis begins with, and has to reach.
+struct Try {
+  /// Given up where it would not come below this reduced cost (stage.h).
+  double give_up_above = std::numeric_limits<double>::infinity();
+  /// Of a model that is close to the recordings, where the simulation need not track them first;
+  /// none: it has to. What ends above that is tried again, by tracking.
+  std::optional<double> cost_nearby{};
+};
+
+/// Adds a hypothesis, started where its score puts it, and refits.
 Tried try_hypothesis(const Job& job, const Scored& start, const SearchContext& context = {},
-                     double give_up_above = std::numeric_limits<double>::infinity());
+                     const Try& how = {});
+
+/// A reduced cost at which a model with no more than that many parameters fewer is clearly worse
+/// than the one of this fit, whose residuals are given, and twice as much: the units are those of
+/// other residuals.
+double worthless_cost(const FitResult& fit, const std::vector<ResidualSeries>& residuals,
+                      std::size_t parameters, const SearchOptions& options);
 
 /// Goes on with a refit that ended for want of iterations.
 void resume(Tried& tried, const SearchContext& context = {});

@@ -215,8 +215,8 @@ TEST(FirstLook, TakesNothingElseForFrictionThatBuildsUp) {
     noisy.input[i] += 40.0 * normal();
     pulled.input[i] += noisy.times[i] > 2.0 ? 60.0 : 0.0;
   }
-  for (const Recorded* run : {&sliding, &sprung, &noisy, &pulled}) {
-    const DrivenMotion motion = run->by_position();
+  for (const auto& run : {sliding, sprung, noisy, pulled}) {
+    const DrivenMotion motion = run.by_position();
     const auto look = first_look(std::span(&motion, 1), Joint::prismatic);
     ASSERT_TRUE(look);
     EXPECT_EQ(look->presliding, 0.0);

@@ -40,7 +40,7 @@ double left_by_the_truth(bool of_position, double delay, double seen_delay) {
   sine.input = late;
   std::vector<Grid> grids;
   grids.emplace_back(sine.motion(), of_position);
-  const Balance balance = balance_in(grids, 64, of_position, false, seen_delay);
+  const Balance balance = balance_in(grids, 64, of_position, {}, seen_delay);
   EXPECT_EQ(balance.terms.cols(), 4);
   EXPECT_GT(balance.terms.rows(), 50);
   const Eigen::Vector4d truth(kMassOf, kDamping, kFriction, kConstantForce);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
@@ -56,10 +57,31 @@ TEST_F(RoundOfAModel, ComputesWhatAnotherDidNotNeed) {
   RoundOptions options;
   options.excluded = {all.models[*all.best].hypothesis};
   const RoundResult rest = round(options, memory);
-  EXPECT_FALSE(has_scored());
   RoundMemory none;
   expect_same(rest, round(options, none));
-  EXPECT_TRUE(has_scored());
+}
+
+// A friction as large as half of the force: to first order a bump as wide as the stroke, or one
+// that depends on the load, explains more of it. The plain law is refitted before these.
+TEST(RoundTest, EndsWithThePlainLawWhereThatLeavesNothing) {
+  Model<double> truth = slide();
+  add_effect<CoulombFriction>(truth).F_c = 12.0;
+  const Job job = two_recordings(truth, slide(), {"M", "B_a"});
+  RoundMemory memory;
+  const RoundResult found = try_round(declared_model(job), {}, memory, {});
+  ASSERT_TRUE(found.best);
+  EXPECT_EQ(found.models[*found.best].hypothesis.name, "coulomb_friction");
+  const auto named = [](const char* name) {
+    return [name](const auto& one) {
+      if constexpr (requires { one.hypothesis->name; })
+        return one.hypothesis->name == name;
+      else
+        return one.hypothesis.name == name;
+    };
+  };
+  // What promised as much is a rival, to be looked at when all else is known.
+  EXPECT_TRUE(std::ranges::none_of(found.models, named("dahl_friction")));
+  EXPECT_TRUE(std::ranges::any_of(found.unrefitted, named("dahl_friction")));
 }
 
 // A disturbance that no effect of the catalogue makes: some promise a part of what the test asks.
@@ -87,6 +109,19 @@ TEST(RoundTest, RefitsNothingThatIsHopeless) {
     hopeless += may_pass ? 0 : 1;
   }
   EXPECT_GT(hopeless, 0u);
+}
+
+// One gain tells enough of a model whose one lack is plain, and all are asked where nothing passes.
+TEST_F(RoundOfAModel, ScoresAtOtherGainsOnlyWhereItMust) {
+  RoundMemory memory;
+  ASSERT_TRUE(round({}, memory).best);
+  EXPECT_TRUE(memory.list->has_most);
+  EXPECT_EQ(memory.list->observer_gains.size(), 1u);
+  RoundOptions options;
+  for (const Scored& entry : memory.list->entries) options.excluded.push_back(*entry.hypothesis);
+  round(options, memory);
+  EXPECT_GT(memory.list->observer_gains.size(), 1u);
+  EXPECT_TRUE(has_scored());
 }
 
 TEST_F(RoundOfAModel, RemembersNothingOfAnotherModel) {

@@ -47,6 +47,25 @@ TEST(Shortlist, HasWhatASimplerEffectGainsAsWellAsSecond) {
   EXPECT_FALSE(first.contains("stribeck_friction"));
 }
 
+// A richer law that gains more may be what a plain one is taken for.
+TEST(Shortlist, HearsThePlainLawBesideARicherOne) {
+  Model<double> truth = slide();
+  auto& friction = add_effect<StribeckFriction>(truth);
+  friction.F_st = 12.0;
+  friction.v_st = 0.1;
+  const Job job = two_recordings(truth, slide(), {"M", "B_a"});
+  SearchOptions options;
+  options.shortlist.first = 1;
+  options.shortlist.worth = options.shortlist.nearly_best = 1.0;
+  const std::vector<double> gains{score_gains(job).back()};
+  const Shortlist list = shortlist(job, kValues, gains, false, {.options = options});
+  EXPECT_EQ(list.entries.front().hypothesis->name, "stribeck_friction");
+  EXPECT_EQ(names_in(list), (std::set<std::string>{"stribeck_friction", "coulomb_friction"}));
+  options.shortlist.worth_plain = 1.0;
+  EXPECT_EQ(names_in(shortlist(job, kValues, gains, false, {.options = options})),
+            std::set<std::string>{"stribeck_friction"});
+}
+
 // In a simulation that tracks, an effect that enters linearly gains what its score promises.
 TEST(Shortlist, PromisesWhatTheAcceptanceTestFinds) {
   Job job = with_friction(3.0);
