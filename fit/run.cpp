@@ -73,10 +73,11 @@ void exchange_roles(RunResult& result, const RunContext& context) {
   result.selection = std::move(found->selection);
 }
 
-/// A search that leaves something may have begun at a wrong end of the declared model.
+/// A search that ends far from the noise may have begun at a wrong end of the declared model.
 void search_from_elsewhere(RunResult& result, const RunContext& context) {
-  constexpr double kClearlyBetter = 0.9;
-  if (result.selection->explained || result.selection->interrupted) return;
+  constexpr double kClearlyBetter = 0.9, kNear = 5.0;
+  const EffectSelection& found = *result.selection;
+  if (found.explained || found.interrupted || reduced_cost(found.result.fit) < kNear) return;
   FitResult other = estimate_with_noise(result.baseline, context);
   if (!other.is_usable() || (result.first.is_usable() &&
                              reduced_cost(other) > kClearlyBetter * reduced_cost(result.first)))
