@@ -246,9 +246,11 @@ class RoundTrial {
     std::optional<Tried>& known = memory_.refits[place];
     if (known) return *known;
     const double present = reduced_cost(model_.fit);
-    Tried tried = try_hypothesis(
-        model_.job, entry(place), context_,
-        {.give_up_above = cost, .cost_nearby = is_close() ? std::optional(present) : std::nullopt});
+    const bool may_be_nearby = is_close() && model_.job.options.is_continued();
+    Tried tried =
+        try_hypothesis(model_.job, entry(place), context_,
+                       {.give_up_above = cost,
+                        .cost_nearby = may_be_nearby ? std::optional(present) : std::nullopt});
     tried.is_outdone = cost < present && !tried.fit.is_usable() && reduced_cost(tried.fit) > cost;
     if (!tried.is_outdone) known = tried;  // another round may lack what outdid it
     return tried;
