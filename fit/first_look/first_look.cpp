@@ -248,6 +248,7 @@ std::optional<FirstLook> look_at_presliding(std::span<const DrivenMotion> motion
   };
   constexpr int kHalvings = 10;  // to a thousandth of the stroke
   for (int k = 2; k <= kHalvings; ++k) try_travel(stroke * std::exp2(-k));
+  if (travel == 0.0) return std::nullopt;
   for (const double step : {0.5, 0.25, 0.125, 0.0625}) {
     const double middle = travel;
     try_travel(middle * std::exp2(step));

@@ -173,8 +173,9 @@ class RoundTrial {
       const bool none_passes = all_are_rejected(result_.models);
       if (!none_passes && (turn(*next) > Turn::near_it || any_explains())) break;
       const auto end = std::ranges::upper_bound(next, places.end(), turn(*next), {}, turn);
+      const std::size_t known = result_.models.size();
       refit_all({next, end});
-      reject_what_raises_the_force();
+      reject_what_raises_the_force(known);
       next = end;
     }
     for (; next != places.end(); ++next)
@@ -258,8 +259,9 @@ class RoundTrial {
 
   /// An error of an instrument or of time may follow a recording more closely and yet ask for a
   /// larger force that the machine does not have.
-  void reject_what_raises_the_force() {
-    for (Tried& e : result_.models) {
+  /// Looks at the refits from `first` on.
+  void reject_what_raises_the_force(std::size_t first = 0) {
+    for (Tried& e : std::span(result_.models).subspan(first)) {
       if (e.rejection) continue;
       if (!force_before_) force_before_ = missing_percents(model_.job, model_.fit);
       e.rejection = rejection_by_force(*force_before_, missing_percents(e.job, e.fit),

@@ -29,8 +29,8 @@ class ContactTest : public InitJobTest {
   Job job_;
 };
 
-// Friction that bends before it slips is told from a mass, which it hides: by its sign that was
-// below zero, and the torque was turned for it.
+// Friction that bends before it slips hides the mass: as a mass of its own it came out below zero,
+// and the torque was turned for that.
 TEST_F(ContactTest, AJointOfFrictionThatBuildsUpIsOne) {
   const InitialJob made = contact({"joint-friction-dominated.csv"});
   ASSERT_TRUE(made.look);

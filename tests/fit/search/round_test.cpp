@@ -57,8 +57,10 @@ TEST_F(RoundOfAModel, ComputesWhatAnotherDidNotNeed) {
   RoundOptions options;
   options.excluded = {all.models[*all.best].hypothesis};
   const RoundResult rest = round(options, memory);
+  EXPECT_EQ(has_scored(), memory.is_whole);  // no more than the gains that were left
   RoundMemory none;
   expect_same(rest, round(options, none));
+  EXPECT_TRUE(has_scored());
 }
 
 // A friction as large as half of the force: to first order a bump as wide as the stroke, or one
