@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -46,14 +47,15 @@ enum ExitCode {  // besides kBadInput
 };
 
 // The first signal ends the work, a second one the program.
-StopFlag stop_flag = false;
-StopFlag time_limit_reached = false;  // that was the time limit
+StopFlag stop_flag;
+StopFlag search_over(&stop_flag);              // there is time left to judge what a search found
+std::atomic<bool> time_limit_reached = false;  // that was the time limit
 static_assert(StopFlag::is_always_lock_free);
 
 void stop_on_signals() {
   struct sigaction action = {};
   action.sa_handler = [](int signal) {
-    if (stop_flag.exchange(true)) end_by_signal(signal);
+    if (stop_flag.set()) end_by_signal(signal);
   };
   for (const int signal : {SIGINT, SIGTERM}) {
     struct sigaction inherited = {};
@@ -63,16 +65,23 @@ void stop_on_signals() {
   }
 }
 
+timeval time_of(double seconds) {
+  const double complete = std::floor(seconds);
+  return {static_cast<time_t>(complete),
+          static_cast<suseconds_t>(std::ceil(999'999.0 * (seconds - complete)))};
+}
+
+/// The first alarm ends a search, the second one all.
 void stop_after(double seconds) {
   struct sigaction action = {};
-  action.sa_handler = [](int) { time_limit_reached = !stop_flag.exchange(true); };
+  action.sa_handler = [](int) {
+    if (search_over.set() && !stop_flag.set()) time_limit_reached = true;
+  };
   action.sa_flags = SA_RESTART;
   sigaction(SIGALRM, &action, nullptr);
-  const double complete = std::floor(seconds);
-  const itimerval once{{0, 0},
-                       {static_cast<time_t>(complete),
-                        static_cast<suseconds_t>(std::ceil(999'999.0 * (seconds - complete)))}};
-  setitimer(ITIMER_REAL, &once, nullptr);
+  const itimerval alarms{time_of((1.0 - kPartOfSearch) * seconds),
+                         time_of(kPartOfSearch * seconds)};
+  setitimer(ITIMER_REAL, &alarms, nullptr);
 }
 
 int exit_code_of_stop() { return time_limit_reached ? kTimeLimitReached : kInterrupted; }
@@ -214,7 +223,7 @@ int run_job(const FitArguments& arguments, std::optional<ProgressLine>& line, co
   const std::unique_ptr<OutputFolder> folder = open_folder(arguments, file.files, line);
 
   const RunContext context{&stop_flag, folder ? &folder->journal() : nullptr,
-                           [&](const Progress& progress) { line->update(progress); }};
+                           [&](const Progress& progress) { line->update(progress); }, &search_over};
   RunOptions options_of_run = arguments.options;
   options_of_run.others = models_of(arguments.others, file.job);
   for (const std::string& text : arguments.tolerances)
@@ -223,6 +232,8 @@ int run_job(const FitArguments& arguments, std::optional<ProgressLine>& line, co
     options_of_run.motion = motion_of(arguments.motion, file.rig);
   set_profiles(arguments.profiled, file.job, options_of_run);
   RunResult& found = result.emplace(run(file.job, options_of_run, context));
+  if (found.selection && found.selection->cut_short && !is_set(&stop_flag))
+    time_limit_reached = true;
   if (found.interrupted && time_limit_reached) found.time_limit = arguments.time_limit;
   const std::string json = result_json(found).dump(2) + "\n";
   line.reset();
@@ -334,7 +345,7 @@ int main(int argc, char** argv) {
   add_options(app, arguments);
   return run_program(app, kFitShortHelp, argc, argv, [&] {
     complete(app, argc, argv, arguments);
-    stop_flag = arguments.check;  // there is nothing to keep
+    if (arguments.check) stop_flag.set();  // there is nothing to keep
     stop_on_signals();
     if (arguments.time_limit) stop_after(*arguments.time_limit);
     try {

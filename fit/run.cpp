@@ -62,7 +62,7 @@ void fit_from_inverse_dynamics(RunResult& result, const RunContext& context) {
 /// Where no effect passes, once more with the roles of the recordings exchanged.
 void exchange_roles(RunResult& result, const RunContext& context) {
   if (result.selection->verdict.kind != SelectionVerdict::Kind::none_passes ||
-      result.selection->interrupted)
+      result.selection->interrupted || result.selection->cut_short)
     return;
   std::optional<ExchangedSearch> found = search_with_exchanged_roles(result.baseline, context);
   if (!found) return;
@@ -77,7 +77,9 @@ void exchange_roles(RunResult& result, const RunContext& context) {
 void search_from_elsewhere(RunResult& result, const RunContext& context) {
   constexpr double kClearlyBetter = 0.9, kNear = 5.0;
   const EffectSelection& found = *result.selection;
-  if (found.explained || found.interrupted || reduced_cost(found.result.fit) < kNear) return;
+  if (found.explained || found.interrupted || found.cut_short ||
+      reduced_cost(found.result.fit) < kNear)
+    return;
   FitResult other = estimate_with_noise(result.baseline, context);
   if (!other.is_usable() || (result.first.is_usable() &&
                              reduced_cost(other) > kClearlyBetter * reduced_cost(result.first)))
@@ -339,6 +341,7 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   find_guess_influences(result);
   find_hold_shifts(result.job(), final_fit(result));
   take_final_estimates(result);
+  if (result.selection && result.selection->cut_short) result.interrupted = true;
   result.times = watch.times();
   for (const WorkTime& time : result.times) result.wall_time += time.wall;
   return result;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/deadline.h"
 #include "fit/judge/series.h"
 #include "init/starter_axis.h"
 #include "io/config/job_file.h"
@@ -52,9 +51,9 @@ void mark_examples(InitialJob& created, const JobFile& read) {
                   fmt::join(names, ", ")));
 }
 
-/// Of processors. What explains a recording does so at once; a stiff gear that does not would take
-/// minutes.
-constexpr double kSecondsOfATrial = 0.8, kSecondsOfAnother = 8.0;
+/// As StopFlag counts: about a second, and ten. What explains a recording does so at once; a stiff
+/// gear that does not would take minutes.
+constexpr long kWorkOfATrial = 5'000'000, kWorkOfAnother = 50'000'000;
 
 struct Trial {
   std::size_t place;  ///< in the order of trials: one mass first
@@ -68,12 +67,12 @@ struct Trial {
     context.report({.phase = "trying " + result.name});
     Job tried = read;
     tried.options.attempts = attempts;
-    const Deadline deadline(context.stop, attempts > 1 ? kSecondsOfAnother : kSecondsOfATrial);
+    const StopFlag spent(context.stop, attempts > 1 ? kWorkOfAnother : kWorkOfATrial);
     RunContext within = context.quiet();
-    within.stop = deadline.flag();
+    within.stop = &spent;
     try {
       result.error = error_of(tried, estimate(tried, within));
-    } catch (const Interrupted&) {  // no fit within that time
+    } catch (const Interrupted&) {  // no fit within that work
       if (is_set(context.stop)) throw;
     }
   }
@@ -101,18 +100,16 @@ MachineChoice choose_machine(const InitRequest& request, const RunContext& conte
   std::vector<Trial> trials;
   const auto try_axis = [&](const std::string& name, InitialJob made) {
     Trial trial{trials.size(), {name, {}, 0}, std::move(made), {}};
-    const JobFile read = read_job_draft(trial.job.files, request.folder);
-    if (name != kMass) mark_examples(trial.job, read);
-    trial.read = read.job;
+    trial.read = read_job_draft(trial.job.files, request.folder).job;
     trial.read.options.threads = threads;
-    trial.result.parameters = read.job.free.size();
+    trial.result.parameters = trial.read.free.size();
     try {
       trial.fit(1, context);
     } catch (const Interrupted&) {
       trial.job.guesses.emplace_back(
           "which kind of axis it is was not looked at, since the run was stopped");
     }
-    choice.is_validated = read.job.recordings.size() > 1;
+    choice.is_validated = trial.read.recordings.size() > 1;
     trials.push_back(std::move(trial));
   };
   const auto samples_of = [&](const InitialJob& made) {
@@ -126,13 +123,17 @@ MachineChoice choose_machine(const InitRequest& request, const RunContext& conte
     return choice;
   }
   if (refusal.empty()) try_axis(kMass, choice.job);
-  for (const std::string& name : machines) {
+  const auto job_of = [&](const std::string& machine, bool is_on_trial) {
     InitRequest of_machine = request;
-    of_machine.axis = name;
+    of_machine.axis = machine;
     of_machine.is_machine = true;
+    of_machine.is_on_trial = is_on_trial;
+    return initial_job(of_machine, context);
+  };
+  for (const std::string& name : machines) {
     if (is_set(context.stop)) break;
     try {
-      try_axis(name, initial_job(of_machine, context));
+      try_axis(name, job_of(name, true));
     } catch (const std::runtime_error& error) {
       if (refusal.empty()) refusal = error.what();
     }
@@ -157,6 +158,10 @@ MachineChoice choose_machine(const InitRequest& request, const RunContext& conte
                             });
   std::rotate(trials.begin(), chosen, chosen + 1);
   choice.job = std::move(trials.front().job);
+  if (const std::string& name = trials.front().result.name; name != kMass) {
+    if (!is_set(context.stop)) choice.job = job_of(name, false);
+    mark_examples(choice.job, read_job_draft(choice.job.files, request.folder));
+  }
   for (Trial& t : trials) choice.tried.push_back(std::move(t.result));
   return choice;
 }

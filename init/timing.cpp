@@ -7,7 +7,6 @@
 #include <functional>
 #include <span>
 
-#include "base/deadline.h"
 #include "base/plain_text.h"
 #include "base/rounding.h"
 #include "base/units.h"
@@ -108,6 +107,14 @@ Timing fitted_timing(JobDraft draft, bool is_held, std::size_t averaged,
     if (times.size() > most) recording.trim_to = times[most];
   }
   Job job = draft_job(draft);
+  if (averaged > 1) {
+    // The noise of a mean is judged otherwise, and chi-squares would not compare.
+    set_averaged(draft, 1);
+    const Job plain = draft_job(draft);
+    for (std::size_t r = 0; r < job.recordings.size(); ++r)
+      for (std::size_t m = 0; m < job.recordings[r].measurements.size(); ++m)
+        job.recordings[r].measurements[m].sigma = plain.recordings[r].measurements[m].sigma;
+  }
   for (Recording& recording : job.recordings) recording.role = Role::fit;  // all of them tell
   job.options = recipe::quick(job.options);
   job.options.threads = 1;
@@ -160,28 +167,28 @@ Timing best_average(const JobDraft& draft, const Timing& late, const RunContext&
   return best.chi_square < kClearly * late.chi_square ? best : late;
 }
 
-/// By fits with both holds, and of a late velocity with means, unless they take longer than that is
-/// worth. Throws Interrupted after a stop.
+/// By fits with both holds, and of a late velocity with means, unless they take more work than that
+/// is worth. Throws Interrupted after a stop.
 Timing best_timing(const JobDraft& draft, bool is_held, const RunContext& context) {
-  constexpr double kSeconds = 0.5;  // of processors, for the holds, and again for the means
+  constexpr long kWork = 10'000'000;  // for the holds, and again for the means: a second
   Timing best = seen_timing(draft, is_held);
-  const auto within_time = [&](const std::function<void(const RunContext&)>& try_out) {
-    const Deadline deadline(context.stop, kSeconds);
+  const auto within_work = [&](const std::function<void(const RunContext&)>& try_out) {
+    const StopFlag spent(context.stop, kWork);
     RunContext within = context.quiet();
-    within.stop = deadline.flag();
+    within.stop = &spent;
     try {
       try_out(within);
     } catch (const Interrupted&) {
       if (is_set(context.stop)) throw;
     }
   };
-  within_time([&](const RunContext& within) {
+  within_work([&](const RunContext& within) {
     const Timing usual = fitted_timing(draft, is_held, 1, within),
                  other = fitted_timing(draft, !is_held, 1, within);
     best = other.is_better_than(usual, interval_of(draft)) ? other : usual;
   });
   if (std::isfinite(best.chi_square) && best.is_late(interval_of(draft)) && may_be_averaged(draft))
-    within_time([&](const RunContext& within) { best = best_average(draft, best, within); });
+    within_work([&](const RunContext& within) { best = best_average(draft, best, within); });
   return best;
 }
 
@@ -200,7 +207,7 @@ void set_timing(JobDraft& draft, const RunContext& context) {
   if (!draft.look || draft.look->direction == FirstLook::Direction::open) return;
   Timing chosen = seen_timing(draft, is_held);
   try {
-    chosen = best_timing(draft, is_held, context);
+    if (!draft.request.is_on_trial) chosen = best_timing(draft, is_held, context);
   } catch (const Interrupted&) {
     draft.guesses.emplace_back(
         "whether the input holds from sample to sample was not looked at, since the run was "

@@ -87,10 +87,11 @@ class Work {
     std::exception_ptr failed;
     std::thread worker([&] {
       try {
-        outcome.result = function(RunContext{&stop_, nullptr, [&](const Progress& p) {
-                                               const std::lock_guard lock(mutex_);
-                                               latest_ = p;
-                                             }});
+        const auto note = [&](const Progress& p) {
+          const std::lock_guard lock(mutex_);
+          latest_ = p;
+        };
+        outcome.result = function(RunContext{&stop_, nullptr, note, &search_over_});
       } catch (const Interrupted&) {
         // There is no result.
       } catch (...) {
@@ -108,14 +109,15 @@ class Work {
         done = changed_.wait_for(lock, kLook, [&] { return done_; });
       }
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-      if (time_limit && spent.count() > *time_limit) stop_ = true;
+      if (time_limit && spent.count() > kPartOfSearch * *time_limit) search_over_.set();
+      if (time_limit && spent.count() > *time_limit) stop_.set();
       if (outcome.stopped) continue;
       try {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         if (!progress.is_none()) report(progress);
       } catch (...) {
         outcome.stopped = std::current_exception();
-        stop_ = true;
+        stop_.set();
       }
     }
     {
@@ -136,7 +138,8 @@ class Work {
     if (latest) progress(latest->phase, latest->done, latest->of, latest->best);
   }
 
-  StopFlag stop_ = false;
+  StopFlag stop_;
+  StopFlag search_over_{&stop_};
   std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<Progress> latest_;

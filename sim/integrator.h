@@ -23,7 +23,6 @@
 // cubic showing it, is missed.
 #pragma once
 
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -32,6 +31,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/interrupt.h"
 #include "sim/controller.h"
 #include "sim/equations.h"
 #include "sim/guards.h"
@@ -60,7 +60,7 @@ struct IntegratorOptions {
   /// Steps altogether before it is given up, since it swings too fast to be followed.
   long step_budget = 200'000'000;
   /// When this is set, from another thread or by a signal, a simulation ends unfinished.
-  const std::atomic<bool>* stop = nullptr;
+  const StopFlag* stop = nullptr;
   /// Where the modes passed through are noted, the first included; null: nowhere.
   std::vector<ModeChange>* modes = nullptr;
 };
@@ -722,9 +722,7 @@ bool Integrator<T>::advance_to(const T& end) {
     const State<double> from = plain_state();
     State<double> to;
     const Crossing course = try_step(from, by_series ? step_levels.last + 1 : level, length, to);
-    if (steps_ > options_.step_budget ||
-        (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)))
-      return false;
+    if (steps_ > options_.step_budget || is_set(options_.stop)) return false;
     if (course != Crossing::none) {
       if (!shortest && !(affine() && course == Crossing::passed && length <= resolved)) {
         search = std::max(1, piece ? level : level + 1);

@@ -147,16 +147,27 @@ void propose_closed_forms(SearchState& state, const FittedModel& last,
   }
 }
 
+/// As search(), until there is only time left to judge what it found.
+SearchState searched(SearchState declared, Rounds& rounds) {
+  RunContext& context = rounds.context.run;
+  const StopFlag* const stop = context.stop;
+  if (context.end_search != nullptr) context.stop = context.end_search;
+  SearchState found = search(std::move(declared), rounds);
+  context.stop = stop;
+  return found;
+}
+
 /// A whole search by the criterion of the job.
 EffectSelection search_effects(const Job& job, const FitResult& first, Rounds& rounds) {
   EffectSelection selection;
   SearchState state = begin(job, first, rounds);
   selection.held_out_blocks = rounds.held_out_blocks;
   if (state.current().fit.is_usable()) {
-    state = search(std::move(state), rounds);
+    state = searched(std::move(state), rounds);
     const SearchState found = state;
+    selection.cut_short = state.interrupted && !is_set(rounds.context.run.stop);
     try {
-      if (state.interrupted) throw Interrupted();
+      if (state.interrupted && !selection.cut_short) throw Interrupted();
       review(state, rounds, selection);
     } catch (const Interrupted&) {
       state = found;

@@ -64,7 +64,8 @@ struct EffectSelection {
   std::vector<Outcome> effects;     ///< what became of every hypothesis that was refitted
   bool held_out_blocks = false;     ///< no recording to validate: blocks of the fitted were kept
   bool explained = false;           ///< nothing but noise is left, and no small effect
-  bool interrupted = false;         ///< the search was not finished
+  bool interrupted = false;         ///< the search was stopped, and what it found not judged
+  bool cut_short = false;  ///< it ended early (RunContext::end_search), and that was judged
   /// Where the job lets it be chosen and effects were accepted: by the model with them.
   std::optional<HorizonChoice> horizon;
   SelectionVerdict verdict;
@@ -72,7 +73,7 @@ struct EffectSelection {
 };
 
 /// `first` is the fit of the job as declared. When the stop flag is set, the effects accepted
-/// so far are the result.
+/// so far are the result; when the search is to end, these are judged first, as others are.
 EffectSelection select_effects(const Job& job, const FitResult& first,
                                const SearchOptions& options = {}, const RunContext& context = {});
 

@@ -58,7 +58,7 @@ SelectionVerdict::Kind kind_of(const EffectSelection& selection, bool is_noise) 
   if (!verdict.accepted.empty()) return effects_accepted;
   if (verdict.undecided.empty() && is_noise)
     return verdict.small.empty() ? nothing_missing : hardly_anything;
-  if (selection.interrupted) return stopped;
+  if (selection.interrupted || selection.cut_short) return stopped;
   if (verdict.at_bound || verdict.recording) return misfit;
   return verdict.undecided.empty() ? none_passes : undecided;
 }

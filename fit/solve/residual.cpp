@@ -65,8 +65,14 @@ SimulationResult run(const Job& job, const Recording& recording, const Model<T>&
     restarts.at(i, axis);
     read(i, axis);
   };
-  return simulate<T>(model, recording.command, recorder.instants(), begin_and_read, observer,
-                     {velocity, position, channels}, options, disturbances);
+  long weight = 1;
+  if constexpr (!std::is_same_v<T, double>) weight += T::DIMENSION;
+  if (stop != nullptr) options.step_budget = std::min(options.step_budget, stop->left() / weight);
+  const SimulationResult result =
+      simulate<T>(model, recording.command, recorder.instants(), begin_and_read, observer,
+                  {velocity, position, channels}, options, disturbances);
+  if (stop != nullptr) stop->count(weight * result.steps);
+  return result;
 }
 
 /// Calls visit(x) for the states in use, and for what is remembered where that counts.

@@ -228,9 +228,10 @@ TEST(Estimate, KeepsTheStartsThatWereFinishedWhenItIsStopped) {
   Job job = example_job();
   job.options.starts = 3;
   job.options.threads = 1;
-  StopFlag stop = false;
-  const FitResult result =
-      estimate(job, {&stop, nullptr, [&](const Progress& p) { stop = p.done == 1; }});
+  StopFlag stop;
+  const FitResult result = estimate(job, {&stop, nullptr, [&](const Progress& p) {
+                                            if (p.done == 1) stop.set();
+                                          }});
   EXPECT_TRUE(result.is_usable());
   EXPECT_TRUE(result.interrupted);
   EXPECT_EQ(result.starts.size(), 1u);
@@ -240,7 +241,7 @@ TEST(Estimate, KeepsTheStartsThatWereFinishedWhenItIsStopped) {
   for (std::size_t i = 0; i < first.parameters.size(); ++i)
     EXPECT_EQ(result.parameters[i].value, first.parameters[i].value);
 
-  stop = true;
+  stop.set();
   EXPECT_THROW(estimate(job, {&stop}), Interrupted);
 }
 

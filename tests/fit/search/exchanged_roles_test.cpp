@@ -34,7 +34,8 @@ TEST(ExchangedRoles, AreNoneWhereNothingIsFound) {
 }
 
 TEST(ExchangedRoles, StopWithoutAResult) {
-  StopFlag stop = true;
+  StopFlag stop;
+  stop.set();
   EXPECT_THROW(search_with_exchanged_roles(hidden_effect_named("coulomb_friction").job(), {&stop}),
                Interrupted);
 }

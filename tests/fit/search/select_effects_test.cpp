@@ -312,18 +312,18 @@ TEST(SelectEffects, AddsNoMoreThanIsAllowed) {
 TEST(SelectEffects, KeepsWhatIsAcceptedWhenItIsStopped) {
   const Job job = hidden_effect_named("drive_lag").job();
   const FitResult fit = estimate(job);
-  StopFlag stop = false;
   // After the first effect, or else at once.
   for (const bool late : {true, false}) {
-    stop = !late;
+    StopFlag stop;
+    if (!late) stop.set();
     int phases = 0;
     const EffectSelection selection =
         select_effects(job, fit, {}, {&stop, nullptr, [&](const Progress& p) {
                                         if (p.phase == "scoring effects") ++phases;
                                         if (p.phase == "is drive_lag necessary?" || phases > 1)
-                                          stop = true;
+                                          stop.set();
                                       }});
-    EXPECT_EQ(selection.interrupted, stop.load());
+    EXPECT_EQ(selection.interrupted, stop.is_set());
     EXPECT_EQ(accepted(selection), late ? Names{"drive_lag"} : Names{});
     EXPECT_TRUE(selection.result.fit.is_usable());
     EXPECT_EQ(selection.verdict.kind,

@@ -29,11 +29,11 @@ TEST(Named, AddsWhatPassesAndEndsWhereNothingMoreDoes) {
 }
 
 TEST(Named, KeepsWhatItHasWhenItIsStopped) {
-  StopFlag stop = false;
+  StopFlag stop;
   Rounds rounds;
   int scored = 0;
   rounds.context.run = {&stop, nullptr, [&](const Progress& p) {
-                          if (p.phase == "scoring effects" && ++scored == 2) stop = true;
+                          if (p.phase == "scoring effects" && ++scored == 2) stop.set();
                         }};
   const SearchState state =
       named(start_of(hidden_effect_named("coulomb_friction").job(), rounds), rounds);
@@ -51,11 +51,11 @@ TEST(Together, ReturnsToTheDeclaredModelWhereItFindsNothingNew) {
 }
 
 TEST(Together, IsStoppedByAnException) {
-  StopFlag stop = false;
+  StopFlag stop;
   Rounds rounds;
   const SearchState state = start_of(hidden_effect_named("coulomb_friction").job(), rounds);
   rounds.context.run.stop = &stop;
-  stop = true;
+  stop.set();
   EXPECT_THROW(together(state, rounds), Interrupted);
 }
 
@@ -76,11 +76,11 @@ TEST(Search, GivesTheLastValidStateWhenALaterStrategyIsStopped) {
   Job job = two_recordings(slide(), slide(), {"M", "B_a"});
   for (Recording& r : job.recordings)
     for (Measurement& m : r.measurements) m.sigma *= 0.7;
-  StopFlag stop = false;
+  StopFlag stop;
   Rounds rounds;
   const SearchState first = start_of(job, rounds);
   rounds.context.run = {&stop, nullptr, [&](const Progress& p) {
-                          if (p.phase == "search") stop = true;  // after the first round
+                          if (p.phase == "search") stop.set();  // after the first round
                         }};
   const SearchState found = search(first, rounds);
   EXPECT_TRUE(found.interrupted);

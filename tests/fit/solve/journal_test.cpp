@@ -27,10 +27,10 @@ class MemoryJournal : public Journal {
     const std::lock_guard lock(mutex_);
     solutions_.emplace(key, solution);
     ++kept;
-    if (kept == stop_after) stop = true;
+    if (kept == stop_after) stop.set();
   }
 
-  StopFlag stop = false;
+  StopFlag stop;
   int found = 0, kept = 0, stop_after = -1;
 
  private:
@@ -87,12 +87,10 @@ TEST(JournalTest, ASearchForEffectsThatIsBegunAgainEndsTheSame) {
   EXPECT_EQ(wanted.models.back().added, "coulomb_friction");
   for (const int stop_after : {2, 11}) {
     MemoryJournal journal;
-    const RunContext context{&journal.stop, &journal};
     journal.stop_after = stop_after;
-    EXPECT_TRUE(select_effects(plain, fit, {}, context).interrupted);
-    journal.stop = false;
+    EXPECT_TRUE(select_effects(plain, fit, {}, {&journal.stop, &journal}).interrupted);
     const int kept = journal.kept;
-    const EffectSelection again = select_effects(plain, fit, {}, context);
+    const EffectSelection again = select_effects(plain, fit, {}, {nullptr, &journal});
     EXPECT_GE(journal.found, kept);
     EXPECT_EQ(again.verdict, wanted.verdict);
     EXPECT_EQ(digits(again.result.fit), digits(wanted.result.fit));

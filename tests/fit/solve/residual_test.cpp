@@ -174,12 +174,28 @@ TEST(RecordingCost, RejectsWhatCannotBeSimulated) {
 TEST(RecordingCost, IsNotFinishedOnceItIsToStop) {
   const Job job = example_job();
   const ParameterSpace space(job);
-  StopFlag stop = false;
+  StopFlag stop;
   const RecordingCost cost(job, space, 0, {}, &stop);
   const Eigen::VectorXd truth = space.internal({{2.7, 200.0, 1500.0, 5e6, 0.04}});
   EXPECT_TRUE(evaluate(cost, truth).finite);
-  stop = true;
+  stop.set();
   EXPECT_FALSE(evaluate(cost, truth).finite);
+}
+
+TEST(RecordingCost, CountsItsStepsAndEndsWhereTheyAreSpent) {
+  const Job job = example_job();
+  const ParameterSpace space(job);
+  const Eigen::VectorXd truth = space.internal({{2.7, 200.0, 1500.0, 5e6, 0.04}});
+  constexpr long kMuch = 1'000'000'000;
+  const StopFlag much(nullptr, kMuch);
+  EXPECT_TRUE(evaluate(RecordingCost(job, space, 0, {}, &much), truth).finite);
+  const long work = kMuch - much.left();
+  EXPECT_GT(work, static_cast<long>(job.recordings[0].times.size()));
+  const StopFlag enough(nullptr, work), half(nullptr, work / 2);
+  EXPECT_TRUE(evaluate(RecordingCost(job, space, 0, {}, &enough), truth).finite);
+  EXPECT_FALSE(is_set(&enough));
+  EXPECT_FALSE(evaluate(RecordingCost(job, space, 0, {}, &half), truth).finite);
+  EXPECT_TRUE(is_set(&half));
 }
 
 /// The slide with an outlier of a hundred and one of minus fifty sigma.

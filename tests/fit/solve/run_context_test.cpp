@@ -11,10 +11,10 @@ namespace axisfit {
 namespace {
 
 TEST(RunContext, ThrowsOnceItIsToStop) {
-  StopFlag stop = false;
+  StopFlag stop;
   const RunContext context{.stop = &stop};
   EXPECT_NO_THROW(context.check_stop());
-  stop = true;
+  stop.set();
   EXPECT_THROW(context.check_stop(), Interrupted);
   EXPECT_NO_THROW(RunContext().check_stop());
 }
@@ -24,7 +24,8 @@ TEST(RunContext, QuietWorkReportsNothingAndIsElseTheSame) {
     std::optional<SolveResult> find(const ProblemKey&) override { return std::nullopt; }
     void store(const ProblemKey&, const SolveResult&) override {}
   } journal;
-  StopFlag stop = true;
+  StopFlag stop;
+  stop.set();
   std::vector<std::string> phases;
   const RunContext context{&stop, &journal,
                            [&](const Progress& now) { phases.push_back(now.phase); }};

@@ -119,7 +119,8 @@ TEST(Solve, FindsTheTruthInExactReadings) {
 TEST(Solve, ThrowsWhenItIsToStop) {
   const Job job = several_series();
   const ParameterSpace space(job);
-  StopFlag stop = true;
+  StopFlag stop;
+  stop.set();
   EXPECT_THROW(solve(job, space, elsewhere(space), 0.0, {}, {.stop = &stop}), Interrupted);
 }
 
