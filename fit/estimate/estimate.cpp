@@ -305,11 +305,13 @@ std::vector<Minimum> distinct_minima(std::vector<StartResult> starts) {
 
 std::vector<double> values_of(const FitResult& result) { return values_of(result.parameters); }
 
-Model<double> fitted_model(const Job& job, const FitResult& result) {
+Model<double> fitted_model(const Job& job, const FitResult& result,
+                           std::optional<std::size_t> recording) {
   Model<double> model = job.model;
   const std::vector<double*> member = members(model);
   for (std::size_t i = 0; i < job.free.size(); ++i)
-    if (!job.free[i].recording) *member[job.free[i].quantity] = result.parameters[i].value;
+    if (!job.free[i].recording || job.free[i].recording == recording)
+      *member[job.free[i].quantity] = result.parameters[i].value;
   return model;
 }
 

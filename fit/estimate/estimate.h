@@ -138,7 +138,9 @@ FitResult estimate_with_noise(Job& job, const RunContext& context = {},
 /// none that are free.
 FitResult evaluated(const Job& job);
 
-/// The model with the estimates in place of the free quantities that all recordings share.
-Model<double> fitted_model(const Job& job, const FitResult& result);
+/// The model with the estimates in place of the free quantities that all recordings share, and of
+/// those of this one.
+Model<double> fitted_model(const Job& job, const FitResult& result,
+                           std::optional<std::size_t> recording = {});
 
 }  // namespace axisfit

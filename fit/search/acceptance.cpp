@@ -38,11 +38,13 @@ double variance_of_products(const std::vector<double>& change, const ResidualSer
                   static_cast<double>(products.size()) * variance_along(ones, products));
 }
 
-/// Of free quantities, their places among the parameters.
-std::vector<Index> places_of(const std::vector<std::size_t>& quantities, const Job& job) {
+/// Of free quantities, of one recording or of all, their places among the parameters.
+std::vector<Index> places_of(const std::vector<std::size_t>& quantities,
+                             std::optional<std::size_t> recording, const Job& job) {
   std::vector<Index> places;
   for (const std::size_t q : quantities)
-    places.push_back(std::ranges::find(job.free, q, &FreeParameter::quantity) - job.free.begin());
+    places.push_back(std::ranges::find(job.free, ParameterId{q, recording}, &FreeParameter::id) -
+                     job.free.begin());
   return places;
 }
 
@@ -134,7 +136,7 @@ Determination determination(const Job& job, const FitResult& result, const Hypot
                             const std::vector<ResidualSeries>& residuals,
                             const SearchOptions& options) {
   Determination d;
-  const std::vector<Index> strengths = places_of(hypothesis.strengths, job);
+  const std::vector<Index> strengths = places_of(hypothesis.strengths, hypothesis.recording, job);
   const auto note = [&](Index place, bool is_shape) {
     const ParameterResult& p = result.parameters[static_cast<std::size_t>(place)];
     if (p.uncertainty.at_bound && !d.at_bound) d.at_bound = p.id;
@@ -144,7 +146,7 @@ Determination determination(const Job& job, const FitResult& result, const Hypot
   };
   for (const Index i : strengths) note(i, false);
   if (hypothesis.estimates_shapes())
-    for (const Index i : places_of(hypothesis.shapes, job)) note(i, true);
+    for (const Index i : places_of(hypothesis.shapes, hypothesis.recording, job)) note(i, true);
   d.required = chi_square_upper_quantile(options.acceptance.strength_chance,
                                          static_cast<double>(strengths.size()));
 

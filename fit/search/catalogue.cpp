@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -96,6 +97,33 @@ bool is_constant(const Job& job, const QuantityEntry& entry, double declared) {
           (is_recorded(job, *entry.signal) && !is_ignored(entry, job.options.criterion)));
 }
 
+/// What may differ from recording to recording, such as a payload: of the hypotheses of one number
+/// that add to mass, offset and dry friction, those of one recording alone. What one of two
+/// recordings has beyond a mass that is free, the other lacks: there the second has it.
+std::vector<Hypothesis> of_single_recordings(const Job& job, const std::vector<Hypothesis>& list) {
+  std::vector<std::size_t> fitted;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    if (job.recordings[r].role == Role::fit) fitted.push_back(r);
+  std::vector<Hypothesis> found;
+  if (fitted.size() < 2) return found;
+  const std::size_t added_mass = quantity_index("added_mass.dM");
+  for (const std::size_t quantity :
+       {added_mass, quantity_index("constant_force.F_0"), quantity_index("coulomb_friction.F_c")}) {
+    const std::vector<std::size_t> strengths{quantity};
+    const auto shared = std::ranges::find(list, strengths, &Hypothesis::strengths);
+    if (shared == list.end()) continue;
+    const bool is_relative =
+        quantity == added_mass && fitted.size() == 2 && has_value(job, quantity_index("M"));
+    for (const std::size_t r : std::span(fitted).subspan(is_relative ? 1 : 0)) {
+      Hypothesis& own = found.emplace_back(*shared);
+      own.recording = r;
+      own.name += "@" + job.recordings[r].name;
+      own.meaning += " in '" + job.recordings[r].name + "' alone";
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
 std::vector<Hypothesis> catalogue(const Job& job, SearchScales scales) {
@@ -161,6 +189,7 @@ std::vector<Hypothesis> catalogue(const Job& job, SearchScales scales) {
       hypothesis.neutral = {declared};
       list.push_back(std::move(hypothesis));
     }
+  for (Hypothesis& own : of_single_recordings(job, list)) list.push_back(std::move(own));
   for (const ActsOn place : kPlacesToAct) add_effects(place, true);
   return list;
 }

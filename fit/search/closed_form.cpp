@@ -235,7 +235,7 @@ std::optional<ClosedForm> closed_form(const Job& job, const FitResult& fit,
   const bool closes = x->unit == "rad";
   double from = 0.0, to = 2.0 * std::numbers::pi;
   if (!closes) {
-    const HypothesisValues own = values_in(fitted_model(job, fit), curve);
+    const HypothesisValues own = values_in(job, fit, curve);
     from = own.shapes[0];
     to = own.shapes[1];
   }

@@ -131,6 +131,7 @@ EffectColumns::EffectColumns(const Job& job, double observer_gain, const RunCont
     recordings_.push_back(r);
     costs_.emplace_back(job, space_, r, observer_for(job.recordings[r], observer_gain),
                         context.stop);
+    first_rows_.push_back(rows_);
     rows_ += costs_.back().num_residuals();
   }
   trajectories_.resize(costs_.size());
@@ -169,6 +170,11 @@ std::vector<Eigen::MatrixXd> EffectColumns::derivatives(
     if (i >= groups) result[alone[i - groups]] = exact(settings[alone[i - groups]]);
   });
   context_.check_stop();
+  for (std::size_t s = 0; s < settings.size(); ++s)
+    if (const auto only = settings[s].hypothesis->recording; only && result[s].size() > 0)
+      for (std::size_t r = 0; r < costs_.size(); ++r)
+        if (recordings_[r] != *only)
+          result[s].middleRows(first_rows_[r], costs_[r].num_residuals()).setZero();
   return result;
 }
 
@@ -192,6 +198,7 @@ void EffectColumns::add_batch(const std::vector<EffectSetting>& settings,
     Hypothesis one = *settings[c.setting].hypothesis;
     one.strengths = {c.quantity};
     one.neutral = {one.neutral[c.index]};
+    one.recording.reset();
     job = with_hypothesis(job, one, {}, {one.neutral, {}});
   }
   const ParameterSpace space(job);
@@ -257,9 +264,6 @@ void EffectColumns::add_forces(const std::vector<EffectSetting>& settings,
                                const std::vector<Column>& columns,
                                std::vector<Eigen::MatrixXd>& result) const {
   if (columns.empty()) return;
-  std::vector<Eigen::Index> row(costs_.size());
-  for (std::size_t r = 1; r < costs_.size(); ++r)
-    row[r] = row[r - 1] + costs_[r - 1].num_residuals();
   parallel_for(costs_.size(), [&](std::size_t r) {
     Eigen::MatrixXd response;
     if (!trajectories_[r].empty())
@@ -268,7 +272,7 @@ void EffectColumns::add_forces(const std::vector<EffectSetting>& settings,
       const Column& c = columns[k];
       auto own = result[c.setting]
                      .col(static_cast<Eigen::Index>(c.index))
-                     .segment(row[r], costs_[r].num_residuals());
+                     .segment(first_rows_[r], costs_[r].num_residuals());
       if (response.size() == 0)
         own.setConstant(NAN);
       else

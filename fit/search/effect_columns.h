@@ -55,6 +55,7 @@ class EffectColumns {
   std::vector<std::size_t> recordings_;  ///< that are fitted
   std::deque<RecordingCost> costs_;      ///< of these
   std::vector<std::vector<AxisInstant>> trajectories_;
+  std::vector<Eigen::Index> first_rows_;  ///< of each of them among all
   Eigen::Index rows_ = 0;
 };
 

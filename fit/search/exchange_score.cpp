@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Index;
 
-bool is_free_in(const Job& job, std::size_t quantity) {
-  return std::ranges::find(job.free, quantity, &FreeParameter::quantity) != job.free.end();
+bool is_free_in(const Job& job, ParameterId id) {
+  return std::ranges::find(job.free, id, &FreeParameter::id) != job.free.end();
 }
 
 bool is_absent_nearby(const Hypothesis& hypothesis) {
@@ -28,7 +28,7 @@ Eigen::VectorXd steps_to_absence(const Job& job, const ParameterSpace& space,
   Eigen::VectorXd steps = Eigen::VectorXd::Zero(u.size());
   for (const Hypothesis& one : taken_out)
     for (std::size_t s = 0; s < one.strengths.size(); ++s) {
-      const auto found = std::ranges::find(job.free, one.strengths[s], &FreeParameter::quantity);
+      const auto found = std::ranges::find(job.free, one.strength(s), &FreeParameter::id);
       const auto place = static_cast<std::size_t>(found - job.free.begin());
       const auto i = static_cast<Index>(place);
       steps[i] = space.internal(place, one.neutral[s]) - u[i];
@@ -49,7 +49,7 @@ std::optional<ExchangeScore> exchange_score(const FittedModel& present,
   const Hypothesis& hypothesis = *rival.hypothesis;
   std::vector<Hypothesis> taken_out;
   for (const Accepted& one : accepted)
-    if (!is_free_in(others, one.hypothesis.strengths.front())) taken_out.push_back(one.hypothesis);
+    if (!is_free_in(others, one.hypothesis.strength(0))) taken_out.push_back(one.hypothesis);
   // Without the whole its parts do nothing.
   const std::vector<Hypothesis> wholes = taken_out;
   std::erase_if(taken_out, [&](const Hypothesis& part) {
@@ -72,7 +72,7 @@ std::optional<ExchangeScore> exchange_score(const FittedModel& present,
   Eigen::MatrixXd columns(at.jacobian.rows(), static_cast<Index>(others.free.size()) + own);
   Index kept = 0;
   for (Index i = 0; i < at.jacobian.cols() - own; ++i)
-    if (is_free_in(others, both.free[static_cast<std::size_t>(i)].quantity))
+    if (is_free_in(others, both.free[static_cast<std::size_t>(i)].id()))
       columns.col(kept++) = at.jacobian.col(i);
   columns.middleCols(kept, own) = at.jacobian.rightCols(own);
   for (auto column : columns.leftCols(kept + own).colwise())

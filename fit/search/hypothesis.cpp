@@ -58,6 +58,7 @@ FreeParameter free_strength(const Job& job, const Hypothesis& hypothesis, std::s
     p.scale = Scale::linear;
   }
   p.initial = std::clamp(initial, p.lower, p.upper);
+  p.recording = hypothesis.recording;
   return p;
 }
 
@@ -139,7 +140,8 @@ Job with_hypothesis(const Job& job, const Hypothesis& hypothesis, std::span<cons
   return extended;
 }
 
-HypothesisValues values_in(Model<double> model, const Hypothesis& hypothesis) {
+HypothesisValues values_in(const Job& job, const FitResult& fit, const Hypothesis& hypothesis) {
+  Model<double> model = fitted_model(job, fit, hypothesis.recording);
   const auto member = members(model);
   HypothesisValues own;
   for (const std::size_t q : hypothesis.strengths) own.strengths.push_back(*member[q]);

@@ -6,12 +6,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "fit/data/job.h"
+#include "fit/estimate/estimate.h"
 
 namespace axisfit {
 
@@ -46,10 +47,14 @@ struct Hypothesis {
   /// little: that of a lag or delay holds while it is shorter than anything else. Empty: none.
   std::vector<double> probes = {};
   std::string extends = {};  ///< the effect beside which alone it is offered; empty: any model
+  /// The only recording that differs by it, such as by a payload; none: it is the same in all.
+  std::optional<std::size_t> recording = {};
 
   /// The least and the most that is tried of one of its shapes.
   std::pair<double, double> range_tried(std::size_t shape) const;
   bool estimates_shapes() const { return kind != HypothesisKind::curve; }
+  /// As which parameter one of its strengths is estimated.
+  ParameterId strength(std::size_t i) const { return {strengths[i], recording}; }
   /// Whether it is in what is read of the machine, not in the machine.
   bool is_of_instrument() const;
   std::size_t parameters() const {
@@ -63,7 +68,9 @@ struct HypothesisValues {
 };
 
 /// Whether they are the same hypothesis, whatever the shape.
-inline bool is_same(const Hypothesis& a, const Hypothesis& b) { return a.strengths == b.strengths; }
+inline bool is_same(const Hypothesis& a, const Hypothesis& b) {
+  return a.strengths == b.strengths && a.recording == b.recording;
+}
 
 /// Whether they have the same shapes, too: an effect may be offered with a shape, and without it as
 /// the simpler law that it then is.
@@ -95,7 +102,7 @@ Structure with_effect_of(Structure structure, std::size_t quantity);
 Job with_hypothesis(const Job& job, const Hypothesis& hypothesis, std::span<const double> others,
                     const HypothesisValues& own, bool fixed_shapes = false);
 
-/// What the quantities of a hypothesis are in a model that has it.
-HypothesisValues values_in(Model<double> model, const Hypothesis& hypothesis);
+/// What the quantities of a hypothesis are in a fit with it.
+HypothesisValues values_in(const Job& job, const FitResult& fit, const Hypothesis& hypothesis);
 
 }  // namespace axisfit

@@ -26,8 +26,7 @@ std::pair<double, Eigen::VectorXd> imitated(const Eigen::MatrixXd& columns,
 std::vector<Scored> imitators(const Job& job, const FitResult& fit, const Hypothesis& accepted,
                               std::vector<Hypothesis> hypotheses, const SearchOptions& options) {
   const std::vector<double> values = values_of(fit);
-  const auto own =
-      std::ranges::find(job.free, accepted.strengths.front(), &FreeParameter::quantity);
+  const auto own = std::ranges::find(job.free, accepted.strength(0), &FreeParameter::id);
   if (!fit.at_solution->finite || own == job.free.end()) return {};
   const Eigen::Index place = own - job.free.begin();
   std::vector<Eigen::Index> others(job.free.size() - 1);

@@ -96,7 +96,8 @@ Job ModelChain::job_with(const Job& declared, Kept&& kept) const {
   for (std::size_t a = 0; a < accepted_.size(); ++a) {
     const Hypothesis& hypothesis = accepted_[a].hypothesis;
     if (!kept(a)) continue;
-    job = with_hypothesis(job, hypothesis, values, values_in(fitted, hypothesis));
+    job = with_hypothesis(job, hypothesis, values,
+                          values_in(current().job, current().fit, hypothesis));
     values = initial_values(job);
   }
   set_initial_values(job, values);

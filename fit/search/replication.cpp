@@ -44,7 +44,8 @@ Replication replication(const Job& job, const FitResult& fit, const FitResult& e
   bool determined = hypothesis.kind != HypothesisKind::curve;
   std::vector<Estimate> here, there;
   const auto read = [&](std::size_t quantity) {
-    const auto free = std::ranges::find(job.free, quantity, &FreeParameter::quantity);
+    const auto free = std::ranges::find(job.free, ParameterId{quantity, hypothesis.recording},
+                                        &FreeParameter::id);
     if (free == job.free.end()) return;
     const auto i = static_cast<std::size_t>(free - job.free.begin());
     for (const FitResult* f : {&fit, &elsewhere}) {

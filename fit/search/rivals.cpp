@@ -23,7 +23,8 @@ bool is_delay(const Hypothesis& hypothesis) {
 bool is_form_of_same_effect(const Hypothesis& a, const Hypothesis& b) {
   const QuantityEntry& p = quantity_list()[a.strengths.front()];
   const QuantityEntry& q = quantity_list()[b.strengths.front()];
-  return p.effect && p.effect == q.effect && p.quantity.channel == q.quantity.channel;
+  return p.effect && p.effect == q.effect && p.quantity.channel == q.quantity.channel &&
+         a.recording == b.recording;
 }
 
 /// The constants that may be wrong in place of one that was corrected become its rivals.
@@ -47,7 +48,7 @@ Scored with_strengths(Scored rival, const Job& others, const SearchContext& cont
   const Job alone =
       with_hypothesis(fixed_at(others, initial_values(others)), hypothesis, {}, rival.own);
   const FitResult fit = refit(alone, context);
-  if (fit.is_usable()) rival.own = values_in(fitted_model(alone, fit), hypothesis);
+  if (fit.is_usable()) rival.own = values_in(alone, fit, hypothesis);
   return rival;
 }
 

@@ -274,16 +274,20 @@ SearchState search(SearchState declared, Rounds& rounds) {
   SearchState best = named(std::move(declared), rounds);
   if (best.interrupted || best.explained()) return best;
 
-  SearchState other = finished(best, [&](const SearchState& s) { return together(s, rounds); });
-  if (other.interrupted) return other;
-  if (is_better(other.current(), best.current(), options)) best = std::move(other);
-  if (best.explained()) return best;
+  // A simulation that tracks the data has seen what masks what; it also shows a curve beside
+  // effects that imitate a part of it.
+  const bool tracks = axisfit::tracks(best.chain.declared().job.options.criterion);
+  SearchState other = best;
+  if (!tracks) {
+    other = finished(best, [&](const SearchState& s) { return together(s, rounds); });
+    if (other.interrupted) return other;
+    if (is_better(other.current(), best.current(), options)) best = std::move(other);
+    if (best.explained()) return best;
+  }
 
   const std::size_t names = best.accepted().size();
   best = with_curves(std::move(best), rounds);
   const bool has_curve = best.accepted().size() > names;
-  // A simulation that tracks the data shows a curve also beside effects that imitate a part of it.
-  const bool tracks = axisfit::tracks(best.chain.declared().job.options.criterion);
   if (best.interrupted || names == 0 || (tracks && !has_curve) ||
       !can_gain_by_a_curve(best, options) ||
       (!has_curve && !is_a_curve_in_reach(best, rounds.of_curves.list, options)))

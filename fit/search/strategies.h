@@ -4,7 +4,8 @@
 // (search()) runs them and keeps what explains the recordings better:
 //
 //   named           add the named effects that pass the acceptance test, one a round
-//   together        find effects that mask each other while the simulation tracks the data
+//   together        find effects that mask each other while the simulation tracks the data, where
+//                   it ran free
 //   with_curves     explain what is left by curves
 //   from_a_curve    begin with a curve: named effects may have imitated a part of it
 #pragma once

@@ -105,7 +105,7 @@ std::optional<Rejection> rejection_by_force(const std::vector<double>& before,
 }
 
 HypothesisValues values_in(const Tried& tried) {
-  return values_in(fitted_model(tried.job, tried.fit), tried.hypothesis);
+  return values_in(tried.job, tried.fit, tried.hypothesis);
 }
 
 std::optional<Rejection> rejection_as_simpler(const Job& job, const FitResult& fit,

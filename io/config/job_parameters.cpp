@@ -1,6 +1,7 @@
 #include "io/config/job_parameters.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -34,8 +35,34 @@ Section free_keys(const NumberWithUnit& amount) {
               Map{{Key::required("mean", amount, "its expected value"),
                    Key::required("sigma", sigma_form(amount.unit), "its standard deviation")}},
               DefaultText{"none"}, "Gaussian prior"),
-          Key::optional("per_recording", Boolean{}, false,
-                        "`true`: a separate value for each recording with the role `fit`")};
+          Key::optional("per_recording", AnyOf{{Boolean{}, List{{Text{}}}}}, DefaultText{"`false`"},
+                        "`true`: a separate value for each recording with the role `fit`; a list "
+                        "of names: for these alone")};
+}
+
+/// The recordings with a value of their own; none: all share one.
+std::vector<std::size_t> read_own_recordings(const ConfigNode& node, const Job& job) {
+  std::vector<std::size_t> fitted;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    if (job.recordings[r].role == Role::fit) fitted.push_back(r);
+  if (!node.is_sequence())
+    return node.as_bool().value_or(false) ? fitted : std::vector<std::size_t>{};
+  std::vector<std::size_t> own;
+  std::vector<std::string> names;
+  for (const std::size_t r : fitted) names.push_back(job.recordings[r].name);
+  const std::vector<ConfigNode> entries = *node.as_sequence();
+  for (const ConfigNode& entry : entries) {
+    const auto name = entry.as_string();
+    if (!name) continue;
+    const auto found = std::ranges::find(names, *name);
+    if (found == names.end())
+      entry.error(fmt::format("no recording with the role fit is called '{}': there are {}", *name,
+                              fmt::join(names, ", ")));
+    else
+      own.push_back(fitted[static_cast<std::size_t>(found - names.begin())]);
+  }
+  if (own.empty()) node.error("per_recording must name at least one recording");
+  return own;
 }
 
 void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job& job) {
@@ -45,7 +72,7 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
   parameter.initial = *members(job.model)[entry.index];
   std::optional<std::pair<double, double>> bounds;
   std::optional<std::size_t> scale;
-  bool per_recording = false;
+  std::vector<std::size_t> own_recordings;
   // "M:" alone is as good as "M: {}".
   Diagnostics none;
   const Section keys = free_keys({std::string(quantity.unit), quantity.lower, quantity.upper});
@@ -54,7 +81,8 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
   if (const auto given = map.optional("bounds"))
     bounds = given->as_bounds(quantity.unit, quantity.lower, quantity.upper);
   map.read("scale", scale);
-  map.read("per_recording", per_recording);
+  if (const auto given = map.optional("per_recording"))
+    own_recordings = read_own_recordings(*given, job);
   if (const auto given = map.optional("prior")) {
     ConfigMap prior(*given, keys_below(keys, "prior"));
     parameter.prior.emplace();
@@ -86,16 +114,11 @@ void read_free_parameter(const ConfigNode& node, const QuantityEntry& entry, Job
     if (!bounds && p.scale == Scale::logarithmic && !(p.lower > 0.0)) p.lower = initial / 100.0;
     job.free.push_back(p);
   };
-  if (!per_recording) {
-    add(parameter.initial, std::nullopt);
-    return;
-  }
-  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
-    const Recording& recording = job.recordings[r];
-    if (recording.role != Role::fit) continue;
+  if (own_recordings.empty()) add(parameter.initial, std::nullopt);
+  for (const std::size_t r : own_recordings) {
     double initial = parameter.initial;
     if (!initial_given)
-      for (const auto& [index, value] : recording.overrides)
+      for (const auto& [index, value] : job.recordings[r].overrides)
         if (index == entry.index) initial = value;
     add(initial, r);
   }

@@ -32,7 +32,9 @@ YAML::Node free_entry(const Job& job, const FreeParameter& p) {
   const std::string_view unit = job.entry(p.quantity).quantity.unit;
   YAML::Node entry(YAML::NodeType::Map);
   for (const double bound : {p.lower, p.upper}) entry["bounds"].push_back(with_unit(bound, unit));
-  if (p.recording) entry["per_recording"] = true;
+  for (const FreeParameter& other : job.free)
+    if (other.quantity == p.quantity && other.recording)
+      entry["per_recording"].push_back(job.recordings[*other.recording].name);
   entry.SetStyle(YAML::EmitterStyle::Flow);
   return entry;
 }

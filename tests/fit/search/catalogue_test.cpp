@@ -39,6 +39,34 @@ bool offers_constant(const std::vector<Hypothesis>& list, const char* quantity) 
   return c != nullptr && c->kind == HypothesisKind::constant;
 }
 
+std::vector<std::string> of_single_recordings(const Job& job) {
+  std::vector<std::string> names;
+  for (const Hypothesis& c : catalogue(job, scales()))
+    if (c.recording) names.push_back(c.name);
+  return names;
+}
+
+TEST(Catalogue, OffersWhatOneRecordingHasAlone) {
+  using Names = std::vector<std::string>;
+  Job job = job_with({Signal::velocity});
+  EXPECT_EQ(of_single_recordings(job), Names{}) << "one has nothing to differ from";
+  job.recordings.push_back(job.recordings[0]);
+  job.recordings[0].name = "a";
+  job.recordings[1].name = "b";
+  job.recordings[1].role = Role::validate;
+  EXPECT_EQ(of_single_recordings(job), Names{}) << "nor has it from one that is not fitted";
+  job.recordings[1].role = Role::fit;
+  EXPECT_EQ(of_single_recordings(job),
+            (Names{"added_mass@a", "added_mass@b", "constant_force@a", "constant_force@b",
+                   "coulomb_friction@a", "coulomb_friction@b"}));
+  job.free = {free_parameter("M", 146.0)};
+  EXPECT_EQ(of_single_recordings(job).front(), "added_mass@b") << "the other has M";
+  add_effect<ConstantForce>(job.model);
+  job.free.push_back(free_parameter("constant_force.F_0", 1.0));
+  EXPECT_EQ(of_single_recordings(job),
+            (Names{"added_mass@b", "coulomb_friction@a", "coulomb_friction@b"}));
+}
+
 TEST(Catalogue, HasEveryEffectOfTheList) {
   Job job = job_with({Signal::velocity});
   const Channels channels = kept({{"oil", "degC", 20.0}});

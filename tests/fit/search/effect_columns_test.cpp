@@ -70,6 +70,25 @@ TEST_P(EffectColumnsOf, AreThoseOfASimulationWithEachEffect) {
   }
 }
 
+TEST_P(EffectColumnsOf, OfOneRecordingAreNothingInTheOthers) {
+  job_.recordings[1].role = Role::fit;
+  SearchScales scales{-0.05, 0.2, 1.0, -1.0, 1.0, 0.0, 1.2, 1e-3};
+  std::vector<Hypothesis> own = catalogue(job_, scales);
+  std::erase_if(own, [](const Hypothesis& c) { return !c.recording; });
+  ASSERT_GE(own.size(), 4u);
+  const EffectColumns columns(job_, 30.0, {});
+  std::vector<EffectSetting> settings;
+  for (const Hypothesis& c : own) settings.push_back({&c, {c.neutral, c.settings.front()}});
+  const std::vector<Eigen::MatrixXd> found = columns.derivatives(settings);
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    expect_alike(settings[i], found[i], 30.0, 0.1);
+    const Eigen::Index half = found[i].rows() / 2;
+    const bool is_first = own[i].recording == 0u;
+    EXPECT_EQ(found[i].topRows(half).isZero(0.0), !is_first) << own[i].name;
+    EXPECT_EQ(found[i].bottomRows(half).isZero(0.0), is_first) << own[i].name;
+  }
+}
+
 TEST_P(EffectColumnsOf, LackWhatTheStatesOfWindowsCouldMake) {
   job_.options.criterion = Windows{0.3};
   for (Recording& r : job_.recordings) r.initial_state = InitialState::data;

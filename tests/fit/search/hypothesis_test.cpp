@@ -189,9 +189,24 @@ TEST_F(WithHypothesis, HasTheValuesThatItWasGiven) {
   const Hypothesis& h = *find(hypotheses_, "periodic_force");
   const HypothesisValues own{{4.0, 3.0}, h.settings.front()};
   const Job job = with_hypothesis(job_, h, std::vector{200.0, 2.7}, own);
-  const HypothesisValues found = values_in(fixed_at(job, initial_values(job)).model, h);
+  const HypothesisValues found = values_in(job, result_at_start(job), h);
   EXPECT_EQ(found.strengths, own.strengths);
   EXPECT_EQ(found.shapes, own.shapes);
+}
+
+TEST_F(WithHypothesis, OfOneRecordingIsItsParameterAlone) {
+  job_.recordings[1].role = Role::fit;
+  job_.recordings[1].name = "other";
+  const std::vector<Hypothesis> hypotheses = catalogue(job_, scales());
+  const Hypothesis& own = *find(hypotheses, "coulomb_friction@other");
+  const Hypothesis& shared = *find(hypotheses, "coulomb_friction");
+  EXPECT_FALSE(is_same(own, shared));
+  const Job job = with_hypothesis(job_, own, {}, {{3.0}, {}});
+  EXPECT_EQ(job.free.back().id(), own.strength(0));
+  EXPECT_EQ(own.strength(0).recording, 1u);
+  EXPECT_EQ(values_in(job, result_at_start(job), own).strengths, std::vector{3.0});
+  EXPECT_EQ(values_in(job, result_at_start(job), shared).strengths, std::vector{0.0})
+      << "of the others";
 }
 
 TEST_F(WithHypothesis, LeavesFixedShapesOutOfTheFreeParameters) {

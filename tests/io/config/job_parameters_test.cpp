@@ -84,5 +84,16 @@ TEST_F(FreeTest, PerRecordingIsOneForEachThatIsFitted) {
   EXPECT_EQ(free("{M: {initial: 100 kg, per_recording: true}}")[1].initial, 100.0);
 }
 
+TEST_F(FreeTest, PerRecordingMayNameThem) {
+  job_.recordings[0].name = "empty";
+  job_.recordings[1].name = "loaded";
+  const auto list = free("{M: {per_recording: [loaded]}}");
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].recording, 1u);
+  EXPECT_TRUE(free("{M: {per_recording: [loded]}}").empty());
+  EXPECT_EQ(said_, "no recording with the role fit is called 'loded': there are empty, loaded\n");
+  EXPECT_TRUE(free("{M: {per_recording: []}}").empty());
+}
+
 }  // namespace
 }  // namespace axisfit

@@ -39,6 +39,17 @@ TEST_F(NextJobTest, GoesOnWithTheRolesOfTheResult) {
   EXPECT_EQ(roles_after(*with_exchanged_roles(file.job)), "validate fit ");
 }
 
+TEST_F(NextJobTest, KeepsWhatDiffersInOneRecording) {
+  const JobFile file =
+      read_job_file(folder_.write("job.yaml", replaced(job_, "M: {initial: 10 kg}, ", "")));
+  Job reached = file.job;
+  FreeParameter own = free_parameter("M", 20.0);
+  own.recording = 0;
+  reached.free.push_back(own);
+  const std::vector<FreeParameter> free = job_after(file, reached).free;
+  EXPECT_NE(std::ranges::find(free, own.id(), &FreeParameter::id), free.end());
+}
+
 TEST_F(NextJobTest, GoesOnTrackingIfTheSearchDid) {
   for (const char* fit : {"", "fit: {observer: none, horizon: 2 s, seed: 7}\n",
                           "fit: {initial_observer_gain: 100 1/s, seed: 7}\n"}) {
