@@ -401,23 +401,27 @@ Json test_json(const Job& job, const SeriesTest& test) {
           {"resolution", test.resolution}};
 }
 
-Json quantities_json(const Job& job, const std::vector<std::size_t>& quantities,
+/// Of a hypothesis, its strengths or its shapes.
+Json quantities_json(const Job& job, const Hypothesis& hypothesis,
+                     const std::vector<std::size_t>& quantities,
                      const std::vector<double>& values) {
   Json array = Json::array();
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const QuantityEntry& entry = job.entry(quantities[i]);
-    array.push_back({{"name", entry.name}, {"unit", entry.quantity.unit}, {"value", values[i]}});
+    const ParameterId id{quantities[i], hypothesis.recording};
+    array.push_back(
+        {{"name", name_of(job, id)}, {"unit", quantity_of(job, id).unit}, {"value", values[i]}});
   }
   return array;
 }
 
 Json suspect_json(const Job& job, const Scored& s) {
-  return {{"name", s.hypothesis->name},
-          {"acts_on", s.hypothesis->acts_on},
-          {"meaning", s.hypothesis->meaning},
-          {"fraction", s.fraction},
-          {"strengths", quantities_json(job, s.hypothesis->strengths, s.own.strengths)},
-          {"shapes", quantities_json(job, s.hypothesis->shapes, s.own.shapes)}};
+  return {
+      {"name", s.hypothesis->name},
+      {"acts_on", s.hypothesis->acts_on},
+      {"meaning", s.hypothesis->meaning},
+      {"fraction", s.fraction},
+      {"strengths", quantities_json(job, *s.hypothesis, s.hypothesis->strengths, s.own.strengths)},
+      {"shapes", quantities_json(job, *s.hypothesis, s.hypothesis->shapes, s.own.shapes)}};
 }
 
 Json residual_json(const Job& job, const Diagnosis& diagnosis,

@@ -12,7 +12,6 @@ LAYERS = "base sim fit io exports init report fleet apps".split()
 # Sources, or all of a folder, without a test of their name, and what tests them instead.
 EXCEPTIONS = {
     "base/embedded.h": "a macro; the files that are embedded are tested",
-    "base/interrupt.h": "one comparison",
     "sim/affine.h": "tests/sim/integrator_test.cpp: affine steps against the Runge-Kutta method",
     "sim/channel.h": "tests/sim/effects/channel_effect_test.cpp: Channels",
     "sim/controller_settings.h": "tests/sim/controller_test.cpp",

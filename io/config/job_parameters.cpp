@@ -61,7 +61,7 @@ std::vector<std::size_t> read_own_recordings(const ConfigNode& node, const Job& 
     else
       own.push_back(fitted[static_cast<std::size_t>(found - names.begin())]);
   }
-  if (own.empty()) node.error("per_recording must name at least one recording");
+  if (entries.empty()) node.error("per_recording must name at least one recording");
   return own;
 }
 

@@ -3,6 +3,7 @@
 // edit.
 #include <gtest/gtest.h>
 
+#include "fit/search/select_effects.h"
 #include "tests/init/made_job.h"
 
 namespace axisfit {
@@ -28,6 +29,19 @@ class ContactTest : public InitJobTest {
 
   Job job_;
 };
+
+// Of two recordings that are fitted one carries a payload: no force along the stroke.
+TEST_F(ContactTest, AMassThatChangesIsOne) {
+  contact({"masschange-r0.csv", "masschange-r1.csv"}, 50.0);
+  job_ = read().job;
+  for (Recording& r : job_.recordings) r.role = Role::fit;
+  const EffectSelection found = select_effects(job_, estimate(job_));
+  EXPECT_EQ(found.verdict.accepted, std::vector<std::string>{"added_mass@masschange-r1"});
+  const ParameterResult& payload = found.result.fit.parameters.back();
+  EXPECT_EQ(payload.id.recording, 1u);
+  EXPECT_NEAR(payload.value, 6.0, 0.15);
+  EXPECT_NEAR(of(found.result.fit, "M").value, 20.0, 0.15);
+}
 
 // Friction that bends before it slips hides the mass: as a mass of its own it came out below zero,
 // and the torque was turned for that.

@@ -93,6 +93,7 @@ TEST_F(FreeTest, PerRecordingMayNameThem) {
   EXPECT_TRUE(free("{M: {per_recording: [loded]}}").empty());
   EXPECT_EQ(said_, "no recording with the role fit is called 'loded': there are empty, loaded\n");
   EXPECT_TRUE(free("{M: {per_recording: []}}").empty());
+  EXPECT_EQ(said_, "per_recording must name at least one recording\n");
 }
 
 }  // namespace
