@@ -21,11 +21,12 @@ bool has_room(const SearchState& state, const Rounds& rounds) {
 }
 
 /// A hypothesis that gains beside an accepted effect of its kind, and only there, may be what that
-/// imitates: it becomes its rival.
+/// imitates: it becomes its rival. A curve can imitate anything, and explains nothing.
 void note_relative(const Tried& tried, ModelChain& chain) {
   using enum Rejection::Test;
   constexpr std::array kOfValidation{validation, power, validation_size};
-  if (tried.hypothesis.kind == HypothesisKind::constant || !tried.rejection ||
+  if (tried.hypothesis.kind == HypothesisKind::constant ||
+      tried.hypothesis.kind == HypothesisKind::curve || !tried.rejection ||
       std::ranges::find(kOfValidation, tried.rejection->test) == kOfValidation.end())
     return;
   for (Accepted& accepted : chain.accepted()) {
