@@ -170,7 +170,7 @@ Timing best_average(const JobDraft& draft, const Timing& late, const RunContext&
 /// By fits with both holds, and of a late velocity with means, unless they take more work than that
 /// is worth. Throws Interrupted after a stop.
 Timing best_timing(const JobDraft& draft, bool is_held, const RunContext& context) {
-  constexpr long kWork = 10'000'000;  // for the holds, and again for the means: a second
+  constexpr long kWork = 10'000'000;  // for the holds, and again for the means: seconds
   Timing best = seen_timing(draft, is_held);
   const auto within_work = [&](const std::function<void(const RunContext&)>& try_out) {
     const StopFlag spent(context.stop, kWork);

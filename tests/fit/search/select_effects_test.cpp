@@ -309,6 +309,25 @@ TEST(SelectEffects, AddsNoMoreThanIsAllowed) {
   EXPECT_FALSE(selection.explained);
 }
 
+// As a limit of time does, which leaves a part of itself for that.
+TEST(SelectEffects, JudgesWhatItHasWhenTheSearchIsToEnd) {
+  const Job job = hidden_effect_named("drive_lag").job();
+  const StopFlag stop;
+  StopFlag search_over(&stop);
+  int scored = 0;
+  bool is_reviewed = false;
+  const auto watch = [&](const Progress& p) {
+    if (p.phase == "scoring effects" && ++scored == 2) search_over.set();
+    is_reviewed = is_reviewed || p.phase == "is drive_lag necessary?";
+  };
+  const EffectSelection selection =
+      select_effects(job, estimate(job), {}, {&stop, nullptr, watch, &search_over});
+  EXPECT_TRUE(selection.cut_short);
+  EXPECT_FALSE(selection.interrupted);
+  EXPECT_TRUE(is_reviewed);
+  EXPECT_EQ(accepted(selection), Names{"drive_lag"});
+}
+
 TEST(SelectEffects, KeepsWhatIsAcceptedWhenItIsStopped) {
   const Job job = hidden_effect_named("drive_lag").job();
   const FitResult fit = estimate(job);
