@@ -11,6 +11,7 @@
 #include "base/plain_text.h"
 #include "fit/data/filter_check.h"
 #include "fit/data/motion_check.h"
+#include "init/busiest.h"
 #include "init/draft_look.h"
 #include "init/free_choice.h"
 #include "init/input_choice.h"
@@ -287,6 +288,7 @@ InitialJob initial_job(const InitRequest& request, const RunContext& context) {
   refuse_unrelated(draft);
   find_frames(draft);
   leave_out_stops(draft);
+  if (request.is_on_trial) keep_busiest(draft, kEnoughSamples);
   context.report({.phase = "a first look at the forces"});
   draft.look = look_at(draft);
   correct_signs(draft);

@@ -34,8 +34,9 @@ struct DraftRecording {
   double input_offset = 0.0;    ///< s, added to the times of that
   /// What tells whether each value of the input holds until the next; empty: its kind does.
   std::string hold_reason = {};
-  bool is_held = false;                ///< by that
-  std::optional<double> trim_to = {};  ///< s, recorded time up to which it is used
+  bool is_held = false;  ///< by that
+  /// s, recorded times from and up to which it is used.
+  std::optional<double> trim_from = {}, trim_to = {};
 
   /// Once the input is known.
   const GuessedColumn& input_column() const;

@@ -191,8 +191,10 @@ std::string recording_text(const JobDraft& draft, const DraftRecording& recordin
               : fmt::format("    time: {}   # {:.4g} Hz, {:.4g} s\n",
                             column_map(guess.time, guess.time.unit), 1.0 / found.interval,
                             found.duration);
-  if (recording.trim_to)
-    text += fmt::format("    trim: {{to: {}}}\n", with_unit(*recording.trim_to, "s"));
+  std::vector<std::string> trim;
+  if (recording.trim_from) trim.push_back("from: " + with_unit(*recording.trim_from, "s"));
+  if (recording.trim_to) trim.push_back("to: " + with_unit(*recording.trim_to, "s"));
+  if (!trim.empty()) text += fmt::format("    trim: {{{}}}\n", fmt::join(trim, ", "));
   text += "    signals:\n";
   const GuessedColumn& input = recording.input_column();
   text += input_text(draft, recording, input);

@@ -53,7 +53,7 @@ void mark_examples(InitialJob& created, const JobFile& read) {
 
 /// As StopFlag counts: about a second, and ten. What explains a recording does so at once; a stiff
 /// gear that does not would take minutes.
-constexpr long kWorkOfATrial = 5'000'000, kWorkOfAnother = 50'000'000;
+constexpr long kWorkOfATrial = 2'000'000, kWorkOfAnother = 50'000'000;
 
 struct Trial {
   std::size_t place;  ///< in the order of trials: one mass first
@@ -122,14 +122,14 @@ MachineChoice choose_machine(const InitRequest& request, const RunContext& conte
     if (!refusal.empty()) throw std::runtime_error(refusal);
     return choice;
   }
-  if (refusal.empty()) try_axis(kMass, choice.job);
-  const auto job_of = [&](const std::string& machine, bool is_on_trial) {
-    InitRequest of_machine = request;
-    of_machine.axis = machine;
-    of_machine.is_machine = true;
-    of_machine.is_on_trial = is_on_trial;
-    return initial_job(of_machine, context);
+  const auto job_of = [&](const std::string& name, bool is_on_trial) {
+    InitRequest one = request;
+    one.is_machine = name != kMass;
+    if (one.is_machine) one.axis = name;
+    one.is_on_trial = is_on_trial;
+    return initial_job(one, context);
   };
+  if (refusal.empty()) try_axis(kMass, job_of(kMass, true));
   for (const std::string& name : machines) {
     if (is_set(context.stop)) break;
     try {
@@ -157,9 +157,8 @@ MachineChoice choose_machine(const InitRequest& request, const RunContext& conte
                               return std::pair(t.result.parameters, t.place);
                             });
   std::rotate(trials.begin(), chosen, chosen + 1);
-  choice.job = std::move(trials.front().job);
   if (const std::string& name = trials.front().result.name; name != kMass) {
-    if (!is_set(context.stop)) choice.job = job_of(name, false);
+    choice.job = is_set(context.stop) ? std::move(trials.front().job) : job_of(name, false);
     mark_examples(choice.job, read_job_draft(choice.job.files, request.folder));
   }
   for (Trial& t : trials) choice.tried.push_back(std::move(t.result));

@@ -14,6 +14,7 @@
 #include "fit/data/recording_check.h"
 #include "fit/estimate/estimate.h"
 #include "fit/estimate/recipes.h"
+#include "init/busiest.h"
 #include "init/free_choice.h"
 #include "io/config/yaml_text.h"
 
@@ -54,16 +55,17 @@ struct Timing {
   double chi_square = INFINITY;  ///< reduced; infinite without a fit
 
   /// With the wrong hold, a motion that is not late seems to be so by half a sample. Otherwise the
-  /// smaller residual tells; thousands of samples make less than a hundredth by chance.
+  /// smaller residual tells: thousands of samples make less than a hundredth by chance, but what
+  /// the model lacks makes more.
   bool is_better_than(const Timing& other, double interval) const {
-    constexpr double kNone = 0.2, kHalf = 0.4, kClearly = 0.5, kBetter = 0.99;
+    constexpr double kNone = 0.2, kHalf = 0.4, kClearly = 0.5, kBetter = 0.99, kExplained = 100.0;
     const auto needs_none = [=](const Timing& one, const Timing& with_half) {
       return std::abs(one.delay.value) < kNone * interval &&
              std::abs(with_half.delay.value) > kHalf * interval;
     };
-    const double factor = needs_none(*this, other)   ? 1.0 / kClearly
-                          : needs_none(other, *this) ? kClearly
-                                                     : kBetter;
+    const double factor = needs_none(*this, other) ? 1.0 / kClearly
+                          : needs_none(other, *this) || other.chi_square > kExplained ? kClearly
+                                                                                      : kBetter;
     return chi_square < factor * other.chi_square;
   }
 
@@ -93,19 +95,13 @@ Timing seen_timing(const JobDraft& draft, bool is_held, std::size_t averaged = 1
   return timing;
 }
 
-/// By a fit to the first samples of the recordings: enough for a time, and a matter of seconds.
+/// By a fit to the recordings.
 Timing fitted_timing(JobDraft draft, bool is_held, std::size_t averaged,
                      const RunContext& context) {
-  constexpr std::size_t kMostSamples = 20000;
   Timing timing = seen_timing(draft, is_held, averaged);
   set_hold(draft, is_held, " on trial");
   if (averaged > 1) set_averaged(draft, averaged);
   draft.parameters.push_back(free_delay(draft, timing.delay.value));
-  for (DraftRecording& recording : draft.recordings) {
-    const std::vector<double>& times = recording.guess.time.values;
-    const std::size_t most = kMostSamples / draft.recordings.size();
-    if (times.size() > most) recording.trim_to = times[most];
-  }
   Job job = draft_job(draft);
   if (averaged > 1) {
     // The noise of a mean is judged otherwise, and chi-squares would not compare.
@@ -168,8 +164,9 @@ Timing best_average(const JobDraft& draft, const Timing& late, const RunContext&
 }
 
 /// By fits with both holds, and of a late velocity with means, unless they take more work than that
-/// is worth. Throws Interrupted after a stop.
-Timing best_timing(const JobDraft& draft, bool is_held, const RunContext& context) {
+/// is worth; to the busiest samples, which are enough for a time. Throws Interrupted after a stop.
+Timing best_timing(JobDraft draft, bool is_held, const RunContext& context) {
+  keep_busiest(draft, kEnoughSamples);
   constexpr long kWork = 10'000'000;  // for the holds, and again for the means: seconds
   Timing best = seen_timing(draft, is_held);
   const auto within_work = [&](const std::function<void(const RunContext&)>& try_out) {
