@@ -35,7 +35,8 @@ std::size_t busiest_start(const RecordingGuess& guess, std::size_t most) {
 }  // namespace
 
 void keep_busiest(JobDraft& draft, std::size_t samples) {
-  const std::size_t most = samples / draft.recordings.size();
+  constexpr std::size_t kFewest = 200;  // that show a motion
+  const std::size_t most = std::max(kFewest, samples / draft.recordings.size());
   for (DraftRecording& recording : draft.recordings) {
     std::vector<double>& times = recording.guess.time.values;
     if (times.size() <= most) continue;

@@ -10,7 +10,7 @@ namespace axisfit {
 inline constexpr std::size_t kEnoughSamples = 2000;  ///< to tell hold from delay, or a machine
 
 /// Of every recording the stretch in which the speed changes most, so long that all together have
-/// at most `samples`; shorter recordings are kept whole.
+/// `samples`, or of many recordings 200 each; shorter ones are kept whole.
 void keep_busiest(JobDraft& draft, std::size_t samples);
 
 }  // namespace axisfit

@@ -58,7 +58,6 @@ constexpr long kWorkOfATrial = 2'000'000, kWorkOfAnother = 50'000'000;
 struct Trial {
   std::size_t place;  ///< in the order of trials: one mass first
   TriedAxis result;
-  InitialJob job;
   Job read;
 
   double error() const { return result.error.value_or(std::numeric_limits<double>::infinity()); }
@@ -81,7 +80,7 @@ struct Trial {
 }  // namespace
 
 MachineChoice choose_machine(const InitRequest& request, const RunContext& context, int threads) {
-  constexpr std::size_t kMostSamples = 20000;  // of fits that take seconds
+  constexpr std::size_t kMostSamples = 20000;  // that are read quickly for every machine
   constexpr double kExplained = 0.02;          // of the input
   MachineChoice choice;
   std::string refusal;
@@ -98,16 +97,13 @@ MachineChoice choose_machine(const InitRequest& request, const RunContext& conte
   if (is_told) return choice;
   const std::vector<std::string> machines = machines_for(request);
   std::vector<Trial> trials;
-  const auto try_axis = [&](const std::string& name, InitialJob made) {
-    Trial trial{trials.size(), {name, {}, 0}, std::move(made), {}};
-    trial.read = read_job_draft(trial.job.files, request.folder).job;
+  const auto try_axis = [&](const std::string& name, const InitialJob& made) {
+    Trial trial{trials.size(), {name, {}, 0}, read_job_draft(made.files, request.folder).job};
     trial.read.options.threads = threads;
     trial.result.parameters = trial.read.free.size();
     try {
       trial.fit(1, context);
-    } catch (const Interrupted&) {
-      trial.job.guesses.emplace_back(
-          "which kind of axis it is was not looked at, since the run was stopped");
+    } catch (const Interrupted&) {  // is said of the job that is chosen
     }
     choice.is_validated = trial.read.recordings.size() > 1;
     trials.push_back(std::move(trial));
@@ -158,9 +154,12 @@ MachineChoice choose_machine(const InitRequest& request, const RunContext& conte
                             });
   std::rotate(trials.begin(), chosen, chosen + 1);
   if (const std::string& name = trials.front().result.name; name != kMass) {
-    choice.job = is_set(context.stop) ? std::move(trials.front().job) : job_of(name, false);
+    choice.job = job_of(name, false);
     mark_examples(choice.job, read_job_draft(choice.job.files, request.folder));
   }
+  if (is_set(context.stop))
+    choice.job.guesses.emplace_back(
+        "which kind of axis it is was not looked at, since the run was stopped");
   for (Trial& t : trials) choice.tried.push_back(std::move(t.result));
   return choice;
 }

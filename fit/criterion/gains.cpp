@@ -48,7 +48,12 @@ bool has_choice_of_gains(const Job& job) {
 std::vector<double> score_gains(const Job& job) {
   const double highest = highest_gain(job);
   if (!has_choice_of_gains(job)) return {highest};
-  return {highest / 30.0, highest / 100.0};
+  return {highest / 10.0, highest / 30.0, highest / 100.0};
+}
+
+double search_gain(const Job& job) {
+  const double highest = highest_gain(job);
+  return has_choice_of_gains(job) ? highest / 30.0 : highest;
 }
 
 }  // namespace axisfit

@@ -11,9 +11,13 @@
 //                    tracks goes no lower.
 //   quiet_gain()     (fit/estimate/kalman_gain.h) The same, for a free run that noise of the inputs
 //                    moves so far that it should track.
-//   score_gains()    Score tests in any case: a 30th and a 100th of the highest. There is little
-//                    noise there, and what is slow shows. Refits of a search start at the first of
-//                    them, its final fit at the second.
+//   score_gains()    Score tests in any case: a 10th, a 30th and a 100th of the highest. At the
+//                    first the simulation is where the machine was, so that a score holds; lower
+//                    there is less noise, and what is slow shows. The final fit of a search starts
+//                    at the last of them.
+//   search_gain()    A 30th of the highest. Refits of a search start there, and one that tracks
+//                    throughout does so, or where the inputs are noisy at kalman_gain() if that is
+//                    higher.
 //   1 / duration     Below it an observer does nothing: the continuation goes on to zero.
 //   final_gain()     The fit ends there: zero, or that of Tracking.
 //
@@ -47,5 +51,8 @@ bool has_choice_of_gains(const Job& job);
 /// The gains at which a job's residual is always scored, the highest first; only one where there is
 /// no choice.
 std::vector<double> score_gains(const Job& job);
+
+/// The gain at which refits of a search start, and of one that tracks throughout.
+double search_gain(const Job& job);
 
 }  // namespace axisfit

@@ -36,6 +36,8 @@ struct StartOptions {
   double explained = 1.1;
   /// Below it an end is near the noise, and not the wrong one of many: something small is missing.
   double near = 5.0;
+  /// While tracking, even a model that lacks something comes below it, but not in a wrong valley.
+  double followed = 10.0;
   /// By which the gain is lowered for the second start. A high one feeds the noise of the readings
   /// into the simulation, which can bias weakly determined parameters for good.
   double lower_gain = 5.0;
@@ -203,16 +205,42 @@ class Starts {
   Starts(Descent& descent, const ParameterSpace& space, const Eigen::VectorXd& start, double gain)
       : descent_(descent), space_(space), start_(start), gain_(gain) {}
 
-  SolveResult best_end(int attempts) const {
-    BestEnd best = descend({}, start_, gain_);
-    if (attempts < 2) return best.solved;
-    best = descend_again(std::move(best));
+  SolveResult best_end(int attempts) {
+    if (attempts < 2) return descent_.run(start_, gain_);
+    BestEnd best = descend_again({descent_.run(tracking_start(), gain_), std::nullopt});
     if (attempts < 3 || best.is_below(options_.explained)) return best.solved;
-    best = descend_again(descend(std::move(best), start_, gain_ / options_.lower_gain));
+    best = descend_again(
+        better_of(std::move(best), descent_.run(tracking_low(), gain_ / options_.lower_gain)));
     return descend_from_perturbed(std::move(best), attempts).solved;
   }
 
  private:
+  bool is_followed(const SolveResult& tracking) const {
+    return tracking.usable && tracking.reduced_cost < options_.followed;
+  }
+
+  /// From the start, at the lower gain.
+  const SolveResult& tracking_low() {
+    if (!low_) low_ = descent_.solve_tracking(start_, gain_ / options_.lower_gain);
+    return *low_;
+  }
+
+  /// Where the first descent begins: while tracking from the start, or where that ends in a wrong
+  /// valley, from elsewhere.
+  SolveResult tracking_start() {
+    SolveResult best = descent_.solve_tracking(start_, gain_);
+    if (is_followed(best)) return best;
+    if (const SolveResult& low = tracking_low(); low.usable)
+      if (SolveResult high = descent_.solve_tracking(low.u, gain_);
+          high.usable && !(best.usable && best.cost <= high.cost))
+        best = std::move(high);
+    if (is_followed(best)) return best;
+    const BestEnd here{best, best.usable ? std::optional(best.cost) : std::nullopt};
+    if (const Perturbed found = perturb(here, 0, 0); found.promising)
+      return descent_.solve_tracking(*found.promising, gain_);
+    return best;
+  }
+
   BestEnd descend(BestEnd best, const Eigen::VectorXd& from, double gain) const {
     return better_of(std::move(best), descent_.run(from, gain));
   }
@@ -261,6 +289,7 @@ class Starts {
       if (!tracking.usable || tracking.cost >= least) continue;
       least = tracking.cost;
       found.promising = tracking.u;
+      if (is_followed(tracking)) break;
     }
     return found;
   }
@@ -278,6 +307,7 @@ class Starts {
   const ParameterSpace& space_;
   const Eigen::VectorXd& start_;
   const double gain_;
+  std::optional<SolveResult> low_{};  ///< of tracking_low()
 };
 
 }  // namespace
@@ -289,7 +319,7 @@ ContinuationResult run_continuation(const Job& job, const ParameterSpace& space,
   Descent descent(job, space, progress, context);
   ContinuationResult result;
   if (job.options.is_continued() && can_track(job)) {
-    const Starts starts(descent, space, start, highest_gain(job));
+    Starts starts(descent, space, start, highest_gain(job));
     result.last = starts.best_end(job.options.attempts);
   } else {
     result.last = descent.solve_stage(start, final_gain(job), true);

@@ -16,6 +16,32 @@ namespace {
 constexpr std::size_t kMinSamples = 32;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
+/// Power over frequency, as means over half overlapping segments of n values under a Hann window.
+Spectrum mean_spectrum(std::span<const double> values, double interval, std::size_t n) {
+  Spectrum spectrum;
+  if (values.size() < kMinSamples) return spectrum;
+  const std::size_t padded = std::bit_ceil(n);  // with zeros
+  std::vector<double> window(n), segment(padded);
+  for (std::size_t i = 0; i < n; ++i)
+    window[i] = std::pow(std::sin(std::numbers::pi * double(i) / double(n)), 2);
+  const double weight = std::inner_product(window.begin(), window.end(), window.begin(), 0.0);
+  spectrum.size.assign(padded / 2, 0.0);
+  Eigen::FFT<double> fft;
+  std::vector<std::complex<double>> transform;
+  double segments = 0.0;
+  for (std::size_t first = 0; first + n <= values.size(); first += n / 2, ++segments) {
+    for (std::size_t i = 0; i < n; ++i) segment[i] = window[i] * values[first + i];
+    fft.fwd(transform, segment);
+    for (std::size_t k = 0; k < padded / 2; ++k)
+      spectrum.size[k] += std::norm(transform[k + 1]) / weight;
+  }
+  for (std::size_t k = 0; k < padded / 2; ++k) {
+    spectrum.size[k] /= segments;
+    spectrum.wave.push_back(double(k + 1) / (double(padded) * interval));
+  }
+  return spectrum;
+}
+
 }  // namespace
 
 std::vector<double> autocorrelation(std::span<const double> values, std::size_t lags) {
@@ -29,28 +55,11 @@ std::vector<double> autocorrelation(std::span<const double> values, std::size_t 
 }
 
 Spectrum power_spectrum(std::span<const double> values, double interval) {
-  Spectrum spectrum;
-  if (values.size() < kMinSamples) return spectrum;
-  const std::size_t n = std::bit_floor(values.size() / 4);
-  std::vector<double> window(n), segment(n);
-  for (std::size_t i = 0; i < n; ++i)
-    window[i] = std::pow(std::sin(std::numbers::pi * double(i) / double(n)), 2);
-  const double weight = std::inner_product(window.begin(), window.end(), window.begin(), 0.0);
-  spectrum.size.assign(n / 2, 0.0);
-  Eigen::FFT<double> fft;
-  std::vector<std::complex<double>> transform;
-  double segments = 0.0;
-  for (std::size_t first = 0; first + n <= values.size(); first += n / 2, ++segments) {
-    for (std::size_t i = 0; i < n; ++i) segment[i] = window[i] * values[first + i];
-    fft.fwd(transform, segment);
-    for (std::size_t k = 0; k < n / 2; ++k)
-      spectrum.size[k] += std::norm(transform[k + 1]) / weight;
-  }
-  for (std::size_t k = 0; k < n / 2; ++k) {
-    spectrum.size[k] /= segments;
-    spectrum.wave.push_back(double(k + 1) / (double(n) * interval));
-  }
-  return spectrum;
+  return mean_spectrum(values, interval, std::bit_floor(values.size() / 4));
+}
+
+Spectrum periodogram(std::span<const double> values, double interval) {
+  return mean_spectrum(values, interval, values.size());
 }
 
 Spectrum spatial_spectrum(std::span<const double> values, std::span<const double> positions,

@@ -23,6 +23,9 @@ struct Spectrum {
 /// Literature: P. D. Welch, IEEE Transactions on Audio and Electroacoustics 15 (1967) 70-73.
 Spectrum power_spectrum(std::span<const double> values, double interval);
 
+/// The same of all values at once: as fine as they allow, and as noisy.
+Spectrum periodogram(std::span<const double> values, double interval);
+
 /// Amplitude over the wave number (cycles per m) of values at positions (m) that may be passed at
 /// any speed and repeatedly: of the sine that fits best, beside a constant, up to `cycles` of it
 /// over the stroke in quarters. Empty without a stroke, or below 32 values.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "fit/estimate/recipes.h"
 #include "fit/search/transmission.h"
 #include "fit/solve/parameters.h"
 
@@ -30,6 +31,12 @@ bool explains(const FittedModel& model) {
   return !series.empty() && std::ranges::all_of(series, is_noise);
 }
 
+bool is_near_noise(const std::vector<ResidualSeries>& residuals, const SearchOptions& options) {
+  return std::ranges::all_of(residuals, [&](const ResidualSeries& s) {
+    return mean_square(s.values) < options.round.exact_mean_square;
+  });
+}
+
 void ModelChain::append(Accepted effect, Job job, FitResult fit) {
   models_.push_back({effect.hypothesis.name, std::move(job), std::move(fit)});
   accepted_.push_back(std::move(effect));
@@ -49,7 +56,9 @@ void ModelChain::replace(FittedModel declared, FittedModel last) {
 ModelChain::Neighbours& ModelChain::neighbours() {
   std::vector<double> values = current().values();
   if (values != neighbours_.of || neighbours_.reduced.size() != accepted_.size())
-    neighbours_ = {.of = std::move(values), .reduced = {accepted_.size(), std::nullopt}};
+    neighbours_ = {.of = std::move(values),
+                   .reduced = {accepted_.size(), std::nullopt},
+                   .is_far = {accepted_.size(), std::nullopt}};
   return neighbours_;
 }
 
@@ -63,6 +72,21 @@ const FittedModel& ModelChain::without(std::size_t place) {
   std::optional<FittedModel>& reduced = neighbours().reduced[place];
   if (!reduced) reduced = reduce(place);
   return *reduced;
+}
+
+bool ModelChain::is_far_without(std::size_t place) {
+  std::optional<bool>& known = neighbours().is_far[place];
+  if (known || accepted_.size() == 1) return known.value_or(false);
+  const FittedModel& whole = current();
+  Job job = job_with_accepted(declared().job, place);
+  job.options = recipe::polish(job.options);
+  job.options.give_up_above =
+      worthless_cost(whole.fit, residual_series(whole.job, whole.fit),
+                     accepted_[place].hypothesis.parameters(), context_->options);
+  const FitResult fit = refit(job, *context_);
+  known = fit.verdict.kind != FitVerdict::Kind::not_simulated &&
+          reduced_cost(fit) > job.options.give_up_above;
+  return *known;
 }
 
 void ModelChain::fit_without(const std::vector<std::size_t>& places) {

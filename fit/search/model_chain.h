@@ -27,6 +27,9 @@ Improvement improvement(const FittedModel& before, const FittedModel& after);
 /// Whether the model leaves nothing but noise in any signal.
 bool explains(const FittedModel& model);
 
+/// Whether every signal, of recordings that validate, too, leaves so little that a score is exact.
+bool is_near_noise(const std::vector<ResidualSeries>& residuals, const SearchOptions& options);
+
 /// A hypothesis that became part of the model.
 struct Accepted {
   Hypothesis hypothesis;
@@ -59,6 +62,9 @@ class ModelChain {
 
   /// The last model without one accepted effect, and what is part of it, refitted.
   const FittedModel& without(std::size_t place);
+  /// Whether a fit without one accepted effect, from where the last model is, does not come near
+  /// that; it is given up as soon as this is plain.
+  bool is_far_without(std::size_t place);
   /// Fits without each of these, side by side.
   void fit_without(const std::vector<std::size_t>& places);
 
@@ -92,6 +98,7 @@ class ModelChain {
     std::vector<double> of;                           ///< values and gain of that model
     std::optional<bool> explained{};                  ///< takes simulations
     std::vector<std::optional<FittedModel>> reduced;  ///< without each of the accepted effects
+    std::vector<std::optional<bool>> is_far;          ///< what is left without each
     bool has_elsewhere = false;
     std::optional<FitResult> elsewhere{};
   };

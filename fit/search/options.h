@@ -28,6 +28,7 @@ struct SearchOptions {
     double worth_other_settings = 0.1;
     std::size_t first_settings = 9;  ///< fewer settings of a transmission are tried all at once
     std::size_t periods = 3;         ///< of a force along the stroke, from each recording
+    std::size_t resonances = 3;      ///< from each series
     double coarse_step =
         4.0;  ///< of the integrator: smooth effects are 1e-4 off, and four times as quick
     int tracking_iterations = 15;      ///< of the fit that a score starts from
@@ -82,6 +83,7 @@ struct SearchOptions {
   struct Round {
     /// Reduced chi-square below which the free run is scored, too: farther away it is elsewhere.
     double close_chi_square = 25.0;
+    double exact_mean_square = 1.1;  ///< of every signal, below which it is scored alone
     /// A refit is hopeless that promises less than this part of what the test asks, unless its
     /// score is many times that: then the refit may find more.
     double promise = 0.4, much = 10.0;

@@ -96,19 +96,20 @@ bool drop_degenerate(SearchState& state, const SearchOptions& options) {
 
 void eliminate_backward(SearchState& state, const SearchContext& context) {
   bool is_far = !state.explained();
-  const auto is_plain = [&](const Accepted& effect) {
-    return is_far && is_alike_elsewhere(state, effect.hypothesis, context);
+  const auto is_plain = [&](std::size_t a) {
+    return is_far ? is_alike_elsewhere(state, state.accepted()[a].hypothesis, context)
+                  : state.chain.is_far_without(a);
   };
   for (std::size_t a = 0; a < state.accepted().size();) {
     const Accepted& effect = state.accepted()[a];
-    if (is_plain(effect)) {
+    state.report_progress(context.run, "is " + effect.hypothesis.name + " necessary?");
+    if (is_plain(a)) {
       ++a;
       continue;
     }
-    state.report_progress(context.run, "is " + effect.hypothesis.name + " necessary?");
     std::vector<std::size_t> doubted;
     for (std::size_t b = a; b < state.accepted().size(); ++b)
-      if (!is_plain(state.accepted()[b])) doubted.push_back(b);
+      if (!is_plain(b)) doubted.push_back(b);
     state.chain.fit_without(doubted);
     const FittedModel& reduced = state.chain.without(a);
     const Improvement gain = improvement(reduced, state.current());

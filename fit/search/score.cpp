@@ -9,6 +9,7 @@
 #include "fit/criterion/gains.h"
 #include "fit/search/catalogue.h"
 #include "fit/search/periods.h"
+#include "fit/search/resonances.h"
 #include "fit/search/scorer.h"
 #include "fit/solve/residual.h"
 #include "sim/sampling.h"
@@ -48,6 +49,14 @@ SearchScales scales_of(const Job& job, const ScorePoint& point, double gain,
         periods.push_back(period);
     }
     row += rows;
+  }
+  for (const SeriesRows& series : point.base.series) {
+    const auto own = point.residuals.segment(series.first, series.count);
+    for (const double frequency :
+         resonances_in({own.data(), static_cast<std::size_t>(own.size())},
+                       mean_interval(job.recordings[series.recording].times),
+                       context.options.scoring.resonances))
+      s.resonances.push_back(frequency);
   }
   s.speed = std::max(std::abs(s.velocity_low), std::abs(s.velocity_high));
   return s;

@@ -287,7 +287,7 @@ Start start_of(const Job& job, const FitResult& first, const SearchContext& cont
   if (!start.tracks) return start;
   if (!least_gain) least_gain = kalman_gain(job, values_of(first));
   start.model = tracking(std::move(start.model),
-                         std::max(score_gains(job).front(), least_gain.value_or(0.0)), context);
+                         std::max(search_gain(job), least_gain.value_or(0.0)), context);
   return start;
 }
 

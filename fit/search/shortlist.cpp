@@ -9,12 +9,17 @@
 namespace axisfit {
 namespace {
 
-/// Whether the refits of both would end in the same place.
+/// Whether the refits of both would end in the same place: shapes that differ by no more than this
+/// part, and strengths by no more than a factor of two.
 bool nearly_same(const Scored& a, const Scored& b, double part) {
+  const auto within = [](double most) {
+    return [most](double x, double y) {
+      return x == y || std::abs(x - y) <= most * std::max(std::abs(x), std::abs(y));
+    };
+  };
   return is_same(*a.hypothesis, *b.hypothesis) &&
-         std::ranges::equal(a.own.shapes, b.own.shapes, [part](double x, double y) {
-           return std::abs(x - y) <= part * std::max(std::abs(x), std::abs(y));
-         });
+         std::ranges::equal(a.own.shapes, b.own.shapes, within(part)) &&
+         std::ranges::equal(a.own.strengths, b.own.strengths, within(0.5));
 }
 
 std::vector<ResidualSeries> series_of(const ScoreTest& test, const Eigen::VectorXd& residuals) {

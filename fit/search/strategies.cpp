@@ -224,8 +224,7 @@ SearchState together(SearchState state, Rounds& rounds) {
   const std::vector<Accepted> known = state.accepted();
   const FittedModel declared = state.chain.declared();
   const bool is_continued = declared.job.options.is_continued();
-  if (is_continued)
-    state.restart(tracking(declared, score_gains(declared.job).front(), rounds.context));
+  if (is_continued) state.restart(tracking(declared, search_gain(declared.job), rounds.context));
   const double chance = rounds.context.options.acceptance.provisional_chance;
   do {
     while (state.current().fit.is_usable() && has_room(state, rounds) && !state.explained() &&
@@ -278,8 +277,12 @@ SearchState search(SearchState declared, Rounds& rounds) {
   // A simulation that tracks the data has seen what masks what; it also shows a curve beside
   // effects that imitate a part of it.
   const bool tracks = axisfit::tracks(best.chain.declared().job.options.criterion);
+  // What leaves next to nothing masks nothing, and no curve takes its place.
+  const FittedModel& last = best.current();
+  const bool is_exact =
+      !best.accepted().empty() && is_near_noise(residual_series(last.job, last.fit), options);
   SearchState other = best;
-  if (!tracks) {
+  if (!tracks && !is_exact) {
     other = finished(best, [&](const SearchState& s) { return together(s, rounds); });
     if (other.interrupted) return other;
     if (is_better(other.current(), best.current(), options)) best = std::move(other);
@@ -289,7 +292,7 @@ SearchState search(SearchState declared, Rounds& rounds) {
   const std::size_t names = best.accepted().size();
   best = with_curves(std::move(best), rounds);
   const bool has_curve = best.accepted().size() > names;
-  if (best.interrupted || names == 0 || (tracks && !has_curve) ||
+  if (best.interrupted || names == 0 || is_exact || (tracks && !has_curve) ||
       !can_gain_by_a_curve(best, options) ||
       (!has_curve && !is_a_curve_in_reach(best, rounds.of_curves.list, options)))
     return best;

@@ -35,10 +35,12 @@ struct ElasticMode {
   }
 
   static std::vector<SearchEntry> search(const SearchScales& scales) {
-    // From a few cycles in the recording up to a third of the sampling rate.
+    // From a few cycles in the recording up to a third of the sampling rate; and where the residual
+    // rings, which between these would be missed where there is little damping.
     auto modes =
         geometric(std::max(1.0, 4.0 / (scales.end - scales.start)), 0.33 / scales.interval, 20);
     for (auto& mode : modes) mode.push_back(0.03);
+    for (const double frequency : scales.resonances) modes.push_back({frequency, 0.01});
     return {{{"m_e"}, {"f_e", "zeta_e"}, modes}};
   }
 

@@ -59,6 +59,7 @@ struct SearchScales {
   double mass = 0.0;                               ///< kg, that moves, motor included
   std::vector<double> periods = {};                ///< m, of forces along the stroke, best first
   std::vector<double> drive_periods = {};  ///< m, of such in proportion to the drive's force
+  std::vector<double> resonances = {};     ///< Hz, at which the residual rings
   double pinion_radius = 0.0;              ///< m, r_g
   double short_travel = 1e-3;  ///< m, over which surfaces bend, as an order of magnitude
 };

@@ -24,7 +24,7 @@ DraftRecording moving(Kind kind, std::size_t from) {
 
 TEST(Busiest, IsWhereTheAxisMoves) {
   for (const Kind kind : {Kind::position, Kind::velocity})
-    for (const std::size_t from : {0, 300, 720, 900}) {
+    for (const std::size_t from : {0u, 300u, 720u, 900u}) {
       JobDraft draft{InitRequest{}};
       draft.recordings = {moving(kind, from), moving(kind, 500)};
       keep_busiest(draft, 400);

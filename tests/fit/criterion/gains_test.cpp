@@ -73,13 +73,15 @@ TEST(Gains, EndAtZeroUnlessTheFitTracks) {
 
 TEST(Gains, AreScoredFarBelowTheHighestUnlessOneIsGiven) {
   Job job = sampled({2e-3}, Signal::velocity);
-  ASSERT_EQ(score_gains(job).size(), 2u);
-  EXPECT_NEAR(score_gains(job)[0], 500.0 / 30.0, 1e-9);
-  EXPECT_NEAR(score_gains(job)[1], 5.0, 1e-9);
+  ASSERT_EQ(score_gains(job).size(), 3u);
+  EXPECT_NEAR(score_gains(job)[0], 50.0, 1e-9);
+  EXPECT_NEAR(score_gains(job)[1], 500.0 / 30.0, 1e-9);
+  EXPECT_NEAR(score_gains(job)[2], 5.0, 1e-9);
+  EXPECT_EQ(search_gain(job), score_gains(job)[1]);
   job.options.criterion = Tracking{30.0};
   EXPECT_EQ(score_gains(job), std::vector{30.0});
   job.choose_criterion = true;  // nobody gave it
-  EXPECT_EQ(score_gains(job), (std::vector{1.0, 0.3}));
+  EXPECT_EQ(score_gains(job), (std::vector{3.0, 1.0, 0.3}));
 }
 
 TEST(Gains, NeedAPositionOrAVelocityToBeFitted) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <span>
+#include <vector>
 
 #include "tests/fit/example.h"
 
@@ -56,6 +57,33 @@ TEST(Continuation, LeavesWhatAHighGainDoesNotShowWhereItIs) {
     const ContinuationResult result = one_continuation(job);
     EXPECT_NEAR(std::exp(result.last.u[0]), 8.0, 1.5) << seed;
   }
+}
+
+// A missing force beside poor initial values: at the highest gain the fit ends with a gear that is
+// damped to death. From there no descent finds back.
+TEST(Continuation, LeavesAWrongValleyBeforeItDescends) {
+  Model<double> truth = paper_axis();
+  truth.axis.V_L = 2.62;
+  truth.axis.B_a = 141.0;
+  truth.axis.b_g = 1300.0;
+  truth.axis.k_g = 4.2e6;
+  Job job;
+  job.model = truth;
+  add_effect<ConstantForce>(truth).F_0 = 11.0;
+  add_effect<CoulombFriction>(truth).F_c = 28.0;
+  job.recordings = {recorded(truth, StepMotion{10.0, 0.0}, 1.2, 2)};
+  job.free = {free_parameter("V_L", 8.0), free_parameter("B_a", 60.0), free_parameter("b_g", 5e3),
+              free_parameter("k_g", 1.5e6), free_parameter("T_p", 0.1)};
+  const ContinuationResult wrong = one_continuation(job);
+  ASSERT_GT(wrong.stages.front().reduced_cost, 10.0);
+  job.options.attempts = 2;
+  const ParameterSpace space(job);
+  const ContinuationResult result =
+      run_continuation(job, space, space.internal(draw_start(job, 0)));
+  const std::vector<double> values = space.values(result.last.u);
+  EXPECT_LT(result.last.cost, wrong.last.cost);
+  EXPECT_NEAR(values[2], 1300.0, 0.8 * 1300.0);
+  EXPECT_NEAR(values[3], 4.2e6, 0.2 * 4.2e6);
 }
 
 }  // namespace

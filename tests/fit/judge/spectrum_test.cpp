@@ -64,6 +64,17 @@ TEST(PowerSpectrum, ShowsAToneAtItsFrequency) {
   EXPECT_NEAR(wave_of_peak(s), 37.0, 2.0 * s.wave.front());
 }
 
+TEST(Periodogram, ShowsATonesFrequencyMoreFinely) {
+  Series values = white(3001, 4);  // a prime number of them
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] += 0.5 * std::sin(kTurn * 37.3 * 1e-3 * double(i));
+  const Spectrum s = periodogram(values, 1e-3);
+  EXPECT_NEAR(wave_of_peak(s), 37.3, 0.2);
+  double mean = 0.0;
+  for (const double p : periodogram(white(3001, 4), 1e-3).size) mean += p / double(s.size.size());
+  EXPECT_NEAR(mean, 1.0, 0.1);
+}
+
 TEST(PowerSpectrum, OfFewValuesIsNone) {
   EXPECT_TRUE(power_spectrum(white(31, 5), 1.0).wave.empty());
 }

@@ -67,6 +67,19 @@ TEST_F(ChainOfTwo, FitsWithoutAnEffectOnce) {
   EXPECT_EQ(values_of(other.without(0).fit), values_of(reduced.fit));
 }
 
+TEST_F(ChainOfTwo, IsFarWithoutWhatItNeeds) {
+  EXPECT_TRUE(chain_.is_far_without(0));
+  EXPECT_TRUE(chain_.is_far_without(1));
+  const FittedModel& now = chain_.current();
+  const std::vector<Hypothesis> all = catalogue(now.job, scales());
+  const Hypothesis& drag = *find(all, "quadratic_drag");
+  Tried tried = try_hypothesis(
+      now.job, {std::make_shared<const Hypothesis>(drag), {{1.0}, {}}, values_of(now.fit)});
+  chain_.append({drag}, std::move(tried.job), std::move(tried.fit));
+  EXPECT_TRUE(chain_.is_far_without(0));
+  EXPECT_FALSE(chain_.is_far_without(2)) << "it explains nothing";
+}
+
 TEST_F(ChainOfTwo, ForgetsWhatWasBesideAnotherModel) {
   const double before = chain_.without(1).fit.reduced_chi_square;
   FittedModel reduced = chain_.without(0);

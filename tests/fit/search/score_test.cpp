@@ -26,7 +26,7 @@ std::vector<Scored> best_settings(const ScoreTest& test) {
 ScoreTest score(const Job& job) {
   const FitResult fit = estimate(job);
   EXPECT_TRUE(fit.is_usable()) << fit.message;
-  return score_test(job, values_of(fit), score_gains(job).front());
+  return score_test(job, values_of(fit), search_gain(job));
 }
 
 class ScoreOf : public testing::TestWithParam<HiddenEffect> {};
