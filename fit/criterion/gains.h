@@ -13,11 +13,10 @@
 //                    moves so far that it should track.
 //   score_gains()    Score tests in any case: a 10th, a 30th and a 100th of the highest. At the
 //                    first the simulation is where the machine was, so that a score holds; lower
-//                    there is less noise, and what is slow shows. The final fit of a search starts
-//                    at the last of them.
-//   search_gain()    A 30th of the highest. Refits of a search start there, and one that tracks
-//                    throughout does so, or where the inputs are noisy at kalman_gain() if that is
-//                    higher.
+//                    there is less noise, and what is slow shows. Refits of a search start at the
+//                    first of them, its final fit at the last.
+//   search_gain()    A search that tracks throughout does so at a 30th of the highest, or where the
+//                    inputs are noisy at kalman_gain() if that is higher.
 //   1 / duration     Below it an observer does nothing: the continuation goes on to zero.
 //   final_gain()     The fit ends there: zero, or that of Tracking.
 //
@@ -52,7 +51,7 @@ bool has_choice_of_gains(const Job& job);
 /// no choice.
 std::vector<double> score_gains(const Job& job);
 
-/// The gain at which refits of a search start, and of one that tracks throughout.
+/// The gain of a search that tracks throughout.
 double search_gain(const Job& job);
 
 }  // namespace axisfit

@@ -46,12 +46,12 @@ inline FitOptions coarse(FitOptions options) {
   return options;
 }
 
-/// A quick fit of a search. Its model is another one, but near: a continuation starts at a moderate
-/// gain.
+/// A quick fit of a search. Its model is another one, but near: a continuation starts where the
+/// residual is scored first.
 inline FitOptions refit(const Job& job, int max_iterations) {
   FitOptions options = quick(job.options);
   options.max_iterations = std::min(options.max_iterations, max_iterations);
-  if (options.is_continued()) options.continuation->start_gain = search_gain(job);
+  if (options.is_continued()) options.continuation->start_gain = score_gains(job).front();
   return options;
 }
 

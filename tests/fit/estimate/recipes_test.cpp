@@ -40,7 +40,7 @@ TEST(Recipes, BeginOnceWhereTheMinimumIsNear) {
 
 TEST(Recipes, ContinueASearchFromTheGainsOfTheScore) {
   Job job = thorough();
-  EXPECT_EQ(recipe::refit(job, 25).continuation->start_gain, search_gain(job));
+  EXPECT_EQ(recipe::refit(job, 25).continuation->start_gain, score_gains(job).front());
   EXPECT_EQ(recipe::final_fit(job).continuation->start_gain, score_gains(job).back());
   job.options.continuation.reset();
   EXPECT_FALSE(recipe::refit(job, 25).continuation);
