@@ -38,17 +38,12 @@ void keep_busiest(JobDraft& draft, std::size_t samples) {
   constexpr std::size_t kFewest = 200;  // that show a motion
   const std::size_t most = std::max(kFewest, samples / draft.recordings.size());
   for (DraftRecording& recording : draft.recordings) {
-    std::vector<double>& times = recording.guess.time.values;
+    const std::vector<double>& times = recording.guess.time.values;
     if (times.size() <= most) continue;
-    const auto start = static_cast<std::ptrdiff_t>(busiest_start(recording.guess, most));
-    const auto keep = [&](std::vector<double>& values) {
-      if (values.size() != times.size()) return;
-      values = std::vector(values.begin() + start, values.begin() + start + std::ptrdiff_t(most));
-    };
+    const std::size_t start = busiest_start(recording.guess, most);
     recording.trim_from = times[start];
     recording.trim_to = times[start + most - 1];
-    for (GuessedColumn& c : recording.guess.columns) keep(c.values);
-    keep(times);
+    recording.keep_samples(start, most);
   }
 }
 

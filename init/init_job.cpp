@@ -186,8 +186,7 @@ void leave_out_stops(JobDraft& draft) {
     constexpr std::size_t kFewest = 50;
     if (used < kFewest) continue;
     recording.trim_to = stop->last_before;
-    recording.guess.time.values.resize(used);
-    for (GuessedColumn& c : recording.guess.columns) c.values.resize(used);
+    recording.keep_samples(0, used);
     draft.guesses.push_back(
         fmt::format("{} ends on a hard stop at {:.4g} s: it is used up to {:.4g} s", recording.name,
                     stop->at, stop->last_before));

@@ -66,6 +66,15 @@ const QuantityEntry& JobDraft::quantity(std::string_view name) const {
   return quantity_list(vocabulary())[quantity_index(name)];
 }
 
+void DraftRecording::keep_samples(std::size_t first, std::size_t count) {
+  const auto keep = [&](std::vector<double>& values) {
+    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first));
+    values.resize(count);
+  };
+  keep(guess.time.values);
+  for (GuessedColumn& c : guess.columns) keep(c.values);
+}
+
 std::string JobDraft::say(std::string_view text) const {
   return std::string(words_on(vocabulary(), text));
 }

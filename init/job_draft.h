@@ -48,6 +48,8 @@ struct DraftRecording {
   /// Whether each of its values holds until the next, as those of a command do.
   bool holds_input() const { return hold_reason.empty() ? !has_measured_input() : is_held; }
   bool drives_in_newtons() const;
+  /// Leaves so many samples from the first on; trim_from and trim_to are the caller's.
+  void keep_samples(std::size_t first, std::size_t count);
 };
 
 /// A quantity that the job may free.

@@ -34,7 +34,8 @@ class RoundTrial {
         options_(options),
         memory_(memory),
         context_(context),
-        before_(residual_series(model.job, model.fit)) {
+        before_(residual_series(model.job, model.fit)),
+        is_exact_(options.explained || is_near_noise(before_, context.options)) {
     std::vector<double> values = model.values();
     if (values != memory.of) memory = {.of = std::move(values)};
   }
@@ -69,18 +70,15 @@ class RoundTrial {
   bool is_free() const { return !tracks(model_.job.options.criterion); }
   bool is_close() const { return model_.fit.reduced_chi_square < limits().close_chi_square; }
 
-  /// Nothing but noise is left, or so little that a score is exact.
-  bool is_exact() const { return options_.explained || is_near_noise(before_, context_.options); }
-
   /// A simulation that is far from the data must track them to be scored.
   double first_gain() const {
-    return is_free() && is_exact() ? 0.0 : score_gains(model_.job).front();
+    return is_free() && is_exact_ ? 0.0 : score_gains(model_.job).front();
   }
 
   /// What is large is tried at a high gain, too, and the free run is scored where it is close: an
   /// instrument that errs misleads whatever tracks it.
   std::vector<double> other_gains() const {
-    if (is_free() && is_exact()) return {};
+    if (is_free() && is_exact_) return {};
     std::vector<double> gains = score_gains(model_.job);
     if (const auto close = close_gain(model_.job, values_of(model_.fit), context_))
       gains.push_back(*close);
@@ -137,7 +135,7 @@ class RoundTrial {
   /// first order: the refit may find more, above all where the score is large.
   bool is_hopeless(const Scored& entry) const {
     const double least = least_gain(*entry.hypothesis, samples_of(before_), result_.tried);
-    if (is_exact()) return entry.scaled_gain < least;
+    if (is_exact_) return entry.scaled_gain < least;
     return entry.promise < limits().promise * least && entry.scaled_gain < limits().much * least;
   }
 
@@ -411,6 +409,7 @@ class RoundTrial {
   std::mutex elsewhere_;  // of the memory
   const SearchContext& context_;
   const std::vector<ResidualSeries> before_;
+  const bool is_exact_;  ///< nothing but noise is left, or so little that a score is exact
   std::optional<std::vector<double>> force_before_{};  ///< of missing_percents()
   RoundResult result_;
 };
