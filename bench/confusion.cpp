@@ -123,9 +123,13 @@ Secret draw_secret(const std::string& name, double low, double high, Draw& draw)
   if (name == "constant_force") return {name, {{"F_0", s}}, {}, 5};
   if (name == "quadratic_drag") return {name, {{"c", 1}}, {}, 20};
   if (name == "stroke_spring") return {name, {{"k_s", 1}}, {}, 10};
+  if (name == "end_stops")
+    return {name, {{"k_h", 1}}, {{"y_h", high - draw.uniform(0.05, 0.2) * (high - low)}}, 1e4};
   if (name == "periodic_force")
     return {name, {{"F_s1", a}, {"F_c1", b}}, {{"period", 0.06 * draw.factor(3)}}, 5};
   if (name == "added_mass") return {name, {{"dM", s}}, {}, 5, 80};
+  if (name == "payload_change")
+    return {name, {{"dM", s}}, {{"t_c", draw.uniform(0.6, 2.4)}}, 5, 80};
   if (name == "elastic_mode")
     return {name, {{"m_e", 1}}, {{"f_e", draw.uniform(10, 60)}, {"zeta_e", 0.03}}, 3, 60};
   if (name == "cogging_torque")

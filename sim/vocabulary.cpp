@@ -87,6 +87,7 @@ constexpr auto kSymbols = std::to_array<Exchange>({
     {"M", "J"},
     {"dM", "dJ"},
     {"m_e", "J_e"},
+    {"dF", "dT"},
     {"dF_c", "dT_c"},
 });
 

@@ -170,9 +170,10 @@ class Filling {
     flag("needs_direction",
          is.needs.hysteresis || has_any({"stribeck_friction", "stribeck_load_friction",
                                          "directional_friction", "friction_over_velocity"}));
-    flag("needs_exp", has_any({"dahl_friction", "second_dahl_friction", "warming_grease",
-                               "stribeck_friction", "friction_bump", "stribeck_load_friction",
-                               "warming_friction", "running_in_friction", "torque_fade"}));
+    flag("needs_exp",
+         has_any({"dahl_friction", "second_dahl_friction", "warming_grease", "stribeck_friction",
+                  "friction_bump", "stribeck_load_friction", "warming_friction",
+                  "running_in_friction", "torque_fade", "payload_change"}));
     flag("needs_pow",
          has_any({"stribeck_friction", "quadratic_drag", "torque_droop", "force_droop"}));
     flag("needs_sin", has_any({"cogging_torque", "torque_ripple", "pendulum_gravity",

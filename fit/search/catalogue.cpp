@@ -108,7 +108,8 @@ std::vector<Hypothesis> of_single_recordings(const Job& job, const std::vector<H
   if (fitted.size() < 2) return found;
   const std::size_t added_mass = quantity_index("added_mass.dM");
   for (const std::size_t quantity :
-       {added_mass, quantity_index("constant_force.F_0"), quantity_index("coulomb_friction.F_c")}) {
+       {added_mass, quantity_index("payload_change.dM"), quantity_index("constant_force.F_0"),
+        quantity_index("coulomb_friction.F_c")}) {
     const std::vector<std::size_t> strengths{quantity};
     const auto shared = std::ranges::find(list, strengths, &Hypothesis::strengths);
     if (shared == list.end()) continue;

@@ -26,9 +26,11 @@
 #include "sim/effects/directional_friction.h"
 #include "sim/effects/drive_lag.h"
 #include "sim/effects/elastic_mode.h"
+#include "sim/effects/end_stops.h"
 #include "sim/effects/force_droop.h"
 #include "sim/effects/friction_bump.h"
 #include "sim/effects/load_friction.h"
+#include "sim/effects/payload_change.h"
 #include "sim/effects/pendulum_gravity.h"
 #include "sim/effects/periodic_force.h"
 #include "sim/effects/position_friction.h"
@@ -50,16 +52,18 @@
 namespace axisfit {
 
 template <class T>
-using Effects = std::tuple<
-    CoulombFriction<T>, ConstantForce<T>, QuadraticDrag<T>, DirectionalFriction<T>,
-    StribeckFriction<T>, PositionFriction<T>, FrictionBump<T>, LoadFriction<T>,
-    QuadraticLoadFriction<T>, StribeckLoadFriction<T>, DahlFriction<T>, SecondDahlFriction<T>,
-    WarmingFriction<T>, WarmingGrease<T>, RunningInFriction<T>, StrokeSpring<T>, PendulumGravity<T>,
-    PeriodicForce<T>, SecondPeriodicForce<T>, AddedMass<T>, ElasticMode<T>, SoftTransmission<T>,
-    CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>, ForceDroop<T>, TorqueFade<T>, DriveLag<T>,
-    CommandOffset<T>, SupplyResistance<T>, ChannelForce<T>, ChannelFriction<T>, ChannelDamping<T>,
-    ChannelGain<T>, ChannelMass<T>, ForceOverVelocity<T>, ForceOverPosition<T>,
-    ForceOverMotorAngle<T>, ForceOverTime<T>, FrictionOverVelocity<T>, FrictionOverPosition<T>>;
+using Effects =
+    std::tuple<CoulombFriction<T>, ConstantForce<T>, QuadraticDrag<T>, DirectionalFriction<T>,
+               StribeckFriction<T>, PositionFriction<T>, FrictionBump<T>, LoadFriction<T>,
+               QuadraticLoadFriction<T>, StribeckLoadFriction<T>, DahlFriction<T>,
+               SecondDahlFriction<T>, WarmingFriction<T>, WarmingGrease<T>, RunningInFriction<T>,
+               StrokeSpring<T>, EndStops<T>, PendulumGravity<T>, PeriodicForce<T>,
+               SecondPeriodicForce<T>, AddedMass<T>, PayloadChange<T>, ElasticMode<T>,
+               SoftTransmission<T>, CoggingTorque<T>, TorqueRipple<T>, TorqueDroop<T>,
+               ForceDroop<T>, TorqueFade<T>, DriveLag<T>, CommandOffset<T>, SupplyResistance<T>,
+               ChannelForce<T>, ChannelFriction<T>, ChannelDamping<T>, ChannelGain<T>,
+               ChannelMass<T>, ForceOverVelocity<T>, ForceOverPosition<T>, ForceOverMotorAngle<T>,
+               ForceOverTime<T>, FrictionOverVelocity<T>, FrictionOverPosition<T>>;
 
 inline constexpr std::size_t kEffects = std::tuple_size_v<Effects<double>>;
 

@@ -49,6 +49,8 @@ inline std::map<std::string, Rig> axes() {
   add_effect<PeriodicForce>(smooth) = {2.0, -1.0, 0.4, 0.3, 0.2, -0.15, 0.036};
   add_effect<SecondPeriodicForce>(smooth) = {0.7, 0.5, -0.2, 0.1, 0.0, 0.3, 0.0047};
   add_effect<DahlFriction>(smooth) = {2.0, 2e-4, 0.0};
+  add_effect<EndStops>(smooth) = {2e4, 0.05, 3e4, -0.05, 0.5};
+  add_effect<PayloadChange>(smooth) = {5.0, -2.0, 0.3};
   all.emplace("smooth", of_model(smooth));
   Model<double> voltage = paper_axis();
   voltage.structure.drive = Drive::motor_voltage;

@@ -137,6 +137,30 @@ std::vector<LawCase> laws() {
   add(
       "stroke_spring", [](auto& m) { add_effect<StrokeSpring>(m).k_s = 150.0; },
       [](double, double y, double) { return -150.0 * y; });
+  // At both ends with a damping; it pushes, and never pulls.
+  add(
+      "end_stops",
+      [](auto& m) {
+        add_effect<EndStops>(m) = {2e4, 0.09, 3e4, -0.02, 2.0};
+      },
+      [](double, double y, double v) {
+        const auto push = [](double k, double depth, double speed) {
+          return depth > 0.0 ? k * depth * depth * std::max(0.0, 1.0 + 2.0 * speed) : 0.0;
+        };
+        return push(3e4, -0.02 - y, -v) - push(2e4, y - 0.09, v);
+      },
+      1e-7);
+  add(
+      "payload_change",
+      [](auto& m) {
+        add_effect<PayloadChange>(m) = {5.0, -4.0, 0.42};
+      },
+      [](double t, double, double) {
+        const double part = 0.5 * (1.0 + std::tanh(50.0 * (t - 0.42)));
+        const double force = pushing(three_pushes(), t);
+        return kMass * (force - 4.0 * part) / (kMass + 5.0 * part) - force;
+      },
+      1e-7);
   add(
       "pendulum_gravity",
       [](auto& m) {

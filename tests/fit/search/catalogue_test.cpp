@@ -56,15 +56,17 @@ TEST(Catalogue, OffersWhatOneRecordingHasAlone) {
   job.recordings[1].role = Role::validate;
   EXPECT_EQ(of_single_recordings(job), Names{}) << "nor has it from one that is not fitted";
   job.recordings[1].role = Role::fit;
-  EXPECT_EQ(of_single_recordings(job),
-            (Names{"added_mass@a", "added_mass@b", "constant_force@a", "constant_force@b",
-                   "coulomb_friction@a", "coulomb_friction@b"}));
+  EXPECT_EQ(
+      of_single_recordings(job),
+      (Names{"added_mass@a", "added_mass@b", "payload_change@a", "payload_change@b",
+             "constant_force@a", "constant_force@b", "coulomb_friction@a", "coulomb_friction@b"}));
   job.free = {free_parameter("M", 146.0)};
   EXPECT_EQ(of_single_recordings(job).front(), "added_mass@b") << "the other has M";
   add_effect<ConstantForce>(job.model);
   job.free.push_back(free_parameter("constant_force.F_0", 1.0));
   EXPECT_EQ(of_single_recordings(job),
-            (Names{"added_mass@b", "coulomb_friction@a", "coulomb_friction@b"}));
+            (Names{"added_mass@b", "payload_change@a", "payload_change@b", "coulomb_friction@a",
+                   "coulomb_friction@b"}));
 }
 
 TEST(Catalogue, HasEveryEffectOfTheList) {

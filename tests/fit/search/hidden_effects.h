@@ -63,7 +63,9 @@ inline std::vector<HiddenEffect> hidden_effects() {
        {{"periodic_force.F_s1", 4.0}, {"periodic_force.F_c1", 3.0}},
        {{"periodic_force.period", 0.05}}},
       {"arm force", "constant_force", {{"constant_force.F_0", 3.0}}},
+      {"arm force", "end_stops", {{"end_stops.k_h", 6e3}}, {{"end_stops.y_h", 0.33}}},
       {"inertia", "added_mass", {{"added_mass.dM", 0.5}}},
+      {"inertia", "payload_change", {{"payload_change.dM", 0.5}}, {{"payload_change.t_c", 0.5}}},
       {"inertia",
        "elastic_mode",
        {{"elastic_mode.m_e", 0.3}},
@@ -94,8 +96,10 @@ inline std::vector<HiddenEffect> hidden_effects() {
   secret("cogging_torque").twin = "periodic_force";
   secret("velocity.gain").twin = "acceleration.gain";
   // A ripple in which the current changes its sign has no one period along the stroke, and a
-  // simulation that is held to a late velocity is late itself.
+  // simulation that is held to a late velocity is late itself. How stiff a buffer is depends on
+  // where it begins, of which three places are tried.
   secret("torque_ripple").linear = secret("velocity.lag").linear = false;
+  secret("end_stops").linear = false;
   return list;
 }
 
