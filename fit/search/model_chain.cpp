@@ -31,6 +31,31 @@ bool explains(const FittedModel& model) {
   return !series.empty() && std::ranges::all_of(series, is_noise);
 }
 
+/// Whether a fit to the recordings to validate, too, from where that of the others ended, leaves
+/// nothing but noise.
+bool is_explained_by_one_fit(const FittedModel& model, const SearchContext& context) {
+  if (!model.fit.is_usable()) return false;
+  bool validates = false;
+  for (const ResidualSeries& s : residual_series(model.job, model.fit)) {
+    if (s.fitted && !is_explained(s)) return false;
+    validates = validates || !s.fitted;
+  }
+  if (!validates) return false;
+  FittedModel all = model;
+  for (Recording& r : all.job.recordings) {
+    r.role = Role::fit;
+    r.held_out.clear();
+  }
+  set_initial_values(all.job, values_of(model.fit));
+  all.job.options = recipe::polish(all.job.options);
+  all.fit = refit(all.job, context);
+  return all.fit.is_usable() && explains(all);
+}
+
+bool is_close(const FittedModel& model, const SearchOptions& options) {
+  return model.fit.reduced_chi_square < options.round.close_chi_square;
+}
+
 bool is_near_noise(const std::vector<ResidualSeries>& residuals, const SearchOptions& options) {
   return std::ranges::all_of(residuals, [&](const ResidualSeries& s) {
     return mean_square(s.values) < options.round.exact_mean_square;
@@ -64,7 +89,22 @@ ModelChain::Neighbours& ModelChain::neighbours() {
 
 bool ModelChain::explained() {
   std::optional<bool>& known = neighbours().explained;
-  if (!known) known = explains(current());
+  if (!known)
+    known = explains(current()) || is_explained_freely() ||
+            is_explained_by_one_fit(current(), *context_);
+  return *known;
+}
+
+bool ModelChain::is_explained_freely() {
+  const FittedModel& tracked = current();
+  return free_ && tracks(tracked.job.options.criterion) && !accepted_.empty() &&
+         tracked.fit.is_usable() && tracked.fit.reduced_chi_square < context_->options.near_noise &&
+         free_run().fit.is_usable() && explains(free_run());
+}
+
+const FittedModel& ModelChain::free_run() {
+  std::optional<FittedModel>& known = neighbours().free_run;
+  if (!known) known = with_accepted(*free_);
   return *known;
 }
 

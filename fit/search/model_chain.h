@@ -27,6 +27,9 @@ Improvement improvement(const FittedModel& before, const FittedModel& after);
 /// Whether the model leaves nothing but noise in any signal.
 bool explains(const FittedModel& model);
 
+/// Whether the free run stays near the data.
+bool is_close(const FittedModel& model, const SearchOptions& options);
+
 /// Whether every signal, of recordings that validate, too, leaves so little that a score is exact.
 bool is_near_noise(const std::vector<ResidualSeries>& residuals, const SearchOptions& options);
 
@@ -54,6 +57,8 @@ class ModelChain {
   std::vector<Accepted>& accepted() { return accepted_; }
 
   void append(Accepted effect, Job job, FitResult fit);
+  /// Puts another fit of the last model in the place of the present one.
+  void set_fit(FitResult fit) { models_.back().fit = std::move(fit); }
   /// Begins anew with a declared model.
   void restart(FittedModel declared);
   /// Puts another declared model in the place of the present one, and the last model with the
@@ -84,8 +89,17 @@ class ModelChain {
   /// where effects were removed or exchanged.
   std::vector<FittedModel> models() const;
 
-  /// Whether the last model leaves nothing but noise, see explains().
+  /// Whether the last model leaves nothing but noise, see explains(), or would with other
+  /// estimates: a fit to all recordings does. Then nothing is missing, though the recordings that
+  /// are fitted leave open what those to validate show. Of a model that tracks the free run is
+  /// asked, too, where there is one: noise of the readings drives a simulation that tracks.
   bool explained();
+
+  /// Says by which declared job the accepted effects run freely while the models of the chain
+  /// track; none: by none.
+  void set_free(std::optional<Job> declared) { free_ = std::move(declared); }
+  /// The effects in that job, refitted from where they are.
+  const FittedModel& free_run();
 
   /// The last model fitted to the recordings to validate alone, see fit_elsewhere().
   const std::optional<FitResult>& elsewhere();
@@ -95,14 +109,16 @@ class ModelChain {
  private:
   /// What was found beside the present model.
   struct Neighbours {
-    std::vector<double> of;                           ///< values and gain of that model
-    std::optional<bool> explained{};                  ///< takes simulations
+    std::vector<double> of;           ///< values and gain of that model
+    std::optional<bool> explained{};  ///< takes simulations
+    std::optional<FittedModel> free_run{};
     std::vector<std::optional<FittedModel>> reduced;  ///< without each of the accepted effects
     std::vector<std::optional<bool>> is_far;          ///< what is left without each
     bool has_elsewhere = false;
     std::optional<FitResult> elsewhere{};
   };
   Neighbours& neighbours();
+  bool is_explained_freely();
   FittedModel reduce(std::size_t place) const;
   /// A declared job with those accepted effects that are `kept`.
   template <class Kept>
@@ -111,6 +127,7 @@ class ModelChain {
   const SearchContext* context_;
   std::vector<FittedModel> models_;  ///< the declared one, the last, and some between
   std::vector<Accepted> accepted_;
+  std::optional<Job> free_{};
   Neighbours neighbours_;
 };
 

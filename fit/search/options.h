@@ -11,6 +11,9 @@ namespace axisfit {
 /// The figures of docs/effect-selection.md were measured with these values.
 struct SearchOptions {
   int max_effects = 6;  ///< that a model may be given: more would be a description of the data
+  /// Reduced chi-square below which nothing may be missing: a quick fit, or noise of the readings
+  /// that drives a simulation that tracks, may make what is left.
+  double near_noise = 2.0;
 
   /// The score test, which looks at all hypotheses without a refit.
   struct Scoring {

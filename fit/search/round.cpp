@@ -68,7 +68,7 @@ class RoundTrial {
   }
 
   bool is_free() const { return !tracks(model_.job.options.criterion); }
-  bool is_close() const { return model_.fit.reduced_chi_square < limits().close_chi_square; }
+  bool is_close() const { return axisfit::is_close(model_, context_.options); }
 
   /// A simulation that is far from the data must track them to be scored.
   double first_gain() const {
@@ -76,9 +76,10 @@ class RoundTrial {
   }
 
   /// What is large is tried at a high gain, too, and the free run is scored where it is close: an
-  /// instrument that errs misleads whatever tracks it.
+  /// instrument that errs misleads whatever tracks it. Near the noise that is enough.
   std::vector<double> other_gains() const {
     if (is_free() && is_exact_) return {};
+    if (is_free() && model_.fit.reduced_chi_square < context_.options.near_noise) return {0.0};
     std::vector<double> gains = score_gains(model_.job);
     if (const auto close = close_gain(model_.job, values_of(model_.fit), context_))
       gains.push_back(*close);
@@ -100,6 +101,7 @@ class RoundTrial {
   std::vector<std::size_t> choice() {
     if (!memory_.list) {
       memory_.list = scored({first_gain()});
+      fit_entries_from_afar();
       if (!memory_.list->has_most) score_the_rest();
       memory_.refits.resize(memory_.list->entries.size());
     }
@@ -127,8 +129,18 @@ class RoundTrial {
     const std::vector<double> gains = other_gains();
     if (gains.empty()) return false;
     memory_.list->add(scored(gains), context_.options);
+    fit_entries_from_afar();
     memory_.refits.resize(memory_.list->entries.size());
     return true;
+  }
+
+  /// A refit takes a whole continuation where the free run is far from the data: then the entries
+  /// are told apart by fits that track, which take a few steps.
+  void fit_entries_from_afar() {
+    if (!is_free() || is_exact_ || is_close()) return;
+    report_progress("comparing effects", 0, 0, Work::scores);
+    fit_entries(*memory_.list, model_.job, values_of(model_.fit), search_gain(model_.job),
+                context_);
   }
 
   /// Whether the acceptance test would find it no better than chance. A score holds to

@@ -24,6 +24,7 @@ struct Scored {
   double promise = 0.0;      ///< in units of the acceptance test, see Improvement::fit_gain
   /// A simpler one gains as much, so that this is worth a refit only where that one fails.
   bool is_second = false;
+  bool is_fitted = false;  ///< what it gains and where it starts are of a fit, not of a step
 };
 
 }  // namespace axisfit

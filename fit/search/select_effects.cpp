@@ -20,16 +20,10 @@
 namespace axisfit {
 namespace {
 
-/// Fits with the full accuracy from close by.
-FitResult final_fit(Job job, const std::vector<double>& values, const RunContext& context) {
-  set_initial_values(job, values);
-  job.options = recipe::final_fit(job);
-  return estimate(job, context.quiet());
-}
-
 /// The declared model as a search begins with it: fitted to blocks where no recording validates.
 SearchState begin(const Job& job, const FitResult& first, Rounds& rounds) {
   SearchState state{ModelChain({"", job, first}, rounds.context)};
+  state.chain.set_free(rounds.free);
   rounds.held_out_blocks = std::ranges::none_of(
       job.recordings, [](const Recording& r) { return r.role == Role::validate; });
   if (rounds.held_out_blocks)
@@ -102,7 +96,7 @@ FittedModel final_model(const SearchState& state, const FitResult& first, const 
   } else if (!interrupted) {
     state.report_progress(rounds.context.run, "final fit", Work::fits);
     try {
-      FitResult exact = final_fit(last.job, values_of(last.fit), rounds.context.run);
+      FitResult exact = final_fit(last.job, values_of(last.fit), rounds.context);
       if (exact.is_usable()) last.fit = std::move(exact);
     } catch (const Interrupted&) {
       interrupted = true;
@@ -176,7 +170,7 @@ EffectSelection search_effects(const Job& job, const FitResult& first, Rounds& r
   }
   selection.result = determined_model(state, first, rounds, selection);
   selection.verdict.small = small_effects(state, rounds);
-  const bool is_noise = state.current().fit.is_usable() && state.explained();
+  const bool is_noise = selection.result.fit.is_usable() && explains(selection.result);
   selection.explained = is_noise && selection.verdict.small.empty();
   try {
     propose_closed_forms(state, selection.result, rounds.context);
@@ -208,7 +202,7 @@ void drop_what_is_open(EffectSelection& selection, const SearchContext& context)
   FittedModel& last = selection.result;
   while (drop_undetermined(state, last, context)) {
     last = state.current();
-    last.fit = final_fit(last.job, values_of(last.fit), context.run);
+    last.fit = final_fit(last.job, values_of(last.fit), context);
   }
   if (state.accepted().size() == all) return;
   selection.models = state.chain.models();
@@ -235,7 +229,7 @@ EffectSelection with_criterion(EffectSelection selection, const Criterion& crite
   FittedModel& last = selection.result;
   take_criterion(last.job);
   context.run.report({.phase = "final fit"});
-  last.fit = models.size() > 1 ? final_fit(last.job, values_of(last.fit), context.run) : *declared;
+  last.fit = models.size() > 1 ? final_fit(last.job, values_of(last.fit), context) : *declared;
   for (FittedModel& model : models) {
     take_criterion(model.job);
     // Where blocks are held out, they are left out of these fits alone.
@@ -312,6 +306,9 @@ EffectSelection select_effects(const Job& job, const FitResult& first, const Sea
   const ThreadPool pool(job.options.threads);
   Rounds rounds{.context = {options, context}};
   const Start start = start_of(job, first, rounds.context);
+  if (start.tracks && !start.input_is_noisy && !job.choose_criterion &&
+      std::holds_alternative<FreeRun>(job.options.criterion))
+    rounds.free = job;
   EffectSelection selection = search_effects(start.model.job, start.model.fit, rounds);
   const bool found_any = selection.models.size() > 1;
   if (selection.interrupted) return selection;
@@ -322,7 +319,10 @@ EffectSelection select_effects(const Job& job, const FitResult& first, const Sea
     // A free run that noise moves would not keep what was found.
     if (start.input_is_noisy && !job.choose_criterion && found_any) return selection;
     const bool is_other = criterion != job.options.criterion;
-    if (start.tracks || is_other)
+    // A search that came to its end in time left a model that tracks.
+    const bool still_tracks =
+        selection.result.job.options.criterion != start.model.job.options.criterion;
+    if (start.tracks || is_other || still_tracks)
       selection = with_criterion(selection, criterion, job.choose_criterion,
                                  is_other ? nullptr : &first, rounds.context);
   } catch (const Interrupted&) {

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "fit/search/acceptance.h"
+#include "fit/search/scorer.h"
 
 namespace axisfit {
 namespace {
@@ -35,7 +36,8 @@ std::vector<ResidualSeries> series_of(const ScoreTest& test, const Eigen::Vector
 
 /// Marks what a simpler one gains as well: more parameters gain by chance.
 void mark_seconds(std::vector<Scored>& entries, double samples) {
-  for (Scored& entry : entries)
+  for (Scored& entry : entries) {
+    entry.is_second = false;
     for (const Scored& simple : entries) {
       const std::size_t own = entry.hypothesis->parameters(),
                         fewer = simple.hypothesis->parameters();
@@ -43,6 +45,7 @@ void mark_seconds(std::vector<Scored>& entries, double samples) {
       const double price = static_cast<double>(own - fewer) * std::log(std::max(2.0, samples));
       entry.is_second = entry.is_second || entry.scaled_gain < simple.scaled_gain + price;
     }
+  }
 }
 
 /// Whether it is the best of the plain laws beside what gains more.
@@ -94,6 +97,21 @@ std::vector<Scored> best_of(ScoreTest& test, std::size_t length,
   return taken;
 }
 
+/// Drops fits that ended where an earlier one of the hypothesis did, or far from doing as well.
+void drop_worse_ends(std::vector<Scored>& entries, const SearchOptions& options) {
+  std::vector<Scored> kept;
+  for (Scored& entry : entries) {
+    const bool is_needless =
+        entry.is_fitted && std::ranges::any_of(kept, [&](const Scored& other) {
+          return other.is_fitted && is_same_form(*other.hypothesis, *entry.hypothesis) &&
+                 (nearly_same(other, entry, options.shortlist.same_shape) ||
+                  entry.scaled_gain < options.round.rival_part * other.scaled_gain);
+        });
+    if (!is_needless) kept.push_back(std::move(entry));
+  }
+  entries = std::move(kept);
+}
+
 /// Keeps the best of each hypothesis.
 void note(std::vector<Shortlist::Promise>& promises, const Shortlist::Promise& promise) {
   const auto known = std::ranges::find_if(promises, [&](const Shortlist::Promise& p) {
@@ -105,12 +123,17 @@ void note(std::vector<Shortlist::Promise>& promises, const Shortlist::Promise& p
     *known = promise;
 }
 
-/// Whether the best of a score explains most of what is beyond the noise.
+/// Whether a gain is most of what is beyond the noise of so many samples.
+bool is_most(double gain, double sum_of_squares, double samples,
+             const SearchOptions::Shortlist& options) {
+  const double beyond = sum_of_squares - samples;
+  return beyond > 0.0 && gain >= options.most * beyond;
+}
+
 bool has_most(const ScoreTest& test, const SearchOptions::Shortlist& options) {
-  if (test.scores.empty()) return false;
-  const double samples = test.sum_of_squares / std::max(1e-300, test.mean_square);
-  const double beyond = test.sum_of_squares - samples;
-  return beyond > 0.0 && test.scores.front().gain >= options.most * beyond;
+  return !test.scores.empty() &&
+         is_most(test.scores.front().gain, test.sum_of_squares,
+                 test.sum_of_squares / std::max(1e-300, test.mean_square), options);
 }
 
 }  // namespace
@@ -156,6 +179,40 @@ Shortlist shortlist(const Job& job, const std::vector<double>& values,
   Shortlist result;
   for (Shortlist& one : of_gain) result.add(std::move(one), context.options);
   return result;
+}
+
+void fit_entries(Shortlist& list, const Job& job, const std::vector<double>& values,
+                 double observer_gain, const SearchContext& context) {
+  const Job coarse = with_coarse_steps(job);
+  const auto fit = [&](const Job& model, const std::vector<double>& from) {
+    return tracking_fit(model, ParameterSpace(model), from, observer_gain, context);
+  };
+  const SolveResult without = fit(coarse, values);
+  if (!without.usable) return;
+  const double samples = 2.0 * without.cost / without.reduced_cost,
+               unit = std::max(1.0, without.reduced_cost);
+  parallel_for(list.entries.size(), [&](std::size_t i) {
+    Scored& entry = list.entries[i];
+    if (entry.is_fitted || entry.hypothesis->is_of_instrument() ||
+        entry.hypothesis->kind == HypothesisKind::transmission)
+      return;
+    const Job extended = with_hypothesis(coarse, *entry.hypothesis, entry.others, entry.own);
+    const SolveResult with = fit(extended, initial_values(extended));
+    if (!with.usable) return;
+    const std::vector<double> found = ParameterSpace(extended).values(with.u);
+    const auto own = found.begin() + static_cast<std::ptrdiff_t>(job.free.size()),
+               shapes = own + static_cast<std::ptrdiff_t>(entry.own.strengths.size());
+    entry.others.assign(found.begin(), own);
+    entry.own.strengths.assign(own, shapes);
+    if (shapes != found.end()) entry.own.shapes.assign(shapes, found.end());
+    entry.scaled_gain = 2.0 * (without.cost - with.cost) / unit;
+    entry.is_fitted = true;
+  });
+  drop_worse_ends(list.entries, context.options);
+  for (const Scored& entry : list.entries)
+    list.has_most = list.has_most || is_most(entry.scaled_gain * unit, 2.0 * without.cost, samples,
+                                             context.options.shortlist);
+  mark_seconds(list.entries, samples);
 }
 
 }  // namespace axisfit

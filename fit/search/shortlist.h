@@ -38,4 +38,11 @@ Shortlist shortlist(const Job& job, const std::vector<double>& values,
                     const std::vector<double>& observer_gains, bool curves,
                     const SearchContext& context = {});
 
+/// Puts fits that track at this observer gain in the place of the steps of least squares: where
+/// much is missing, a step tells wrongly what an effect gains, and starts its refit far away. Of
+/// the entries that have had none yet, but for another transmission, which takes many steps, and
+/// for what is read of the machine, in which a simulation that tracks takes part.
+void fit_entries(Shortlist& list, const Job& job, const std::vector<double>& values,
+                 double observer_gain, const SearchContext& context = {});
+
 }  // namespace axisfit

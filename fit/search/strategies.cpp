@@ -58,6 +58,18 @@ Accepted accepted_from(const RoundResult& round, const Tried& best, const Search
   return accepted;
 }
 
+/// Where a quick fit leaves little more than noise, a part of that may be its own: then an exact
+/// one tells what is missing.
+void settle(SearchState& state, const SearchContext& context) {
+  const FittedModel& last = state.current();
+  if (tracks(last.job.options.criterion) || state.explained() ||
+      last.fit.reduced_chi_square > context.options.near_noise)
+    return;
+  FitResult exact = final_fit(last.job, values_of(last.fit), context);
+  if (exact.is_usable() && reduced_cost(exact) < reduced_cost(last.fit))
+    state.chain.set_fit(std::move(exact));
+}
+
 /// Adds the hypothesis that explains the most; whether one passes.
 bool add_best(SearchState& state, bool curves, double chance, Rounds& rounds) {
   const auto begin = std::chrono::steady_clock::now();
@@ -76,6 +88,7 @@ bool add_best(SearchState& state, bool curves, double chance, Rounds& rounds) {
   } else {
     Accepted accepted = accepted_from(round, *best, rounds.context.options);
     state.chain.append(std::move(accepted), std::move(best->job), std::move(best->fit));
+    settle(state, rounds.context);
   }
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
   rounds.context.run.report(
@@ -105,8 +118,11 @@ bool add_pair(SearchState& state, Rounds& rounds) {
       return is_same_form(*p.hypothesis, other);
     });
   });
-  for (const ScoredPair& pair :
-       score_pairs(state.current(), list.observer_gains, hypotheses, rounds.context)) {
+  // From afar, where effects are compared.
+  const FittedModel& model = state.current();
+  const std::vector<double> gains =
+      is_close(model, options) ? list.observer_gains : std::vector{search_gain(model.job)};
+  for (const ScoredPair& pair : score_pairs(state.current(), gains, hypotheses, rounds.context)) {
     std::optional<TriedPair> found = try_pair(state.current(), pair, rounds.context);
     if (!found) continue;
     ++rounds.count;
@@ -190,6 +206,11 @@ bool is_proven(const FittedModel& from_curve, const FittedModel& other, bool oth
   return !(loss > 0.0 && (other_has_curve || is_clearly_worse(loss, options)));
 }
 
+bool is_nearly_exact(const SearchState& state, const SearchOptions& options) {
+  const FittedModel& last = state.current();
+  return !state.accepted().empty() && is_near_noise(residual_series(last.job, last.fit), options);
+}
+
 /// The state that a strategy ends in, or if that is stopped the state before it.
 template <class Strategy>
 SearchState finished(const SearchState& before, Strategy&& strategy) {
@@ -220,11 +241,18 @@ SearchState named(SearchState state, Rounds& rounds) {
   return state;
 }
 
-SearchState together(SearchState state, Rounds& rounds) {
+namespace {
+
+/// together(), of a state that holds what was found when this is stopped.
+void find_together(SearchState& state, Rounds& rounds) {
   const std::vector<Accepted> known = state.accepted();
   const FittedModel declared = state.chain.declared();
   const bool is_continued = declared.job.options.is_continued();
-  if (is_continued) state.restart(tracking(declared, search_gain(declared.job), rounds.context));
+  if (is_continued) {
+    FittedModel tracked = tracking(declared, search_gain(declared.job), rounds.context);
+    state.restart(std::move(tracked));
+    state.chain.set_free(declared.job);
+  }
   const double chance = rounds.context.options.acceptance.provisional_chance;
   do {
     while (state.current().fit.is_usable() && has_room(state, rounds) && !state.explained() &&
@@ -235,18 +263,28 @@ SearchState together(SearchState state, Rounds& rounds) {
     return std::ranges::none_of(
         known, [&](const Accepted& other) { return is_same(found.hypothesis, other.hypothesis); });
   });
-  const auto given_up = [&] {
-    state.restart(declared);
-    return state;
-  };
-  if (!is_new) return given_up();
+  if (!is_new) return state.restart(declared);
   if (is_continued) {
-    FittedModel all = state.chain.with_accepted(declared.job);
-    if (!all.fit.is_usable()) return given_up();
+    FittedModel all = state.chain.free_run();
+    if (!all.fit.is_usable()) return state.restart(declared);
     state.chain.replace(declared, std::move(all));
   }
   add_named(state, rounds);
   eliminate_backward(state, rounds.context);
+}
+
+/// Whether all that was found acts on the machine. In what instruments and clocks do a simulation
+/// that tracks takes part, and another transmission has other states.
+bool is_all_of_the_machine(const SearchState& state) {
+  return std::ranges::all_of(state.accepted(), [](const Accepted& a) {
+    return a.hypothesis.kind == HypothesisKind::effect;
+  });
+}
+
+}  // namespace
+
+SearchState together(SearchState state, Rounds& rounds) {
+  find_together(state, rounds);
   return state;
 }
 
@@ -269,25 +307,47 @@ SearchState from_a_curve(const SearchState& state, Rounds& rounds) {
   return anew;
 }
 
+namespace {
+
+/// Named effects, in the order in which that is quick. A refit takes a whole continuation where the
+/// free run is far from the data, and most fail there: then they are found together first.
+SearchState with_named_effects(const SearchState& declared, bool tracks, Rounds& rounds) {
+  const SearchOptions& options = rounds.context.options;
+  const auto better_of = [&](SearchState best, SearchState other) {
+    best.interrupted = other.interrupted;
+    return is_better(other.current(), best.current(), options) ? std::move(other) : std::move(best);
+  };
+  const FittedModel& model = declared.current();
+  if (!tracks && model.job.options.is_continued() && !is_close(model, options)) {
+    SearchState best = declared;
+    try {
+      find_together(best, rounds);
+    } catch (const Interrupted&) {
+      best.interrupted = true;
+    }
+    if (best.interrupted || (best.explained() && is_all_of_the_machine(best))) return best;
+    SearchState other = named(declared, rounds);
+    if (!other.interrupted && other.explained()) return other;
+    return better_of(std::move(best), std::move(other));
+  }
+  SearchState best = named(declared, rounds);
+  // What leaves next to nothing masks nothing.
+  if (best.interrupted || best.explained() || tracks || is_nearly_exact(best, options)) return best;
+  SearchState other = finished(best, [&](const SearchState& s) { return together(s, rounds); });
+  return better_of(std::move(best), std::move(other));
+}
+
+}  // namespace
+
 SearchState search(SearchState declared, Rounds& rounds) {
   const SearchOptions& options = rounds.context.options;
-  SearchState best = named(std::move(declared), rounds);
-  if (best.interrupted || best.explained()) return best;
-
   // A simulation that tracks the data has seen what masks what; it also shows a curve beside
   // effects that imitate a part of it.
-  const bool tracks = axisfit::tracks(best.chain.declared().job.options.criterion);
-  // What leaves next to nothing masks nothing, and no curve takes its place.
-  const FittedModel& last = best.current();
-  const bool is_exact =
-      !best.accepted().empty() && is_near_noise(residual_series(last.job, last.fit), options);
-  SearchState other = best;
-  if (!tracks && !is_exact) {
-    other = finished(best, [&](const SearchState& s) { return together(s, rounds); });
-    if (other.interrupted) return other;
-    if (is_better(other.current(), best.current(), options)) best = std::move(other);
-    if (best.explained()) return best;
-  }
+  const bool tracks = axisfit::tracks(declared.chain.declared().job.options.criterion);
+  SearchState best = with_named_effects(declared, tracks, rounds);
+  if (best.interrupted || best.explained()) return best;
+  // No curve takes the place of what leaves next to nothing.
+  const bool is_exact = is_nearly_exact(best, options);
 
   const std::size_t names = best.accepted().size();
   best = with_curves(std::move(best), rounds);
@@ -296,7 +356,7 @@ SearchState search(SearchState declared, Rounds& rounds) {
       !can_gain_by_a_curve(best, options) ||
       (!has_curve && !is_a_curve_in_reach(best, rounds.of_curves.list, options)))
     return best;
-  other = finished(best, [&](const SearchState& s) { return from_a_curve(s, rounds); });
+  SearchState other = finished(best, [&](const SearchState& s) { return from_a_curve(s, rounds); });
   if (other.interrupted || is_proven(other.current(), best.current(), has_curve, options))
     return other;
   return best;

@@ -5,10 +5,12 @@
 //
 //   named           add the named effects that pass the acceptance test, one a round
 //   together        find effects that mask each other while the simulation tracks the data, where
-//                   it ran free
+//                   it ran free; first of all where that is far from the data
 //   with_curves     explain what is left by curves
 //   from_a_curve    begin with a curve: named effects may have imitated a part of it
 #pragma once
+
+#include <optional>
 
 #include "fit/search/round.h"
 #include "fit/search/search_state.h"
@@ -20,6 +22,8 @@ namespace axisfit {
 struct Rounds {
   SearchContext context;
   bool held_out_blocks = false;  ///< no recording is to validate, see with_held_out_blocks()
+  /// The declared job that runs freely where a search begins with one that tracks in its place.
+  std::optional<Job> free{};
   RoundMemory of_names{}, of_curves{};
   int count = 0;  ///< of all strategies, those that were given up included
 };

@@ -24,6 +24,12 @@ FitResult refit_from(Job job, const std::vector<double>& values, const SearchCon
   return refit(job, context);
 }
 
+FitResult final_fit(Job job, const std::vector<double>& values, const SearchContext& context) {
+  set_initial_values(job, values);
+  job.options = recipe::final_fit(job);
+  return estimate(job, context.run.quiet());
+}
+
 Tried try_hypothesis(const Job& job, const Scored& start, const SearchContext& context,
                      const Try& how) {
   Tried tried;

@@ -32,6 +32,9 @@ FitResult refit(const Job& job, const SearchContext& context = {});
 /// The same from these values of the free parameters.
 FitResult refit_from(Job job, const std::vector<double>& values, const SearchContext& context = {});
 
+/// Fits with the full accuracy from close by.
+FitResult final_fit(Job job, const std::vector<double>& values, const SearchContext& context = {});
+
 /// What a refit with a hypothesis begins with, and has to reach.
 struct Try {
   /// Given up where it would not come below this reduced cost (stage.h).

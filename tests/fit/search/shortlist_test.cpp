@@ -95,5 +95,45 @@ TEST(Shortlist, LeavesOutWhatGainsLessThanHalfOfTheBest) {
         << list.entries[i].hypothesis->name;
 }
 
+/// The entry of an effect; fails where there is none.
+Scored entry_of(const Shortlist& list, std::string_view name) {
+  const auto found = std::ranges::find_if(
+      list.entries, [&](const Scored& e) { return e.hypothesis->name == name; });
+  EXPECT_NE(found, list.entries.end()) << name;
+  return found == list.entries.end() ? Scored{} : *found;
+}
+
+TEST(FitEntries, TellWhatAnEffectGainsAndWhereItStarts) {
+  const Job job = with_friction(12.0);
+  const double gain = search_gain(job);
+  Shortlist list = shortlist(job, kValues, {score_gains(job).front()}, false);
+  fit_entries(list, job, kValues, gain);
+  const Scored fitted = entry_of(list, "coulomb_friction");
+  EXPECT_TRUE(fitted.is_fitted);
+  EXPECT_NEAR(fitted.own.strengths.front(), 12.0, 0.2);
+  EXPECT_NEAR(fitted.others.front(), 20.0, 0.2);
+  EXPECT_TRUE(list.has_most);
+  EXPECT_FALSE(fitted.is_second);
+  // As another law of as many numbers or more does no better, it comes first.
+  for (const Scored& entry : list.entries) {
+    if (entry.hypothesis->parameters() > 1 && entry.is_fitted) {
+      EXPECT_TRUE(entry.is_second) << entry.hypothesis->name;
+    }
+  }
+  // Once is enough.
+  Shortlist again = list;
+  fit_entries(again, job, {1.0, 1.0}, gain);
+  EXPECT_EQ(entry_of(again, "coulomb_friction").scaled_gain, fitted.scaled_gain);
+}
+
+TEST(FitEntries, LeaveThoseOfInstrumentsAsTheyAre) {
+  Model<double> truth = slide();
+  truth.instruments[index_of(Signal::acceleration)].gain = 1.2;
+  const Job job = two_recordings(truth, slide(), {"M", "B_a"});
+  Shortlist list = shortlist(job, kValues, {score_gains(job).front()}, false);
+  fit_entries(list, job, kValues, search_gain(job));
+  EXPECT_FALSE(entry_of(list, "acceleration.gain").is_fitted);
+}
+
 }  // namespace
 }  // namespace axisfit

@@ -88,6 +88,26 @@ TEST(Search, GivesTheLastValidStateWhenALaterStrategyIsStopped) {
   EXPECT_EQ(values_of(found.current().fit), values_of(first.current().fit));
 }
 
+TEST(Search, BeginsWithASimulationThatTracksWhereTheFreeRunIsFar) {
+  Model<double> truth = slide();
+  add_effect<CoulombFriction>(truth).F_c = 12.0;
+  const Job job = two_recordings(truth, slide(), {"M", "B_a"});
+  Rounds rounds;
+  const SearchState first = start_of(job, rounds);
+  const double free_run = first.current().fit.reduced_chi_square;
+  ASSERT_GT(free_run, 25.0);
+  double scored = 0.0;
+  rounds.context.run.progress = [&](const Progress& p) {
+    if (p.phase == "scoring effects" && scored == 0.0) scored = p.best;
+  };
+  SearchState found = search(first, rounds);
+  EXPECT_EQ(names_in(found), std::set<std::string>{"coulomb_friction"});
+  EXPECT_TRUE(found.explained());
+  EXPECT_GT(scored, 0.0);
+  EXPECT_LT(scored, free_run);
+  EXPECT_EQ(found.current().fit.observer_gain, 0.0);
+}
+
 TEST(Tracking, FitsByTheErrorsOneStepAhead) {
   const Job job = hidden_effect_named("coulomb_friction").job();
   const FittedModel declared{"", job, estimate(job)};
