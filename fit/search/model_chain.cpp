@@ -56,6 +56,11 @@ bool is_close(const FittedModel& model, const SearchOptions& options) {
   return model.fit.reduced_chi_square < options.round.close_chi_square;
 }
 
+bool is_lost(const FittedModel& model, const SearchOptions& options) {
+  return capabilities(model.job.model.structure).has_backlash && model.job.options.is_continued() &&
+         !is_close(model, options);
+}
+
 bool is_near_noise(const std::vector<ResidualSeries>& residuals, const SearchOptions& options) {
   return std::ranges::all_of(residuals, [&](const ResidualSeries& s) {
     return mean_square(s.values) < options.round.exact_mean_square;

@@ -30,6 +30,10 @@ bool explains(const FittedModel& model);
 /// Whether the free run stays near the data.
 bool is_close(const FittedModel& model, const SearchOptions& options);
 
+/// Whether the free run is lost: far from the data, and with teeth whose contacts come at other
+/// instants, so that a refit takes a whole continuation and often ends in a wrong valley.
+bool is_lost(const FittedModel& model, const SearchOptions& options);
+
 /// Whether every signal, of recordings that validate, too, leaves so little that a score is exact.
 bool is_near_noise(const std::vector<ResidualSeries>& residuals, const SearchOptions& options);
 

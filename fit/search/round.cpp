@@ -134,10 +134,10 @@ class RoundTrial {
     return true;
   }
 
-  /// A refit takes a whole continuation where the free run is far from the data: then the entries
-  /// are told apart by fits that track, which take a few steps.
+  /// Where refits are costly and fail, the entries are told apart by fits that track, which take a
+  /// few steps.
   void fit_entries_from_afar() {
-    if (!is_free() || is_exact_ || is_close()) return;
+    if (is_exact_ || !is_lost(model_, context_.options)) return;
     report_progress("comparing effects", 0, 0, Work::scores);
     fit_entries(*memory_.list, model_.job, values_of(model_.fit), search_gain(model_.job),
                 context_);

@@ -121,7 +121,7 @@ bool add_pair(SearchState& state, Rounds& rounds) {
   // From afar, where effects are compared.
   const FittedModel& model = state.current();
   const std::vector<double> gains =
-      is_close(model, options) ? list.observer_gains : std::vector{search_gain(model.job)};
+      is_lost(model, options) ? std::vector{search_gain(model.job)} : list.observer_gains;
   for (const ScoredPair& pair : score_pairs(state.current(), gains, hypotheses, rounds.context)) {
     std::optional<TriedPair> found = try_pair(state.current(), pair, rounds.context);
     if (!found) continue;
@@ -309,16 +309,15 @@ SearchState from_a_curve(const SearchState& state, Rounds& rounds) {
 
 namespace {
 
-/// Named effects, in the order in which that is quick. A refit takes a whole continuation where the
-/// free run is far from the data, and most fail there: then they are found together first.
+/// Named effects, in the order in which that is quick: where refits by the free run are costly and
+/// fail, they are found together first.
 SearchState with_named_effects(const SearchState& declared, bool tracks, Rounds& rounds) {
   const SearchOptions& options = rounds.context.options;
   const auto better_of = [&](SearchState best, SearchState other) {
     best.interrupted = other.interrupted;
     return is_better(other.current(), best.current(), options) ? std::move(other) : std::move(best);
   };
-  const FittedModel& model = declared.current();
-  if (!tracks && model.job.options.is_continued() && !is_close(model, options)) {
+  if (is_lost(declared.current(), options)) {
     SearchState best = declared;
     try {
       find_together(best, rounds);

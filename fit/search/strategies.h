@@ -5,7 +5,7 @@
 //
 //   named           add the named effects that pass the acceptance test, one a round
 //   together        find effects that mask each other while the simulation tracks the data, where
-//                   it ran free; first of all where that is far from the data
+//                   it ran free; first of all where the free run is lost
 //   with_curves     explain what is left by curves
 //   from_a_curve    begin with a curve: named effects may have imitated a part of it
 #pragma once

@@ -53,8 +53,8 @@ struct EndStops {
   }
 
  private:
-  static constexpr Quantity place(std::string_view symbol, std::string_view meaning) {
-    return {symbol, "m", meaning, -1e3, 1e3, 0.0, UsedBy::every_axis, true};
+  static constexpr Quantity place(std::string_view symbol, std::string_view what) {
+    return {symbol, "m", what, -1e3, 1e3, 0.0, UsedBy::every_axis, true};
   }
 
   /// Of a buffer that the arm is so deep in, and goes deeper at this speed.

@@ -88,10 +88,10 @@ TEST(Search, GivesTheLastValidStateWhenALaterStrategyIsStopped) {
   EXPECT_EQ(values_of(found.current().fit), values_of(first.current().fit));
 }
 
-TEST(Search, BeginsWithASimulationThatTracksWhereTheFreeRunIsFar) {
-  Model<double> truth = slide();
-  add_effect<CoulombFriction>(truth).F_c = 12.0;
-  const Job job = two_recordings(truth, slide(), {"M", "B_a"});
+TEST(Search, BeginsWithASimulationThatTracksWhereTheFreeRunIsLost) {
+  Model<double> truth = paper_axis();
+  add_effect<CoulombFriction>(truth).F_c = 40.0;
+  const Job job = two_recordings(truth, paper_axis(), {"B_a"});
   Rounds rounds;
   const SearchState first = start_of(job, rounds);
   const double free_run = first.current().fit.reduced_chi_square;
