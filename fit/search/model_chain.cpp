@@ -1,6 +1,7 @@
 #include "fit/search/model_chain.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/parallel.h"
@@ -31,8 +32,20 @@ bool explains(const FittedModel& model) {
   return !series.empty() && std::ranges::all_of(series, is_noise);
 }
 
+/// Whether no estimate has moved by more than its standard errors allow.
+bool is_within_errors(const FitResult& moved, const FitResult& from) {
+  constexpr double kErrors = 4.0;
+  for (std::size_t i = 0; i < from.parameters.size(); ++i) {
+    const ParameterUncertainty& known = from.parameters[i].uncertainty;
+    if (known.determined && std::abs(moved.parameters[i].value - from.parameters[i].value) >
+                                kErrors * known.standard_error)
+      return false;
+  }
+  return true;
+}
+
 /// Whether a fit to the recordings to validate, too, from where that of the others ended, leaves
-/// nothing but noise.
+/// nothing but noise, with estimates that those do not rule out.
 bool is_explained_by_one_fit(const FittedModel& model, const SearchContext& context) {
   if (!model.fit.is_usable()) return false;
   bool validates = false;
@@ -49,7 +62,7 @@ bool is_explained_by_one_fit(const FittedModel& model, const SearchContext& cont
   set_initial_values(all.job, values_of(model.fit));
   all.job.options = recipe::polish(all.job.options);
   all.fit = refit(all.job, context);
-  return all.fit.is_usable() && explains(all);
+  return all.fit.is_usable() && is_within_errors(all.fit, model.fit) && explains(all);
 }
 
 bool is_close(const FittedModel& model, const SearchOptions& options) {
@@ -95,8 +108,9 @@ ModelChain::Neighbours& ModelChain::neighbours() {
 bool ModelChain::explained() {
   std::optional<bool>& known = neighbours().explained;
   if (!known)
-    known = explains(current()) || is_explained_freely() ||
-            is_explained_by_one_fit(current(), *context_);
+    known = explains(current()) ||
+            (has_contacts(current()) &&
+             (is_explained_freely() || is_explained_by_one_fit(current(), *context_)));
   return *known;
 }
 

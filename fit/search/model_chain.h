@@ -30,6 +30,9 @@ bool explains(const FittedModel& model);
 /// Whether the free run stays near the data.
 bool is_close(const FittedModel& model, const SearchOptions& options);
 
+/// Whether teeth meet: when they do depends on more digits than a quick fit has.
+bool has_contacts(const FittedModel& model);
+
 /// Whether the free run is lost: far from the data, and with teeth whose contacts come at other
 /// instants, so that a refit takes a whole continuation and often ends in a wrong valley.
 bool is_lost(const FittedModel& model, const SearchOptions& options);
@@ -94,9 +97,10 @@ class ModelChain {
   std::vector<FittedModel> models() const;
 
   /// Whether the last model leaves nothing but noise, see explains(), or would with other
-  /// estimates: a fit to all recordings does. Then nothing is missing, though the recordings that
-  /// are fitted leave open what those to validate show. Of a model that tracks the free run is
-  /// asked, too, where there is one: noise of the readings drives a simulation that tracks.
+  /// estimates within the errors: a fit to all recordings does. Then nothing is missing, though the
+  /// recordings that are fitted leave open what those to validate show. Of a model that tracks the
+  /// free run is asked, too, where there is one: noise of the readings drives a simulation that
+  /// tracks.
   bool explained();
 
   /// Says by which declared job the accepted effects run freely while the models of the chain

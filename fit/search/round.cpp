@@ -76,10 +76,9 @@ class RoundTrial {
   }
 
   /// What is large is tried at a high gain, too, and the free run is scored where it is close: an
-  /// instrument that errs misleads whatever tracks it. Near the noise that is enough.
+  /// instrument that errs misleads whatever tracks it.
   std::vector<double> other_gains() const {
     if (is_free() && is_exact_) return {};
-    if (is_free() && model_.fit.reduced_chi_square < context_.options.near_noise) return {0.0};
     std::vector<double> gains = score_gains(model_.job);
     if (const auto close = close_gain(model_.job, values_of(model_.fit), context_))
       gains.push_back(*close);

@@ -62,7 +62,7 @@ Accepted accepted_from(const RoundResult& round, const Tried& best, const Search
 /// one tells what is missing.
 void settle(SearchState& state, const SearchContext& context) {
   const FittedModel& last = state.current();
-  if (tracks(last.job.options.criterion) || state.explained() ||
+  if (!has_contacts(last) || tracks(last.job.options.criterion) || state.explained() ||
       last.fit.reduced_chi_square > context.options.near_noise)
     return;
   FitResult exact = final_fit(last.job, values_of(last.fit), context);
