@@ -69,9 +69,12 @@ bool is_close(const FittedModel& model, const SearchOptions& options) {
   return model.fit.reduced_chi_square < options.round.close_chi_square;
 }
 
+bool has_contacts(const FittedModel& model) {
+  return capabilities(model.job.model.structure).has_backlash;
+}
+
 bool is_lost(const FittedModel& model, const SearchOptions& options) {
-  return capabilities(model.job.model.structure).has_backlash && model.job.options.is_continued() &&
-         !is_close(model, options);
+  return has_contacts(model) && model.job.options.is_continued() && !is_close(model, options);
 }
 
 bool is_near_noise(const std::vector<ResidualSeries>& residuals, const SearchOptions& options) {
