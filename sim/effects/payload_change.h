@@ -32,7 +32,7 @@ struct PayloadChange {
           self.dF);
     visit(Quantity{"t_c", "s", "instant of the change", -1e6, 1e6, kRequired, UsedBy::every_axis,
                    true}
-              .typically(0.35),
+              .typically(0.36),
           self.t_c);
   }
 
