@@ -199,7 +199,7 @@ void start_axis(JobDraft& draft) {
   if (draft.request.gain && (!draft.is_force_driven() || first.drives_in_newtons()))
     throw std::runtime_error(fmt::format(
         "--gain is the {} per unit of a current or command, but {} is {}: leave it out",
-        draft.say("force"), sanitized(first.input_column().column),
+        draft.say("force"), first.input_column().title(),
         draft.is_force_driven() ? draft.say("a force") : "a velocity that is asked for"));
   if (!draft.is_force_driven()) {
     draft.starter = velocity_loop_starter(first.file);
@@ -209,7 +209,7 @@ void start_axis(JobDraft& draft) {
     return;
   }
   DrivenMass seen;
-  seen.column = first.input_column().column;
+  seen.column = first.input_column().title();
   seen.is_force = first.drives_in_newtons();
   double speed = 0.0;
   for (const DraftRecording& recording : draft.recordings) {
@@ -242,14 +242,14 @@ void collect_guesses(JobDraft& draft) {
       if (!c.guessed) return;
       if (seen.insert(c.column).second)
         draft.guesses.push_back(
-            sanitized(fmt::format("{}: {}", shortened(c.column), fmt::join(c.reasons, "; "))));
+            sanitized(fmt::format("{}: {}", c.title(), fmt::join(c.reasons, "; "))));
     };
     list_guess(recording.guess.time);
     for (const GuessedColumn& c : recording.guess.columns)
       if (draft.is_measured(c) || &c == &recording.input_column())
         list_guess(c);
       else if (!c.idle && c.kind != Kind::supply)
-        unused.insert(sanitized(shortened(c.column)));
+        unused.insert(c.title());
     for (const std::string& name : recording.guess.constant)
       if (seen.insert(name).second)
         draft.guesses.push_back(sanitized(name + ": not used, for it never changes"));

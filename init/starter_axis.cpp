@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/plain_text.h"
 #include "base/rounding.h"
 #include "base/units.h"
 #include "base/version.h"
@@ -144,7 +143,7 @@ StarterAxis mass_starter(const std::string& recording, const DrivenMass& seen) {
                           say("mass"), builds_up ? "dry" : "Coulomb", say("force")),
               0),
       turns ? "joint: revolute\n" : "", drive_name(seen.structure.drive, vocabulary.joint),
-      sanitized(seen.column), say("arm"),
+      seen.column, say("arm"),
       gain_guessed ? "guessed: [K_f]   # delete this line when it is that of a data sheet\n" : "",
       gain_comment(seen), with_unit(gain, quantity("K_f").unit),
       seen.look ? "Fitted by the job; initial values from the balance of forces."

@@ -31,7 +31,7 @@ StarterAxis velocity_loop_starter(const std::string& recording);
 
 /// What a recording shows of a mass that a force moves.
 struct DrivenMass {
-  std::string column;          ///< that drives it
+  std::string column;          ///< that drives it, as messages call it
   Structure structure;         ///< by force, rigid
   bool is_force = false;       ///< the column is the force itself
   double largest_input = 0.0;  ///< either way

@@ -7,7 +7,6 @@
 #include <functional>
 #include <span>
 
-#include "base/plain_text.h"
 #include "base/rounding.h"
 #include "base/units.h"
 #include "fit/data/filter_check.h"
@@ -219,7 +218,7 @@ void set_timing(JobDraft& draft, const RunContext& context) {
         fmt::format("{} is a mean over the last {:.3g} ms, as motor controllers make it: the "
                     "simulated one is a mean over {} samples, too, and T_d is free for what "
                     "remains of the lag",
-                    sanitized(draft.recordings.front().guess.find(Kind::velocity)->column),
+                    draft.recordings.front().guess.find(Kind::velocity)->title(),
                     1e3 * interval * static_cast<double>(chosen.averaged), chosen.averaged));
     return;
   }
@@ -228,7 +227,7 @@ void set_timing(JobDraft& draft, const RunContext& context) {
   if (!chosen.is_late(interval) || !seen_timing(draft, chosen.is_held).is_late(interval)) return;
   draft.parameters.push_back(free_delay(draft, chosen.delay.value));
   const double late = 1e3 * std::abs(chosen.delay.value);
-  const std::string column = sanitized(draft.recordings.front().input_column().column);
+  const std::string column = draft.recordings.front().input_column().title();
   draft.guesses.push_back(
       chosen.delay.value > 0.0
           ? fmt::format("T_d is free: the motion follows {} by {:.2g} ms, the lag of a drive or of "

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "base/plain_text.h"
+
 namespace axisfit {
 
 bool never_changes(const std::vector<double>& values) {
@@ -17,6 +19,11 @@ double largest(const std::vector<double>& values) {
 }
 
 bool GuessedColumn::is_constant() const { return never_changes(values); }
+
+std::string GuessedColumn::title() const {
+  const bool is_number = column.find_first_not_of("0123456789") == std::string::npos;
+  return sanitized(shortened(is_number ? "column " + column : column));
+}
 
 void UnscaledColumn::set_unit(const StoredUnit& unit) {
   column.stored = unit.text;

@@ -40,6 +40,8 @@ struct GuessedColumn {
   bool changes_only = false;  ///< it seems to be recorded where it changes alone
 
   bool is_constant() const;
+  /// As messages call it.
+  std::string title() const;
 };
 
 /// Whether all values are equal.

@@ -28,6 +28,14 @@ TEST(ColumnSet, AUnitBringsItsJoint) {
   EXPECT_EQ(column.column.factor, 0.25);
 }
 
+TEST(ColumnSet, ANumberIsCalledAColumn) {
+  GuessedColumn column;
+  column.column = "7";
+  EXPECT_EQ(column.title(), "column 7");
+  column.column = "7th axis";
+  EXPECT_EQ(column.title(), "7th axis");
+}
+
 TEST(ColumnSet, ValuesHaveASize) {
   EXPECT_EQ(largest({1.0, -3.0, 2.0}), 3.0);
   EXPECT_TRUE(never_changes({2.0, 2.0}));
