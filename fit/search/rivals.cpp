@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "fit/criterion/gains.h"
 #include "fit/search/catalogue.h"
 #include "fit/search/exchange_score.h"
 #include "fit/search/imitators.h"
@@ -40,13 +41,13 @@ void add_imitators(Accepted& accepted, const FittedModel& model, const SearchOpt
 }
 
 /// Where the refit of a rival starts: with strengths that suit all else as it is, where it has
-/// none.
+/// none. These few need no continuation.
 Scored with_strengths(Scored rival, const Job& others, const SearchContext& context) {
   if (!rival.own.strengths.empty()) return rival;
   const Hypothesis& hypothesis = *rival.hypothesis;
   rival.own.strengths = hypothesis.neutral;
-  const Job alone =
-      with_hypothesis(fixed_at(others, initial_values(others)), hypothesis, {}, rival.own);
+  Job alone = with_hypothesis(fixed_at(others, initial_values(others)), hypothesis, {}, rival.own);
+  if (alone.options.is_continued()) alone.options.criterion = Tracking{search_gain(alone)};
   const FitResult fit = refit(alone, context);
   if (fit.is_usable()) rival.own = values_in(alone, fit, hypothesis);
   return rival;
