@@ -121,15 +121,13 @@ std::vector<ScoredPair> pairs_at(const FittedModel& model, double observer_gain,
   return pairs;
 }
 
-/// The second beside the first, judged against the first alone.
-Tried beside(const Tried& first, Scored second, const Strictness& strictness,
-             const SearchContext& context) {
-  const HypothesisValues own = values_in(first);
-  for (const auto& values : {own.strengths, own.shapes})
-    second.others.insert(second.others.end(), values.begin(), values.end());
-  Tried both = try_hypothesis(first.job, second, context);
-  judge(both, first.residuals, strictness, context.options);
-  return both;
+/// The second in the model with the first.
+Tried together(const FittedModel& model, const ScoredPair& pair, const SearchContext& context) {
+  const Scored& first = pair.first;
+  const Job with_first = with_hypothesis(model.job, *first.hypothesis, first.others, first.own);
+  Scored second = pair.second;
+  second.others = initial_values(with_first);
+  return try_hypothesis(with_first, second, context, {.give_up_above = reduced_cost(model.fit)});
 }
 
 }  // namespace
@@ -160,21 +158,22 @@ std::vector<ScoredPair> score_pairs(const FittedModel& model,
 std::optional<TriedPair> try_pair(const FittedModel& model, const ScoredPair& pair,
                                   const SearchContext& context) {
   const Strictness strictness{1, context.options.acceptance.chance};
+  Tried second = together(model, pair, context);
+  const Improvement both = improvement(residual_series(model.job, model.fit), second.residuals);
+  if (!second.fit.is_usable() || !both.comparable || !(both.p_value < strictness.chance) ||
+      rejection_by_force(missing_percents(model.job, model.fit),
+                         missing_percents(second.job, second.fit), context.options.acceptance))
+    return std::nullopt;
   std::array<Tried, 2> alone;
   parallel_for(2, [&](std::size_t i) {
     alone[i] = try_hypothesis(model.job, i == 0 ? pair.first : pair.second, context);
   });
   if (!alone[0].fit.is_usable() || !alone[1].fit.is_usable()) return std::nullopt;
-  Tried second = beside(alone[0], pair.second, strictness, context);
-  if (second.rejection) return std::nullopt;
-  const auto before = residual_series(model.job, model.fit);
-  const Improvement both = improvement(before, second.residuals);
-  if (!both.comparable || !(both.p_value < strictness.chance)) return std::nullopt;
-  if (rejection_by_force(missing_percents(model.job, model.fit),
-                         missing_percents(second.job, second.fit), context.options.acceptance))
-    return std::nullopt;
-  const Tried first = beside(alone[1], pair.first, strictness, context);
-  if (first.rejection) return std::nullopt;
+  Tried first = second;
+  first.hypothesis = *pair.first.hypothesis;
+  judge(first, alone[1].residuals, strictness, context.options);
+  judge(second, alone[0].residuals, strictness, context.options);
+  if (first.rejection || second.rejection) return std::nullopt;
   alone[0].gain = first.gain;
   return TriedPair{std::move(alone[0]), std::move(second)};
 }

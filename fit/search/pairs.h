@@ -38,8 +38,8 @@ struct TriedPair {
   Tried first, second;
 };
 
-/// Refits with each and with both. None where the pair is no better than chance, or either is not
-/// needed beside the other.
+/// Refits with both, and then with each. None where the pair is no better than chance, or either is
+/// not needed beside the other.
 std::optional<TriedPair> try_pair(const FittedModel& model, const ScoredPair& pair,
                                   const SearchContext& context);
 
