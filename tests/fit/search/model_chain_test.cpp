@@ -136,5 +136,62 @@ TEST_F(ChainOfTwo, RefitsItsEffectsFreelyWhereItTracks) {
   EXPECT_EQ(tracked.free_run().job.free.size(), 3u);
 }
 
+/// A slide that the motor moves through the paper's gear.
+Model<double> geared_slide() {
+  Model<double> model = free_gear();
+  model.axis.b_g = 1500.0;
+  model.axis.K_f = 40.0;
+  model.axis.M = 20.0;
+  model.axis.B_a = 30.0;
+  return model;
+}
+
+// Noise of the readings drives a simulation that tracks, and is no missing effect. Here readings
+// whose noise is larger than stated stand for it.
+TEST(Explained, IsWhatTheFreeRunExplainsWhereAModelTracks) {
+  const SearchContext context;
+  Model<double> truth = geared_slide();
+  add_effect<StrokeSpring>(truth).k_s = 15.0;
+  const Job job = two_recordings(truth, geared_slide(), {"M", "B_a"});
+  FittedModel declared{"", job, estimate(job)};
+  for (Recording& r : declared.job.recordings)
+    for (Measurement& m : r.measurements) m.sigma *= 0.9;
+  ModelChain tracked(tracking(declared, search_gain(job), context), context);
+  ModelChain asks = tracked;
+  asks.set_free(job);
+  const std::vector<Hypothesis> all = catalogue(job, scales());
+  const Hypothesis& spring = *find(all, "stroke_spring");
+  for (ModelChain* chain : {&tracked, &asks}) {
+    EXPECT_FALSE(chain->explained());
+    const FittedModel& now = chain->current();
+    Tried tried = try_hypothesis(
+        now.job, {std::make_shared<const Hypothesis>(spring), {{10.0}, {}}, values_of(now.fit)},
+        context);
+    chain->append({spring}, std::move(tried.job), std::move(tried.fit));
+  }
+  EXPECT_FALSE(tracked.explained());
+  EXPECT_TRUE(asks.explained());
+}
+
+/// A geared slide whose fitted recording says little of it, and that is rather sure of the wrong
+/// viscous friction.
+FittedModel wrong_slide(const Model<double>& truth) {
+  Job job = two_recordings(truth, geared_slide(), {"M", "B_a"});
+  for (Measurement& m : job.recordings.front().measurements) m.sigma *= 100.0;
+  job.free.front().prior = Prior{20.0, 0.1};
+  job.free.back().prior = Prior{36.0, 1.7};
+  return {"", job, estimate(job)};
+}
+
+TEST(Explained, IsWhatAFitToAllRecordingsExplains) {
+  const SearchContext context;
+  const FittedModel wrong = wrong_slide(geared_slide());
+  EXPECT_FALSE(explains(wrong));
+  EXPECT_TRUE(ModelChain(wrong, context).explained());
+  Model<double> truth = geared_slide();
+  add_effect<StrokeSpring>(truth).k_s = 15.0;
+  EXPECT_FALSE(ModelChain(wrong_slide(truth), context).explained());
+}
+
 }  // namespace
 }  // namespace axisfit
