@@ -32,6 +32,8 @@ bool explains(const FittedModel& model) {
   return !series.empty() && std::ranges::all_of(series, is_noise);
 }
 
+namespace {
+
 /// Whether no estimate has moved by more than its standard errors allow.
 bool is_within_errors(const FitResult& moved, const FitResult& from) {
   constexpr double kErrors = 4.0;
@@ -59,11 +61,12 @@ bool is_explained_by_one_fit(const FittedModel& model, const SearchContext& cont
     r.role = Role::fit;
     r.held_out.clear();
   }
-  set_initial_values(all.job, values_of(model.fit));
   all.job.options = recipe::polish(all.job.options);
-  all.fit = refit(all.job, context);
+  all.fit = refit_from(all.job, values_of(model.fit), context);
   return all.fit.is_usable() && is_within_errors(all.fit, model.fit) && explains(all);
 }
+
+}  // namespace
 
 bool is_close(const FittedModel& model, const SearchOptions& options) {
   return model.fit.reduced_chi_square < options.round.close_chi_square;
@@ -158,6 +161,18 @@ void ModelChain::fit_without(const std::vector<std::size_t>& places) {
   });
 }
 
+FittedModel ModelChain::before(std::size_t place) const {
+  if (place == 0) return declared();
+  if (models_.size() == accepted_.size() + 1) return models_[place];
+  return refitted_up_to(place);
+}
+
+FittedModel ModelChain::refitted_up_to(std::size_t place) const {
+  Job job = job_with(declared().job, [&](std::size_t a) { return a < place; });
+  FitResult fit = refit(job, *context_);
+  return {accepted_[place - 1].hypothesis.name, std::move(job), std::move(fit)};
+}
+
 FittedModel ModelChain::reduce(std::size_t place) const {
   if (accepted_.size() == 1) return declared();
   FittedModel reduced = with_accepted(declared().job, place);
@@ -227,11 +242,7 @@ std::vector<FittedModel> ModelChain::models() const {
   std::vector<FittedModel> all(accepted_.size() + 1);
   all.front() = declared();
   all.back() = current();
-  parallel_for(accepted_.size() - 1, [&](std::size_t i) {
-    Job job = job_with(declared().job, [&](std::size_t a) { return a <= i; });
-    FitResult fit = refit(job, *context_);
-    all[i + 1] = {accepted_[i].hypothesis.name, std::move(job), std::move(fit)};
-  });
+  parallel_for(accepted_.size() - 1, [&](std::size_t i) { all[i + 1] = refitted_up_to(i + 1); });
   return all;
 }
 

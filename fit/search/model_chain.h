@@ -74,6 +74,8 @@ class ModelChain {
 
   /// The last model without one accepted effect, and what is part of it, refitted.
   const FittedModel& without(std::size_t place);
+  /// The model to which that effect was added, refitted where it is not known any more.
+  FittedModel before(std::size_t place) const;
   /// Whether a fit without one accepted effect, from where the last model is, does not come near
   /// that; it is given up as soon as this is plain.
   bool is_far_without(std::size_t place);
@@ -127,6 +129,7 @@ class ModelChain {
   };
   Neighbours& neighbours();
   bool is_explained_freely();
+  FittedModel refitted_up_to(std::size_t place) const;  ///< with the first so many effects
   FittedModel reduce(std::size_t place) const;
   /// A declared job with those accepted effects that are `kept`.
   template <class Kept>

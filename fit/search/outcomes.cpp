@@ -20,6 +20,7 @@ Decision decision_on(Reason reason) {
     case Reason::replaced:
     case Reason::is_equal_delay:
     case Reason::not_needed:
+    case Reason::falls_with:
       break;
   }
   return Decision::rejected;
@@ -75,6 +76,10 @@ Outcome* Outcomes::decide(const Hypothesis& hypothesis, Reason reason,
   outcome->rejection = rejection;
   outcome->other = other;
   outcome->in_model = false;
+  if (decision_on(reason) == Decision::rejected)
+    for (Outcome& equal : list_)
+      if (equal.decision() == Decision::undecided && equal.other == hypothesis.name)
+        equal.reason = Reason::falls_with;
   return outcome;
 }
 

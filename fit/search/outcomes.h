@@ -32,6 +32,7 @@ enum class Reason {
   replaced,        ///< by the other, which explains more
   is_equal_delay,  ///< explains as well as the other: which of two delays it is matters little
   not_needed,      ///< any longer, with the effects that were accepted after it
+  falls_with,      ///< the other, which was taken out: as its equal, or as found beside it
 };
 
 Decision decision_on(Reason reason);
@@ -68,7 +69,8 @@ class Outcomes {
   void record_pair(const Tried& first, const Tried& second, int round);
   /// Null for one that was never refitted.
   Outcome* find(const Hypothesis& hypothesis);
-  /// Writes down that one is out, and why; does nothing where it was never refitted.
+  /// Writes down that one is out, and why, and with it those that it explained as well as; does
+  /// nothing where it was never refitted.
   void reject(const Hypothesis& hypothesis, Reason reason, const std::string& other = "");
   void fail(const Hypothesis& hypothesis, const Rejection& rejection);
   /// Writes down that two explain the recordings equally well; the first stays in the model.

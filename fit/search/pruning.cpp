@@ -84,10 +84,15 @@ bool drop_degenerate(SearchState& state, const SearchOptions& options) {
     const auto rejection =
         rejection_as_simpler(state.current().job, state.current().fit, hypothesis, options);
     if (!rejection) continue;
-    const FittedModel& reduced = state.chain.without(a);
-    if (!reduced.fit.is_usable()) continue;
+    FittedModel before = state.chain.before(a);
+    if (!before.fit.is_usable()) continue;
+    while (state.accepted().size() > a + 1) {
+      state.outcomes.reject(state.accepted().back().hypothesis, Reason::falls_with,
+                            hypothesis.name);
+      state.strike_off(state.accepted().size() - 1);
+    }
     state.outcomes.fail(hypothesis, *rejection);
-    state.take_out(a, reduced);
+    state.take_out(a, std::move(before));
     state.degenerate.push_back(hypothesis);
     return true;
   }

@@ -8,7 +8,8 @@
 namespace axisfit {
 
 /// Takes out the first effect that has become a simpler one beside those accepted after it, not to
-/// be tried again: the simpler one is in the catalogue. Whether there was one.
+/// be tried again: the simpler one is in the catalogue. With it go those accepted after it, which
+/// were found beside what it is not. Whether there was one.
 bool drop_degenerate(SearchState& state, const SearchOptions& options);
 
 /// Takes away what is not needed any more, or never was but to a simulation that tracks. Where the

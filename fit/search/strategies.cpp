@@ -118,12 +118,12 @@ bool add_pair(SearchState& state, Rounds& rounds) {
       return is_same_form(*p.hypothesis, other);
     });
   });
-  // From afar, where effects are compared.
+  // Where the free run is lost, at the gain at which single effects are compared, too.
   const FittedModel& model = state.current();
   const std::vector<double> gains =
       is_lost(model, options) ? std::vector{search_gain(model.job)} : list.observer_gains;
-  for (const ScoredPair& pair : score_pairs(state.current(), gains, hypotheses, rounds.context)) {
-    std::optional<TriedPair> found = try_pair(state.current(), pair, rounds.context);
+  for (const ScoredPair& pair : score_pairs(model, gains, hypotheses, rounds.context)) {
+    std::optional<TriedPair> found = try_pair(model, pair, rounds.context);
     if (!found) continue;
     ++rounds.count;
     state.outcomes.record_pair(found->first, found->second, rounds.count);
@@ -156,6 +156,7 @@ void add_named(SearchState& state, Rounds& rounds) {
   do {
     while (has_room(state, rounds)) {
       if (add_best(state, false, rounds)) continue;
+      if (drop_degenerate(state, rounds.context.options)) continue;
       if (may_exchange && !state.accepted().empty()) {
         may_exchange = false;
         if (exchange(state, rounds)) continue;
@@ -223,34 +224,13 @@ SearchState finished(const SearchState& before, Strategy&& strategy) {
   }
 }
 
-}  // namespace
-
-FittedModel tracking(FittedModel model, double gain, const SearchContext& context) {
-  model.job.options.criterion = Tracking{gain};
-  model.job.choose_criterion = false;
-  model.fit = refit_from(model.job, values_of(model.fit), context);
-  return model;
-}
-
-SearchState named(SearchState state, Rounds& rounds) {
-  try {
-    add_named(state, rounds);
-  } catch (const Interrupted&) {
-    state.interrupted = true;
-  }
-  return state;
-}
-
-namespace {
-
 /// together(), of a state that holds what was found when this is stopped.
 void find_together(SearchState& state, Rounds& rounds) {
   const std::vector<Accepted> known = state.accepted();
   const FittedModel declared = state.chain.declared();
   const bool is_continued = declared.job.options.is_continued();
   if (is_continued) {
-    FittedModel tracked = tracking(declared, search_gain(declared.job), rounds.context);
-    state.restart(std::move(tracked));
+    state.restart(tracking(declared, search_gain(declared.job), rounds.context));
     state.chain.set_free(declared.job);
   }
   const double chance = rounds.context.options.acceptance.provisional_chance;
@@ -281,34 +261,6 @@ bool is_all_of_the_machine(const SearchState& state) {
   });
 }
 
-}  // namespace
-
-SearchState together(SearchState state, Rounds& rounds) {
-  find_together(state, rounds);
-  return state;
-}
-
-SearchState with_curves(SearchState state, Rounds& rounds) {
-  try {
-    while (has_room(state, rounds) && add_best(state, true, rounds)) {
-    }
-  } catch (const Interrupted&) {
-    state.interrupted = true;
-  }
-  return state;
-}
-
-SearchState from_a_curve(const SearchState& state, Rounds& rounds) {
-  SearchState anew = state;
-  anew.restart(state.chain.declared());
-  if (!add_best(anew, true, rounds)) return state;
-  add_named(anew, rounds);
-  eliminate_backward(anew, rounds.context);
-  return anew;
-}
-
-namespace {
-
 /// Named effects, in the order in which that is quick: where refits by the free run are costly and
 /// fail, they are found together first.
 SearchState with_named_effects(const SearchState& declared, bool tracks, Rounds& rounds) {
@@ -337,6 +289,46 @@ SearchState with_named_effects(const SearchState& declared, bool tracks, Rounds&
 }
 
 }  // namespace
+
+FittedModel tracking(FittedModel model, double gain, const SearchContext& context) {
+  model.job.options.criterion = Tracking{gain};
+  model.job.choose_criterion = false;
+  model.fit = refit_from(model.job, values_of(model.fit), context);
+  return model;
+}
+
+SearchState named(SearchState state, Rounds& rounds) {
+  try {
+    add_named(state, rounds);
+  } catch (const Interrupted&) {
+    state.interrupted = true;
+  }
+  return state;
+}
+
+SearchState together(SearchState state, Rounds& rounds) {
+  find_together(state, rounds);
+  return state;
+}
+
+SearchState with_curves(SearchState state, Rounds& rounds) {
+  try {
+    while (has_room(state, rounds) && add_best(state, true, rounds)) {
+    }
+  } catch (const Interrupted&) {
+    state.interrupted = true;
+  }
+  return state;
+}
+
+SearchState from_a_curve(const SearchState& state, Rounds& rounds) {
+  SearchState anew = state;
+  anew.restart(state.chain.declared());
+  if (!add_best(anew, true, rounds)) return state;
+  add_named(anew, rounds);
+  eliminate_backward(anew, rounds.context);
+  return anew;
+}
 
 SearchState search(SearchState declared, Rounds& rounds) {
   const SearchOptions& options = rounds.context.options;

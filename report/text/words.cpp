@@ -433,6 +433,8 @@ std::string reason_text(const Job& job, const Outcome& trial) {
                          trial.in_model ? "; this one stays in the model" : "");
     case Reason::not_needed:
       return "no longer needed with the effects accepted after it";
+    case Reason::falls_with:
+      return fmt::format("stood or fell with {}, which was taken out again", trial.other);
   }
   return "";
 }

@@ -30,7 +30,7 @@ TEST(DecisionOn, IsThatOfTheReason) {
     EXPECT_EQ(decision_on(r), Decision::accepted);
   EXPECT_EQ(decision_on(Reason::explains_equally), Decision::undecided);
   for (const Reason r : {Reason::failed_test, Reason::explains_less, Reason::replaced,
-                         Reason::is_equal_delay, Reason::not_needed})
+                         Reason::is_equal_delay, Reason::not_needed, Reason::falls_with})
     EXPECT_EQ(decision_on(r), Decision::rejected);
 }
 
@@ -101,6 +101,19 @@ TEST(Outcomes, LeaveOneOfTwoEqualsInTheModel) {
   EXPECT_TRUE(outcomes.find(kFriction)->in_model);
   EXPECT_FALSE(outcomes.find(kSpring)->in_model);
   EXPECT_EQ(outcomes.find(kFriction)->other, "spring");
+  EXPECT_EQ(outcomes.find(kSpring)->other, "friction");
+}
+
+TEST(Outcomes, RejectTheEqualsOfWhatTheModelLoses) {
+  const Tried friction = tried(kFriction, 5.0), spring = tried(kSpring, 20.0);
+  Outcomes outcomes;
+  outcomes.record(friction, &friction, 1);
+  outcomes.record(spring, &spring, 2);
+  outcomes.leave_undecided(kFriction, kSpring);
+  outcomes.fail(kFriction, {.test = Rejection::Test::strength});
+  EXPECT_EQ(outcomes.find(kFriction)->reason, Reason::failed_test);
+  EXPECT_EQ(outcomes.find(kSpring)->decision(), Decision::rejected);
+  EXPECT_EQ(outcomes.find(kSpring)->reason, Reason::falls_with);
   EXPECT_EQ(outcomes.find(kSpring)->other, "friction");
 }
 

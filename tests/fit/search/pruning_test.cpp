@@ -80,6 +80,23 @@ TEST(DropDegenerate, TakesOutWhatHasBecomeASimplerEffect) {
   EXPECT_FALSE(drop_degenerate(state, {}));
 }
 
+TEST(DropDegenerate, TakesOutWhatWasFoundBesideIt) {
+  Model<double> truth = slide();
+  hidden_effect_named("coulomb_friction").put_into(truth);
+  hidden_effect_named("stroke_spring").put_into(truth);
+  SearchState state =
+      accepted_in(two_recordings(truth, slide(), {"M", "B_a"}),
+                  {{"dahl_friction", {{5.0}, {1e-5}}}, {"stroke_spring", {{20.0}, {}}}});
+  ASSERT_EQ(names_in(state), (Names{"dahl_friction", "stroke_spring"}));
+  EXPECT_TRUE(drop_degenerate(state, {}));
+  EXPECT_TRUE(state.accepted().empty());
+  ASSERT_EQ(state.degenerate.size(), 1u);
+  EXPECT_EQ(state.degenerate[0].name, "dahl_friction");
+  EXPECT_EQ(state.outcomes.list()[1].hypothesis.name, "stroke_spring");
+  EXPECT_EQ(state.outcomes.list()[1].reason, Reason::falls_with);
+  EXPECT_EQ(state.outcomes.list()[1].other, "dahl_friction");
+}
+
 // A gain of the velocity is most of what is missing. Of what repeats along the motion, only what
 // does so a few times could imitate it.
 TEST(DropImitators, KeepsWhatRepeatsManyTimes) {

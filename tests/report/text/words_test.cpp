@@ -265,6 +265,7 @@ TEST(WordsTest, OfTheDecisionOnAnEffect) {
   EXPECT_EQ(decided(Reason::replaced), "explains less than drive_lag, which replaced it");
   EXPECT_EQ(decided(Reason::explains_equally), "explains these recordings as well as drive_lag");
   EXPECT_EQ(decided(Reason::not_needed), "no longer needed with the effects accepted after it");
+  EXPECT_EQ(decided(Reason::falls_with), "stood or fell with drive_lag, which was taken out again");
 }
 
 TEST(WordsTest, OfMovesSayWhetherTheErrorAllowsForThem) {
