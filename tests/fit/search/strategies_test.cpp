@@ -88,6 +88,16 @@ TEST(Search, GivesTheLastValidStateWhenALaterStrategyIsStopped) {
   EXPECT_EQ(values_of(found.current().fit), values_of(first.current().fit));
 }
 
+TEST(Search, LooksNoFurtherWhereTheFittedRecordingHasNothingLeft) {
+  Job job = two_recordings(slide(), slide(), {"M", "B_a"});
+  job.recordings[1] = hidden_effect_named("coulomb_friction").job().recordings[1];
+  Rounds rounds;
+  SearchState found = search(start_of(job, rounds), rounds);
+  EXPECT_TRUE(found.accepted().empty());
+  EXPECT_FALSE(found.explained());
+  EXPECT_EQ(rounds.count, 1);
+}
+
 TEST(Search, BeginsWithASimulationThatTracksWhereTheFreeRunIsLost) {
   Model<double> truth = paper_axis();
   add_effect<CoulombFriction>(truth).F_c = 40.0;
