@@ -95,6 +95,18 @@ TEST_F(ChainOfTwo, ForgetsWhatWasBesideAnotherModel) {
   EXPECT_NE(chain_.without(0).fit.reduced_chi_square, before);
 }
 
+TEST_F(ChainOfTwo, HasTheModelBeforeEachEffect) {
+  EXPECT_EQ(values_of(chain_.before(0).fit), values_of(chain_.declared().fit));
+  const FittedModel known = chain_.before(1);
+  EXPECT_EQ(known.added, "coulomb_friction");
+  EXPECT_EQ(known.job.free.size(), 3u);
+  chain_.set_last(chain_.current());
+  const FittedModel refitted = chain_.before(1);
+  EXPECT_EQ(refitted.added, "coulomb_friction");
+  EXPECT_NEAR(refitted.fit.reduced_chi_square, known.fit.reduced_chi_square,
+              1e-3 * known.fit.reduced_chi_square);
+}
+
 TEST_F(ChainOfTwo, RefitsTheModelsBetweenWhereOneWasExchanged) {
   chain_.set_last(chain_.current());
   const std::vector<FittedModel> models = chain_.models();
