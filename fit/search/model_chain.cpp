@@ -26,8 +26,7 @@ bool explains(const FittedModel& model) {
   auto series = residual_series(model.job, model.fit);
   const auto is_noise = [](const ResidualSeries& s) { return is_explained(s); };
   if (std::ranges::all_of(series, is_noise)) return !series.empty();
-  const auto fails = [](const ResidualSeries& s) { return s.fitted && !is_explained(s); };
-  if (std::ranges::any_of(series, fails)) return false;  // nothing is allowed these
+  if (!is_fitted_to_noise(series)) return false;  // nothing is allowed these
   allow_for_parameters(model.job, model.fit, series);
   return !series.empty() && std::ranges::all_of(series, is_noise);
 }
@@ -50,12 +49,9 @@ bool is_within_errors(const FitResult& moved, const FitResult& from) {
 /// nothing but noise, with estimates that those do not rule out.
 bool is_explained_by_one_fit(const FittedModel& model, const SearchContext& context) {
   if (!model.fit.is_usable()) return false;
-  bool validates = false;
-  for (const ResidualSeries& s : residual_series(model.job, model.fit)) {
-    if (s.fitted && !is_explained(s)) return false;
-    validates = validates || !s.fitted;
-  }
-  if (!validates) return false;
+  const auto series = residual_series(model.job, model.fit);
+  if (!is_fitted_to_noise(series) || std::ranges::all_of(series, &ResidualSeries::fitted))
+    return false;
   FittedModel all = model;
   for (Recording& r : all.job.recordings) {
     r.role = Role::fit;
@@ -67,6 +63,11 @@ bool is_explained_by_one_fit(const FittedModel& model, const SearchContext& cont
 }
 
 }  // namespace
+
+bool is_fitted_to_noise(const std::vector<ResidualSeries>& residuals) {
+  return std::ranges::all_of(residuals,
+                             [](const ResidualSeries& s) { return !s.fitted || is_explained(s); });
+}
 
 bool is_close(const FittedModel& model, const SearchOptions& options) {
   return model.fit.reduced_chi_square < options.round.close_chi_square;

@@ -37,6 +37,10 @@ bool has_contacts(const FittedModel& model);
 /// instants, so that a refit takes a whole continuation and often ends in a wrong valley.
 bool is_lost(const FittedModel& model, const SearchOptions& options);
 
+/// Whether every fitted signal leaves nothing but noise. What only those to validate lack shows
+/// with the roles exchanged.
+bool is_fitted_to_noise(const std::vector<ResidualSeries>& residuals);
+
 /// Whether every signal, of recordings that validate, too, leaves so little that a score is exact.
 bool is_near_noise(const std::vector<ResidualSeries>& residuals, const SearchOptions& options);
 

@@ -20,11 +20,9 @@ bool has_room(const SearchState& state, const Rounds& rounds) {
   return state.accepted().size() < static_cast<std::size_t>(rounds.context.options.max_effects);
 }
 
-/// Whether the fitted recordings have nothing left for an effect to explain. What only those to
-/// validate lack shows with the roles exchanged.
-bool is_fitted_to_noise(const FittedModel& model) {
-  return std::ranges::all_of(residual_series(model.job, model.fit),
-                             [](const ResidualSeries& s) { return !s.fitted || is_explained(s); });
+/// Whether the fitted recordings have nothing left for an effect to explain.
+bool is_fitted_to_noise(const SearchState& state) {
+  return is_fitted_to_noise(residual_series(state.current().job, state.current().fit));
 }
 
 /// A hypothesis that gains beside an accepted effect of its kind, and only there, may be what that
@@ -114,7 +112,7 @@ bool add_best(SearchState& state, bool curves, Rounds& rounds) {
 /// Adds two hypotheses that hide each other; whether there were any.
 bool add_pair(SearchState& state, Rounds& rounds) {
   const SearchOptions& options = rounds.context.options;
-  if (rounds.of_names.has_no_pair || state.explained() || is_fitted_to_noise(state.current()) ||
+  if (rounds.of_names.has_no_pair || state.explained() || is_fitted_to_noise(state) ||
       state.accepted().size() + 2 > static_cast<std::size_t>(options.max_effects))
     return false;
   state.report_progress(rounds.context.run, "do two effects hide each other?", Work::trials);
@@ -291,7 +289,7 @@ SearchState with_named_effects(const SearchState& declared, bool tracks, Rounds&
   SearchState best = named(declared, rounds);
   // What leaves next to nothing masks nothing.
   if (best.interrupted || best.explained() || tracks || is_nearly_exact(best, options) ||
-      is_fitted_to_noise(best.current()))
+      is_fitted_to_noise(best))
     return best;
   SearchState other = finished(best, [&](const SearchState& s) { return together(s, rounds); });
   return better_of(std::move(best), std::move(other));
@@ -345,7 +343,7 @@ SearchState search(SearchState declared, Rounds& rounds) {
   // effects that imitate a part of it.
   const bool tracks = axisfit::tracks(declared.chain.declared().job.options.criterion);
   SearchState best = with_named_effects(declared, tracks, rounds);
-  if (best.interrupted || best.explained() || is_fitted_to_noise(best.current())) return best;
+  if (best.interrupted || best.explained() || is_fitted_to_noise(best)) return best;
   // No curve takes the place of what leaves next to nothing.
   const bool is_exact = is_nearly_exact(best, options);
 

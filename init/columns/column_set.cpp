@@ -8,6 +8,10 @@
 
 namespace axisfit {
 
+bool is_number(const std::string& word) {
+  return !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
+}
+
 bool never_changes(const std::vector<double>& values) {
   return std::ranges::adjacent_find(values, std::not_equal_to<>()) == values.end();
 }
@@ -21,8 +25,7 @@ double largest(const std::vector<double>& values) {
 bool GuessedColumn::is_constant() const { return never_changes(values); }
 
 std::string GuessedColumn::title() const {
-  const bool is_number = column.find_first_not_of("0123456789") == std::string::npos;
-  return sanitized(shortened(is_number ? "column " + column : column));
+  return sanitized(shortened(is_number(column) ? "column " + column : column));
 }
 
 void UnscaledColumn::set_unit(const StoredUnit& unit) {

@@ -44,6 +44,9 @@ struct GuessedColumn {
   std::string title() const;
 };
 
+/// Whether a word is digits alone.
+bool is_number(const std::string& word);
+
 /// Whether all values are equal.
 bool never_changes(const std::vector<double>& values);
 

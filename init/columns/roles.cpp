@@ -30,10 +30,6 @@ bool is_drive(Kind kind) {
          kind == Kind::motor_voltage || kind == Kind::set_velocity;
 }
 
-bool is_number(const std::string& word) {
-  return !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
-}
-
 std::string joined(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, " "));
 }

@@ -91,12 +91,18 @@ TEST(Outcomes, RejectWhatTheModelLosesAndForgetNoOther) {
   EXPECT_EQ(outcomes.list()[0].other, "");
 }
 
-TEST(Outcomes, LeaveOneOfTwoEqualsInTheModel) {
+/// Of two that explain as much as each other, the friction in the model.
+Outcomes of_equals() {
   const Tried friction = tried(kFriction, 5.0), spring = tried(kSpring, 20.0);
   Outcomes outcomes;
   outcomes.record(friction, &friction, 1);
   outcomes.record(spring, &spring, 2);
   outcomes.leave_undecided(kFriction, kSpring);
+  return outcomes;
+}
+
+TEST(Outcomes, LeaveOneOfTwoEqualsInTheModel) {
+  Outcomes outcomes = of_equals();
   for (const Outcome& o : outcomes.list()) EXPECT_EQ(o.decision(), Decision::undecided);
   EXPECT_TRUE(outcomes.find(kFriction)->in_model);
   EXPECT_FALSE(outcomes.find(kSpring)->in_model);
@@ -105,11 +111,7 @@ TEST(Outcomes, LeaveOneOfTwoEqualsInTheModel) {
 }
 
 TEST(Outcomes, RejectTheEqualsOfWhatTheModelLoses) {
-  const Tried friction = tried(kFriction, 5.0), spring = tried(kSpring, 20.0);
-  Outcomes outcomes;
-  outcomes.record(friction, &friction, 1);
-  outcomes.record(spring, &spring, 2);
-  outcomes.leave_undecided(kFriction, kSpring);
+  Outcomes outcomes = of_equals();
   outcomes.fail(kFriction, {.test = Rejection::Test::strength});
   EXPECT_EQ(outcomes.find(kFriction)->reason, Reason::failed_test);
   EXPECT_EQ(outcomes.find(kSpring)->decision(), Decision::rejected);
