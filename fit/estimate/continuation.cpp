@@ -7,6 +7,7 @@
 
 #include "base/random.h"
 #include "fit/criterion/gains.h"
+#include "fit/estimate/recipes.h"
 
 namespace axisfit {
 namespace {
@@ -24,6 +25,10 @@ struct DescentOptions {
   /// The cost may grow as the gain falls, if the model lacks something, but not by leaps beyond
   /// this factor and term: those mean that the simulation lost the data between two gains.
   double lost_factor = 3.0, lost_term = 1.0;
+  /// What a missing force leaves grows as a power of the falling gain: with its square, or where
+  /// only the position is known with its fourth power. As much as that power of the stage before
+  /// foretells is no leap, up to this factor, which also bounds the next ratio.
+  double largest_growth = 10.0;
   /// Two minima are one that differ by less in gain, cost and the parameters that the data
   /// determine.
   double same_minimum = 1e-2;
@@ -84,7 +89,9 @@ class Descent {
  public:
   Descent(const Job& job, const ParameterSpace& space,
           const std::function<void(const Stage&)>& progress, const RunContext& context)
-      : job_(job), space_(space), progress_(progress), context_(context) {}
+      : job_(job), coarse_(job), space_(space), progress_(progress), context_(context) {
+    coarse_.options = recipe::coarse(coarse_.options);
+  }
 
   /// Solves at one gain; `final` with the full accuracy.
   SolveResult solve_stage(const Eigen::VectorXd& start, double gain, bool final) {
@@ -98,7 +105,7 @@ class Descent {
       options.function_tolerance = options_.tolerance;
       options.penalize_distance_from_start = true;
     }
-    SolveResult solved = solve(job_, space_, start, gain, options, context_);
+    SolveResult solved = solve(final ? job_ : coarse_, space_, start, gain, options, context_);
     iterations_ += solved.iterations;
     stages_.push_back({gain, solved.reduced_cost, solved.iterations, solved.usable});
     return solved;
@@ -122,12 +129,14 @@ class Descent {
     const double lowest = 1.0 / longest_duration(job_);
     double ratio = options_.first_ratio;
     double previous_cost = tracking.reduced_cost;
+    double power = 0.0;  // of the growth of the cost
     while (tracking.usable && gain > 0.0) {
       double next = gain / ratio;
       if (next < lowest) next = 0.0;
       SolveResult solved = solve_stage(tracking.u, next, next == 0.0);
       Stage& latest = stages_.back();
-      const double lost_cost = options_.lost_factor * previous_cost + options_.lost_term;
+      const double foretold = std::min(std::pow(ratio, power), options_.largest_growth);
+      const double lost_cost = options_.lost_factor * foretold * previous_cost + options_.lost_term;
       const bool lost = !solved.usable || latest.reduced_cost > lost_cost;
       latest.accepted = !lost || ratio < options_.smallest_ratio;
       report();
@@ -139,10 +148,13 @@ class Descent {
         solved.usable = false;
         return solved;
       }
+      power = std::max(0.0, std::log(latest.reduced_cost / previous_cost) / std::log(ratio));
       previous_cost = latest.reduced_cost;
       tracking = std::move(solved);
       gain = next;
-      ratio = std::min(ratio * 2.0, options_.largest_ratio);
+      const double bounded = std::pow(options_.largest_growth, 1.0 / power);
+      ratio = std::max(options_.smallest_ratio,
+                       std::min({ratio * 2.0, options_.largest_ratio, bounded}));
     }
     return tracking;
   }
@@ -174,6 +186,7 @@ class Descent {
 
   const DescentOptions options_;
   const Job& job_;
+  Job coarse_;  ///< of the stages before the last
   const ParameterSpace& space_;
   const std::function<void(const Stage&)>& progress_;
   const RunContext& context_;

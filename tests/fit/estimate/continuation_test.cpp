@@ -18,7 +18,7 @@ ContinuationResult one_continuation(Job job) {
 }
 
 // A model that lacks much leaves the data when the observer gain falls: by leaps, if in large
-// steps.
+// steps. A missing force lets the cost grow as a power of the gain, and that is none.
 TEST(Continuation, TakesShorterStepsWhereTheSimulationWouldLoseTheData) {
   Model<double> truth = slide();
   add_effect<CoulombFriction>(truth).F_c = 60.0;
@@ -27,18 +27,19 @@ TEST(Continuation, TakesShorterStepsWhereTheSimulationWouldLoseTheData) {
   int refused = 0;
   for (const Stage& stage : std::span(result.stages).subspan(1)) {
     EXPECT_LT(stage.observer_gain, gain);
-    const bool leap = stage.reduced_cost > 3.0 * cost + 1.0;
     if (stage.accepted) {
-      EXPECT_TRUE(!leap || gain < 1.3 * stage.observer_gain) << stage.observer_gain;
+      EXPECT_TRUE(stage.reduced_cost <= 30.0 * cost + 1.0 || gain < 1.3 * stage.observer_gain)
+          << stage.observer_gain;
       gain = stage.observer_gain;
       cost = stage.reduced_cost;
     } else {
-      EXPECT_TRUE(leap) << stage.observer_gain;
+      EXPECT_GT(stage.reduced_cost, 3.0 * cost + 1.0) << stage.observer_gain;
       ++refused;
     }
   }
   EXPECT_EQ(gain, 0.0);
-  EXPECT_GE(refused, 2);
+  EXPECT_GE(refused, 1);
+  EXPECT_LE(result.stages.size(), 8u) << "the power of one stage foretells the next";
 }
 
 // The limit of a drive hardly shows at a high gain and in so much noise, which here would drive it
