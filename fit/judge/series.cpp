@@ -108,4 +108,9 @@ bool is_explained(const ResidualSeries& series, const GradeOptions& options) {
                                           options.errors * series.allowance + input;
 }
 
+bool is_fitted_to_noise(const std::vector<ResidualSeries>& list) {
+  return std::ranges::all_of(list,
+                             [](const ResidualSeries& s) { return !s.fitted || is_explained(s); });
+}
+
 }  // namespace axisfit

@@ -63,4 +63,8 @@ void allow_for_parameters(const Job& job, const FitResult& result,
 /// then explained if it is hardly more coloured than that.
 bool is_explained(const ResidualSeries& series, const GradeOptions& options = {});
 
+/// Whether every fitted series shows no more than its noise. What only those to validate lack shows
+/// with the roles exchanged.
+bool is_fitted_to_noise(const std::vector<ResidualSeries>& list);
+
 }  // namespace axisfit

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "base/distributions.h"
@@ -39,7 +40,7 @@ double variance_of_products(const std::vector<double>& change, const ResidualSer
 }
 
 /// Of free quantities, of one recording or of all, their places among the parameters.
-std::vector<Index> places_of(const std::vector<std::size_t>& quantities,
+std::vector<Index> places_of(std::span<const std::size_t> quantities,
                              std::optional<std::size_t> recording, const Job& job) {
   std::vector<Index> places;
   for (const std::size_t q : quantities)
@@ -145,8 +146,8 @@ Determination determination(const Job& job, const FitResult& result, const Hypot
       d.undetermined = p.id;
   };
   for (const Index i : strengths) note(i, false);
-  if (hypothesis.estimates_shapes())
-    for (const Index i : places_of(hypothesis.shapes, hypothesis.recording, job)) note(i, true);
+  for (const Index i : places_of(hypothesis.estimated_shapes(), hypothesis.recording, job))
+    note(i, true);
   d.required = chi_square_upper_quantile(options.acceptance.strength_chance,
                                          static_cast<double>(strengths.size()));
 

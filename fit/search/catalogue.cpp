@@ -23,6 +23,12 @@ bool has_value(const Job& job, std::size_t quantity) {
          });
 }
 
+/// What a quantity is while nothing of a hypothesis acts. A shape, such as an exponent, may have a
+/// value that another takes the place of.
+double value_without(const Quantity& quantity, double in_model) {
+  return quantity.shape ? in_model : neutral_value(quantity);
+}
+
 /// Whether all strengths have a part in the job's axis, are not free yet and have no value.
 bool is_absent(const Job& job, const std::vector<std::size_t>& strengths) {
   Model<double> model = job.model;
@@ -31,7 +37,7 @@ bool is_absent(const Job& job, const std::vector<std::size_t>& strengths) {
     const QuantityEntry& entry = quantity_list()[q];
     const bool written = entry.effect && !job.model.structure.effects[*entry.effect];
     return is_used(entry, with_effect_of(job.model.structure, q)) && !has_value(job, q) &&
-           (written || *member[q] == neutral_value(entry.quantity));
+           (written || *member[q] == value_without(entry.quantity, *member[q]));
   });
 }
 
@@ -59,6 +65,9 @@ Hypothesis hypothesis_of(const EffectInfo& effect, SearchEntry entry, bool is_in
   hypothesis.meaning = words_on(vocabulary, effect.meaning);
   hypothesis.strengths = quantities_of(effect.name, entry.strengths);
   hypothesis.shapes = quantities_of(effect.name, entry.shapes);
+  const std::vector<std::size_t> held = quantities_of(effect.name, entry.held);
+  hypothesis.shapes.insert(hypothesis.shapes.end(), held.begin(), held.end());
+  hypothesis.held = held.size();
   hypothesis.settings = std::move(entry.settings);
   hypothesis.largest = std::move(entry.largest);
   hypothesis.probes = std::move(entry.probes);
@@ -138,7 +147,7 @@ std::vector<Hypothesis> catalogue(const Job& job, SearchScales scales) {
   const auto add_if_absent = [&](Hypothesis hypothesis) {
     if (hypothesis.settings.empty() || !is_absent(job, hypothesis.strengths)) return;
     for (const std::size_t q : hypothesis.strengths)
-      hypothesis.neutral.push_back(neutral_value(quantity_list()[q].quantity));
+      hypothesis.neutral.push_back(value_without(quantity_list()[q].quantity, *members(model)[q]));
     list.push_back(std::move(hypothesis));
   };
   const bool has_dry_friction = Equations<double>(job.model).parts().directions;

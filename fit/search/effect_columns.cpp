@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "base/parallel.h"
@@ -153,7 +154,7 @@ std::vector<Eigen::MatrixXd> EffectColumns::derivatives(
     }
     std::vector<std::size_t> quantities = hypothesis.strengths;
     if (setting.with_shapes)
-      quantities.insert(quantities.end(), hypothesis.shapes.begin(), hypothesis.shapes.end());
+      std::ranges::copy(hypothesis.estimated_shapes(), std::back_inserter(quantities));
     result[s].resize(rows_, static_cast<Eigen::Index>(quantities.size()));
     for (std::size_t k = 0; k < quantities.size(); ++k) {
       const std::size_t q = quantities[k];

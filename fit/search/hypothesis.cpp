@@ -134,7 +134,7 @@ Job with_hypothesis(const Job& job, const Hypothesis& hypothesis, std::span<cons
   const auto member = members(extended.model);
   for (std::size_t i = 0; i < hypothesis.shapes.size(); ++i) {
     *member[hypothesis.shapes[i]] = own.shapes[i];
-    if (hypothesis.estimates_shapes() && !fixed_shapes)
+    if (i < hypothesis.estimated_shapes().size() && !fixed_shapes)
       extended.free.push_back(free_shape(job, hypothesis, i, own.shapes[i]));
   }
   return extended;
@@ -146,6 +146,16 @@ HypothesisValues values_in(const Job& job, const FitResult& fit, const Hypothesi
   HypothesisValues own;
   for (const std::size_t q : hypothesis.strengths) own.strengths.push_back(*member[q]);
   for (const std::size_t q : hypothesis.shapes) own.shapes.push_back(*member[q]);
+  return own;
+}
+
+HypothesisValues held_at_settings(const Hypothesis& hypothesis, HypothesisValues own) {
+  for (std::size_t k = hypothesis.estimated_shapes().size(); k < own.shapes.size(); ++k) {
+    const auto distance = [&](const std::vector<double>& setting) {
+      return std::abs(setting[k] - own.shapes[k]);
+    };
+    own.shapes[k] = (*std::ranges::min_element(hypothesis.settings, {}, distance))[k];
+  }
   return own;
 }
 

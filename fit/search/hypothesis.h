@@ -36,10 +36,11 @@ struct Hypothesis {
   std::vector<std::size_t> strengths;
   std::vector<double> neutral;
   /// Quantities that give it its shape, and the settings of them to be tried, one value for each.
-  /// Without shapes there is one empty setting. The shapes are estimated too, but for a curve,
-  /// whose shapes are its ends. That the recordings leave a shape of a transmission open is no
-  /// ground to doubt it.
+  /// Without shapes there is one empty setting. The shapes are estimated too, but for the last
+  /// `held`, which stay at a setting: the ends of a curve, and exponents that make another law.
+  /// That the recordings leave a shape of a transmission open is no ground to doubt it.
   std::vector<std::size_t> shapes;
+  std::size_t held = 0;
   std::vector<std::vector<double>> settings;
   std::vector<double> largest;  ///< of each shape; empty: what the quantity may be
   bool has_phase = false;       ///< the strengths are sine and cosine of a phase
@@ -52,14 +53,14 @@ struct Hypothesis {
 
   /// The least and the most that is tried of one of its shapes.
   std::pair<double, double> range_tried(std::size_t shape) const;
-  bool estimates_shapes() const { return kind != HypothesisKind::curve; }
+  std::span<const std::size_t> estimated_shapes() const {
+    return std::span(shapes).first(shapes.size() - held);
+  }
   /// As which parameter one of its strengths is estimated.
   ParameterId strength(std::size_t i) const { return {strengths[i], recording}; }
   /// Whether it is in what is read of the machine, not in the machine.
   bool is_of_instrument() const;
-  std::size_t parameters() const {
-    return strengths.size() + (estimates_shapes() ? shapes.size() : 0);
-  }
+  std::size_t parameters() const { return strengths.size() + estimated_shapes().size(); }
 };
 
 /// What the quantities of a hypothesis are, in its order.
@@ -104,5 +105,8 @@ Job with_hypothesis(const Job& job, const Hypothesis& hypothesis, std::span<cons
 
 /// What the quantities of a hypothesis are in a fit with it.
 HypothesisValues values_in(const Job& job, const FitResult& fit, const Hypothesis& hypothesis);
+
+/// The same where nothing else estimates its held shapes: each is that of the nearest setting.
+HypothesisValues held_at_settings(const Hypothesis& hypothesis, HypothesisValues own);
 
 }  // namespace axisfit

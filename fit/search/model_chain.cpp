@@ -64,9 +64,14 @@ bool is_explained_by_one_fit(const FittedModel& model, const SearchContext& cont
 
 }  // namespace
 
-bool is_fitted_to_noise(const std::vector<ResidualSeries>& residuals) {
-  return std::ranges::all_of(residuals,
-                             [](const ResidualSeries& s) { return !s.fitted || is_explained(s); });
+FittedModel settled(FittedModel model, const SearchContext& context) {
+  if (!model.fit.is_usable() || model.fit.reduced_chi_square > context.options.near_noise ||
+      explains(model))
+    return model;
+  FitResult exact = final_fit(model.job, values_of(model.fit), context);
+  if (exact.is_usable() && reduced_cost(exact) < reduced_cost(model.fit))
+    model.fit = std::move(exact);
+  return model;
 }
 
 bool is_close(const FittedModel& model, const SearchOptions& options) {
@@ -125,12 +130,13 @@ bool ModelChain::is_explained_freely() {
   const FittedModel& tracked = current();
   return free_ && tracks(tracked.job.options.criterion) && !accepted_.empty() &&
          tracked.fit.is_usable() && tracked.fit.reduced_chi_square < context_->options.near_noise &&
-         free_run().fit.is_usable() && explains(free_run());
+         free_run().fit.is_usable() &&
+         (explains(free_run()) || is_explained_by_one_fit(free_run(), *context_));
 }
 
 const FittedModel& ModelChain::free_run() {
   std::optional<FittedModel>& known = neighbours().free_run;
-  if (!known) known = with_accepted(*free_);
+  if (!known) known = settled(with_accepted(*free_), *context_);
   return *known;
 }
 
@@ -198,8 +204,9 @@ Job ModelChain::job_with(const Job& declared, Kept&& kept) const {
   for (std::size_t a = 0; a < accepted_.size(); ++a) {
     const Hypothesis& hypothesis = accepted_[a].hypothesis;
     if (!kept(a)) continue;
-    job = with_hypothesis(job, hypothesis, values,
-                          values_in(current().job, current().fit, hypothesis));
+    job = with_hypothesis(
+        job, hypothesis, values,
+        held_at_settings(hypothesis, values_in(current().job, current().fit, hypothesis)));
     values = initial_values(job);
   }
   set_initial_values(job, values);

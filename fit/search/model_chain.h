@@ -27,6 +27,10 @@ Improvement improvement(const FittedModel& before, const FittedModel& after);
 /// Whether the model leaves nothing but noise in any signal.
 bool explains(const FittedModel& model);
 
+/// Where a quick fit leaves little more than noise, a part of that may be its own: the model with
+/// an exact fit there, which tells what is missing.
+FittedModel settled(FittedModel model, const SearchContext& context);
+
 /// Whether the free run stays near the data.
 bool is_close(const FittedModel& model, const SearchOptions& options);
 
@@ -36,10 +40,6 @@ bool has_contacts(const FittedModel& model);
 /// Whether the free run is lost: far from the data, and with teeth whose contacts come at other
 /// instants, so that a refit takes a whole continuation and often ends in a wrong valley.
 bool is_lost(const FittedModel& model, const SearchOptions& options);
-
-/// Whether every fitted signal leaves nothing but noise. What only those to validate lack shows
-/// with the roles exchanged.
-bool is_fitted_to_noise(const std::vector<ResidualSeries>& residuals);
 
 /// Whether every signal, of recordings that validate, too, leaves so little that a score is exact.
 bool is_near_noise(const std::vector<ResidualSeries>& residuals, const SearchOptions& options);

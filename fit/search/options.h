@@ -32,6 +32,7 @@ struct SearchOptions {
     std::size_t first_settings = 9;  ///< fewer settings of a transmission are tried all at once
     std::size_t periods = 3;         ///< of a force along the stroke, from each recording
     std::size_t resonances = 3;      ///< from each series
+    std::size_t pulses = 2;          ///< of a force over time, from each recording
     double coarse_step =
         4.0;  ///< of the integrator: smooth effects are 1e-4 off, and four times as quick
     int tracking_iterations = 15;      ///< of the fit that a score starts from
@@ -152,6 +153,13 @@ struct SearchOptions {
     std::size_t sizes = 24;           ///< of a response are computed, which change slowly
     std::size_t exact = 4;            ///< times as many peaks as are wanted are computed exactly
   } periods;
+
+  /// Pulses of a force, as sums over intervals of time.
+  struct Pulses {
+    std::size_t fewest_samples = 8;       ///< of one: a shorter one is an outlier
+    std::size_t fewest_in_recording = 4;  ///< times its length: what lasts longer is no pulse
+    double next = 1.25;  ///< from one length that is tried to the next: edges within a tenth
+  };
 
   /// A sum of named terms in the place of a curve.
   struct ClosedForms {

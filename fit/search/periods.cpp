@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/linear_algebra.h"
+#include "fit/search/force_response.h"
 #include "fit/search/options.h"
 #include "sim/sampling.h"
 
@@ -13,84 +14,6 @@ namespace axisfit {
 namespace {
 
 constexpr SearchOptions::Periods kOptions;
-
-/// One step of a rigid axis of unit mass that tracks the data by the observer, by the implicit
-/// midpoint rule, stable however high the observer gain: of (position, velocity), and what a force
-/// adds to them.
-struct Step {
-  Eigen::Matrix2d state;
-  Eigen::Vector2d force;
-};
-
-Step step_of(const Observer& observer, double h) {
-  const double a = 0.5 * h * observer.position, b = 0.5 * h * observer.velocity,
-               c = 0.5 * h * observer.acceleration;
-  Eigen::Matrix2d inverse, explicit_half;
-  inverse << 1.0 + b, 0.5 * h, -c, 1.0 + a;
-  inverse /= (1.0 + a) * (1.0 + b) + 0.5 * h * c;
-  explicit_half << 1.0 - a, 0.5 * h, -c, 1.0 - b;
-  return {inverse * explicit_half, inverse * Eigen::Vector2d(0.0, h)};
-}
-
-/// Calls visit(row, measurement, sample) for the residuals of a recording, in the order of
-/// RecordingCost.
-template <class Visit>
-void visit_rows(const Recording& recording, Visit&& visit) {
-  Eigen::Index row = 0;
-  for (const Measurement& m : recording.measurements)
-    for (std::size_t i = 0; m.fitted && i < recording.times.size(); ++i)
-      if (recording.fits(m, i)) visit(row++, m, i);
-}
-
-/// What the recorded signals show of a force on that axis, whitened.
-Eigen::VectorXcd response(const Recording& recording, const std::vector<std::complex<double>>& f,
-                          const Observer& observer) {
-  const std::size_t n = recording.times.size();
-  std::vector<std::complex<double>> position(n), velocity(n);
-  for (std::size_t i = 0; i + 1 < n; ++i) {
-    const Step step = step_of(observer, recording.times[i + 1] - recording.times[i]);
-    const std::complex<double> force = 0.5 * (f[i] + f[i + 1]);
-    position[i + 1] =
-        step.state(0, 0) * position[i] + step.state(0, 1) * velocity[i] + step.force[0] * force;
-    velocity[i + 1] =
-        step.state(1, 0) * position[i] + step.state(1, 1) * velocity[i] + step.force[1] * force;
-  }
-  Eigen::Index rows = 0;
-  visit_rows(recording, [&](Eigen::Index, const Measurement&, std::size_t) { ++rows; });
-  Eigen::VectorXcd shown(rows);
-  visit_rows(recording, [&](Eigen::Index row, const Measurement& m, std::size_t i) {
-    const std::complex<double> x = m.signal == Signal::position       ? position[i]
-                                   : m.signal == Signal::acceleration ? f[i]
-                                   : m.signal == Signal::velocity     ? velocity[i]
-                                                                      : 0.0;
-    shown[row] = x / m.sigma;
-  });
-  return shown;
-}
-
-/// The force g for which the product of any force f with g is that of response(f) with `rows`.
-std::vector<double> adjoint_response(const Recording& recording, const Eigen::VectorXd& rows,
-                                     const Observer& observer) {
-  const std::size_t n = recording.times.size();
-  std::vector<Eigen::Vector2d> shown(n, Eigen::Vector2d::Zero());
-  std::vector<double> g(n, 0.0);
-  visit_rows(recording, [&](Eigen::Index row, const Measurement& m, std::size_t i) {
-    const double x = rows[row] / m.sigma;
-    if (m.signal == Signal::position) shown[i][0] += x;
-    if (m.signal == Signal::velocity) shown[i][1] += x;
-    if (m.signal == Signal::acceleration) g[i] += x;
-  });
-  Eigen::Vector2d carried = Eigen::Vector2d::Zero();
-  for (std::size_t i = n - 1; i > 0; --i) {
-    carried += shown[i];
-    const Step step = step_of(observer, recording.times[i] - recording.times[i - 1]);
-    const double half = 0.5 * step.force.dot(carried);
-    g[i] += half;
-    g[i - 1] += half;
-    carried = step.state.transpose() * carried;
-  }
-  return g;
-}
 
 }  // namespace
 
@@ -129,7 +52,8 @@ std::vector<double> periods_in(const Recording& recording, const SimulatedRecord
     return force;
   };
   const auto columns_of = [&](double wave) {
-    const Eigen::VectorXcd d = response(recording, force_of(wave), observer);
+    const Eigen::VectorXcd d =
+        response_to<std::complex<double>>(recording, force_of(wave), observer);
     Eigen::MatrixXd columns(d.size(), 2);
     columns << d.real(), d.imag();
     return Eigen::MatrixXd(columns - basis * (basis.transpose() * columns));

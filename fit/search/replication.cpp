@@ -57,8 +57,7 @@ Replication replication(const Job& job, const FitResult& fit, const FitResult& e
   };
   for (const std::size_t q : hypothesis.strengths) read(q);
   const std::size_t strengths = here.size();
-  if (hypothesis.estimates_shapes())
-    for (const std::size_t q : hypothesis.shapes) read(q);
+  for (const std::size_t q : hypothesis.estimated_shapes()) read(q);
   if (!determined || strengths != hypothesis.strengths.size()) return result;
 
   std::vector<double> neutral = hypothesis.neutral;

@@ -9,6 +9,7 @@
 #include "fit/criterion/gains.h"
 #include "fit/search/catalogue.h"
 #include "fit/search/periods.h"
+#include "fit/search/pulses.h"
 #include "fit/search/resonances.h"
 #include "fit/search/scorer.h"
 #include "fit/solve/residual.h"
@@ -48,6 +49,10 @@ SearchScales scales_of(const Job& job, const ScorePoint& point, double gain,
                       context.run.stop))
         periods.push_back(period);
     }
+    for (const Pulse& pulse :
+         pulses_in(recording, observer, point.base.residuals.segment(row, rows),
+                   point.basis.middleRows(row, rows), context.options.scoring.pulses))
+      s.pulses.push_back({pulse.start, pulse.end});
     row += rows;
   }
   for (const SeriesRows& series : point.base.series) {
@@ -117,11 +122,10 @@ std::vector<Scored*> scores_to_refine(std::vector<Scored>& scores, std::size_t c
   std::vector<Scored*> chosen;
   for (Scored* score : order) {
     const Hypothesis& hypothesis = *score->hypothesis;
-    if (hypothesis.shapes.empty() || !hypothesis.estimates_shapes() || !hypothesis.probes.empty() ||
-        !(score->gain > 0.0))
+    if (hypothesis.estimated_shapes().empty() || !hypothesis.probes.empty() || !(score->gain > 0.0))
       continue;
     const bool known = std::ranges::any_of(
-        chosen, [&](const Scored* other) { return other->hypothesis == score->hypothesis; });
+        chosen, [&](const Scored* other) { return is_same_law(*other, *score); });
     if (!known && chosen.size() < count) chosen.push_back(score);
   }
   return chosen;
@@ -145,8 +149,9 @@ void refine_shapes(const Job& fixed, const EffectColumns& columns, const Scorer&
       EffectSetting moved{&hypothesis, {hypothesis.neutral, here[c].own.shapes}};
       std::vector<double>& shapes = moved.own.shapes;
       const Job ranges = with_hypothesis(fixed, hypothesis, {}, moved.own);
-      const std::size_t first = ranges.free.size() - shapes.size();
-      for (std::size_t k = 0; k < shapes.size(); ++k) {
+      const std::size_t estimated = hypothesis.estimated_shapes().size(),
+                        first = ranges.free.size() - estimated;
+      for (std::size_t k = 0; k < estimated; ++k) {
         const FreeParameter& p = ranges.free[first + k];
         const bool logarithmic = p.scale == Scale::logarithmic;
         const double most = logarithmic ? options.largest_log_step

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -26,5 +28,14 @@ struct Scored {
   bool is_second = false;
   bool is_fitted = false;  ///< what it gains and where it starts are of a fit, not of a step
 };
+
+/// Whether they are the same hypothesis with the same shapes held where they are, so that fits from
+/// both may meet.
+inline bool is_same_law(const Scored& a, const Scored& b) {
+  const auto held = static_cast<std::ptrdiff_t>(a.hypothesis->estimated_shapes().size());
+  return is_same_form(*a.hypothesis, *b.hypothesis) &&
+         std::equal(a.own.shapes.begin() + held, a.own.shapes.end(), b.own.shapes.begin() + held,
+                    b.own.shapes.end());
+}
 
 }  // namespace axisfit

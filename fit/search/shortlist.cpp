@@ -84,8 +84,7 @@ std::vector<Scored> best_of(ScoreTest& test, std::size_t length,
         (hypothesis.kind == clock && score.gain >= options.worth * best) ||
         (score.gain >= options.worth_plain * best && is_best_plain(taken, hypothesis));
     if ((is_many || is_little) && !is_heard) continue;
-    if (std::ranges::any_of(
-            taken, [&](const Scored& s) { return is_same_form(*s.hypothesis, hypothesis); }))
+    if (std::ranges::any_of(taken, [&](const Scored& s) { return is_same_law(s, score); }))
       continue;
     constants += hypothesis.kind == constant ? 1 : 0;
     score.scaled_gain = score.gain / unit;
@@ -103,7 +102,7 @@ void drop_worse_ends(std::vector<Scored>& entries, const SearchOptions& options)
   for (Scored& entry : entries) {
     const bool is_needless =
         entry.is_fitted && std::ranges::any_of(kept, [&](const Scored& other) {
-          return other.is_fitted && is_same_form(*other.hypothesis, *entry.hypothesis) &&
+          return other.is_fitted && is_same_law(other, entry) &&
                  (nearly_same(other, entry, options.shortlist.same_shape) ||
                   entry.scaled_gain < options.round.rival_part * other.scaled_gain);
         });
@@ -204,7 +203,7 @@ void fit_entries(Shortlist& list, const Job& job, const std::vector<double>& val
                shapes = own + static_cast<std::ptrdiff_t>(entry.own.strengths.size());
     entry.others.assign(found.begin(), own);
     entry.own.strengths.assign(own, shapes);
-    if (shapes != found.end()) entry.own.shapes.assign(shapes, found.end());
+    std::copy(shapes, found.end(), entry.own.shapes.begin());
     entry.scaled_gain = 2.0 * (without.cost - with.cost) / unit;
     entry.is_fitted = true;
   });

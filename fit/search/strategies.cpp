@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "fit/criterion/gains.h"
@@ -63,16 +65,43 @@ Accepted accepted_from(const RoundResult& round, const Tried& best, const Search
   return accepted;
 }
 
-/// Where a quick fit leaves little more than noise, a part of that may be its own: then an exact
-/// one tells what is missing.
-void settle(SearchState& state, const SearchContext& context) {
-  const FittedModel& last = state.current();
-  if (!has_contacts(last) || tracks(last.job.options.criterion) || state.explained() ||
-      last.fit.reduced_chi_square > context.options.near_noise)
-    return;
-  FitResult exact = final_fit(last.job, values_of(last.fit), context);
-  if (exact.is_usable() && reduced_cost(exact) < reduced_cost(last.fit))
-    state.chain.set_fit(std::move(exact));
+/// By how much b explains the recordings worse than a, parameters counted.
+double loss_of(const FittedModel& a, const FittedModel& b) {
+  return bic_difference(residual_series(a.job, a.fit), a.job.free.size(),
+                        residual_series(b.job, b.fit), b.job.free.size());
+}
+
+/// The model with another setting of a shape that a law holds, such as its exponent, if one of them
+/// explains the recordings better.
+std::optional<FittedModel> with_better_held(const FittedModel& model, const Hypothesis& law,
+                                            std::size_t shape, const SearchContext& context) {
+  const std::size_t quantity = law.shapes[shape];
+  if (std::ranges::find(model.job.free, quantity, &FreeParameter::quantity) != model.job.free.end())
+    return std::nullopt;
+  std::set<double> settings;
+  for (const std::vector<double>& setting : law.settings) settings.insert(setting[shape]);
+  std::optional<FittedModel> best;
+  for (const double value : settings) {
+    FittedModel other = model;
+    double& held = *members(other.job.model)[quantity];
+    if (std::exchange(held, value) == value) continue;
+    other.fit = refit_from(other.job, values_of(model.fit), context);
+    if (other.fit.is_usable() && loss_of(other, best ? *best : model) > 0.0)
+      best = std::move(other);
+  }
+  return best;
+}
+
+/// Looks at the settings of accepted laws again, beside what was accepted since.
+void reconsider_held(SearchState& state, const SearchContext& context) {
+  for (std::size_t a = 0; a + 1 < state.accepted().size(); ++a) {
+    const Hypothesis law = state.accepted()[a].hypothesis;
+    if (law.kind != HypothesisKind::effect) continue;
+    for (std::size_t k = law.estimated_shapes().size(); k < law.shapes.size(); ++k)
+      if (auto better =
+              state.explained() ? std::nullopt : with_better_held(state.current(), law, k, context))
+        state.chain.set_last(*std::move(better));
+  }
 }
 
 /// Adds the hypothesis that explains the most; whether one passes.
@@ -93,7 +122,10 @@ bool add_best(SearchState& state, bool curves, double chance, Rounds& rounds) {
   } else {
     Accepted accepted = accepted_from(round, *best, rounds.context.options);
     state.chain.append(std::move(accepted), std::move(best->job), std::move(best->fit));
-    settle(state, rounds.context);
+    if (has_contacts(state.current()) && !tracks(state.current().job.options.criterion) &&
+        !state.explained())
+      state.chain.set_fit(settled(state.current(), rounds.context).fit);
+    reconsider_held(state, rounds.context);
   }
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
   rounds.context.run.report(
@@ -169,12 +201,6 @@ void add_named(SearchState& state, Rounds& rounds) {
       if (!add_pair(state, rounds)) break;
     }
   } while (drop_degenerate(state, rounds.context.options));
-}
-
-/// By how much b explains the recordings worse than a, parameters counted.
-double loss_of(const FittedModel& a, const FittedModel& b) {
-  return bic_difference(residual_series(a.job, a.fit), a.job.free.size(),
-                        residual_series(b.job, b.fit), b.job.free.size());
 }
 
 bool is_better(const FittedModel& a, const FittedModel& b, const SearchOptions& options) {

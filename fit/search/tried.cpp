@@ -26,6 +26,11 @@ FitResult refit_from(Job job, const std::vector<double>& values, const SearchCon
 
 FitResult final_fit(Job job, const std::vector<double>& values, const SearchContext& context) {
   set_initial_values(job, values);
+  Job near = job;
+  near.options = recipe::polish(near.options);
+  FitResult fit = estimate(near, context.run.quiet());
+  // A minimum that leaves nothing but noise is no wrong one.
+  if (fit.is_usable() && is_fitted_to_noise(residual_series(near, fit))) return fit;
   job.options = recipe::final_fit(job);
   return estimate(job, context.run.quiet());
 }
@@ -117,8 +122,7 @@ HypothesisValues values_in(const Tried& tried) {
 std::optional<Rejection> rejection_as_simpler(const Job& job, const FitResult& fit,
                                               const Hypothesis& hypothesis,
                                               const SearchOptions& options) {
-  if (!hypothesis.estimates_shapes()) return std::nullopt;
-  for (std::size_t k = 0; k < hypothesis.shapes.size(); ++k) {
+  for (std::size_t k = 0; k < hypothesis.estimated_shapes().size(); ++k) {
     const auto found = std::ranges::find(job.free, hypothesis.shapes[k], &FreeParameter::quantity);
     if (found == job.free.end()) continue;
     const ParameterResult& p = fit.parameters[static_cast<std::size_t>(found - job.free.begin())];

@@ -32,7 +32,8 @@ FitResult refit(const Job& job, const SearchContext& context = {});
 /// The same from these values of the free parameters.
 FitResult refit_from(Job job, const std::vector<double>& values, const SearchContext& context = {});
 
-/// Fits with the full accuracy from close by.
+/// Fits with the full accuracy from close by: at once, and where that leaves more than noise, by a
+/// continuation.
 FitResult final_fit(Job job, const std::vector<double>& values, const SearchContext& context = {});
 
 /// What a refit with a hypothesis begins with, and has to reach.

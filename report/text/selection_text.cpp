@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <span>
 
 #include "base/terminal.h"
 #include "base/text_table.h"
@@ -36,6 +37,21 @@ std::string estimates_text(const Job& job, const std::vector<ParameterResult>& p
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// ", n = 2 (held)": what an effect in the model has besides its estimates.
+std::string held_text(const Job& job, const Outcome& t) {
+  if (t.decision() != Decision::accepted || t.hypothesis.kind != HypothesisKind::effect) return "";
+  Model<double> model = job.model;
+  std::string text;
+  for (const std::size_t q :
+       std::span(t.hypothesis.shapes).subspan(t.hypothesis.estimated_shapes().size())) {
+    if (std::ranges::find(job.free, q, &FreeParameter::quantity) != job.free.end()) continue;
+    const Quantity& quantity = job.entry(q).quantity;
+    text += fmt::format(", {} = {} (held)", quantity.symbol,
+                        with_unit(fmt::format("{:.3g}", *members(model)[q]), quantity.unit));
+  }
+  return text;
+}
+
 Tone tone_of(Decision decision) {
   return decision == Decision::accepted    ? Tone::good
          : decision == Decision::undecided ? Tone::caution
@@ -61,7 +77,8 @@ std::string effects_text(const EffectSelection& selection, bool colour) {
     for (const Outcome& t : selection.effects) {
       if (t.decision() != decision) continue;
       const std::string estimate =
-          estimates_text(job, t.parameters, t.hypothesis.kind == HypothesisKind::curve);
+          estimates_text(job, t.parameters, t.hypothesis.kind == HypothesisKind::curve) +
+          held_text(job, t);
       rows.push_back({toned(decision_name(decision), tone_of(decision), colour), t.hypothesis.name,
                       estimate + (estimate.empty() ? "" : ": ") + reason_text(job, t) +
                           elsewhere_text(job, t)});

@@ -121,13 +121,19 @@ struct Curve {
     SearchEntry entry{.strengths = {}, .is_curve = true};
     // The constant part of a curve is another effect's, and the first and last coefficient hold it.
     entry.strengths.assign(kNames.begin() + 1, kNames.end() - (kCloses ? 0 : 1));
-    if constexpr (!kCloses) entry.shapes = {"from", "to"};
+    if constexpr (!kCloses) entry.held = {"from", "to"};
     if constexpr (kVariable == CurveOver::velocity)
       entry.settings = {{kIsFriction ? 0.0 : scales.velocity_low,
                          kIsFriction ? scales.speed : scales.velocity_high}};
     if constexpr (kVariable == CurveOver::position)
       entry.settings = {{scales.position_low, scales.position_high}};
-    if constexpr (kVariable == CurveOver::time) entry.settings = {{scales.start, scales.end}};
+    if constexpr (kVariable == CurveOver::time) {
+      entry.settings = {{scales.start, scales.end}};
+      // Knots spread over a whole recording do not resolve a push.
+      constexpr double kMargin = 0.4;  // of its length, before and after
+      for (const auto& [start, end] : scales.pulses)
+        entry.settings.push_back({start - kMargin * (end - start), end + kMargin * (end - start)});
+    }
     return {entry};
   }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string_view>
@@ -59,8 +60,9 @@ struct SearchScales {
   double mass = 0.0;                               ///< kg, that moves, motor included
   std::vector<double> periods = {};                ///< m, of forces along the stroke, best first
   std::vector<double> drive_periods = {};  ///< m, of such in proportion to the drive's force
-  std::vector<double> resonances = {};     ///< Hz, at which the residual rings
-  double pinion_radius = 0.0;              ///< m, r_g
+  std::vector<std::array<double, 2>> pulses = {};  ///< s, start and end of a force over time
+  std::vector<double> resonances = {};             ///< Hz, at which the residual rings
+  double pinion_radius = 0.0;                      ///< m, r_g
   double short_travel = 1e-3;  ///< m, over which surfaces bend, as an order of magnitude
 };
 
@@ -73,6 +75,9 @@ struct SearchEntry {
   std::vector<std::string_view> strengths;  ///< symbols of quantities
   std::vector<std::string_view> shapes = {};
   ShapeSettings settings = ShapeSettings(1);  ///< at first one, of no shapes; none: not offered
+  /// Further shapes, last in each setting, that are not estimated: the recordings choose between
+  /// the settings alone.
+  std::vector<std::string_view> held = {};
   /// Of each shape, beyond which the recordings cannot tell the effect from others; empty: none.
   std::vector<double> largest = {};
   /// Strengths at which the score test looks instead of at zero; see Candidate.

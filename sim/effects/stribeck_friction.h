@@ -44,7 +44,14 @@ struct StribeckFriction {
 
   static std::vector<SearchEntry> search(const SearchScales& scales) {
     const double speed = std::max(scales.speed, 1e-3);
-    return {{{"F_st"}, {"v_st"}, geometric(0.003 * speed, 0.3 * speed, 5)},
+    // Tustin's law and the Gaussian: the best of one is no start for the other.
+    ShapeSettings settings;
+    for (const double exponent : {1.0, 2.0})
+      for (std::vector<double> setting : geometric(0.003 * speed, 0.3 * speed, 5)) {
+        setting.push_back(exponent);
+        settings.push_back(setting);
+      }
+    return {{{"F_st"}, {"v_st"}, settings, {"n"}},
             {.strengths = {"n"}, .probes = {0.7, 1.5}, .extends = name}};
   }
 

@@ -118,6 +118,16 @@ TEST(IsExplained, AllowsForTheScatterOfAFewSamples) {
   EXPECT_TRUE(is_explained(series_of(scaled(Normal(1).values(20000), 1.02))));
 }
 
+TEST(IsFittedToNoise, AsksFittedSeriesAlone) {
+  ResidualSeries noise = series_of(Normal(1).values(2000)),
+                 more = series_of(scaled(Normal(2).values(2000), 1.3));
+  noise.fitted = true;
+  more.fitted = false;
+  EXPECT_TRUE(is_fitted_to_noise({noise, more}));
+  more.fitted = true;
+  EXPECT_FALSE(is_fitted_to_noise({noise, more}));
+}
+
 TEST(IsExplained, OfManySamplesIsFivePercent) {
   const auto values = Normal(1).values(20000);
   const auto of_mean_square = [&](double size) {

@@ -279,13 +279,24 @@ void expect_exponent(double neutral, const Effect<double>& effect, double declar
   ASSERT_TRUE(exponent);
   EXPECT_EQ(exponent->neutral, std::vector{neutral});
   EXPECT_EQ(exponent->parameters(), 1u);
-  std::get<Effect<double>>(job.model.effects).n = declared;  // nothing is missing
-  EXPECT_FALSE(exponent_in());
+  std::get<Effect<double>>(job.model.effects).n = declared;  // another may be the machine's
+  EXPECT_EQ(exponent_in()->neutral, std::vector{declared});
 }
 
 TEST(Catalogue, OffersAnExponentOnlyBesideItsEffect) {
   expect_exponent<StribeckFriction>(1.0, {12.0, 0.05}, 2.0);
   expect_exponent<QuadraticDrag>(2.0, {60.0}, 1.5);
+}
+
+// Tustin's law and the Gaussian have as many parameters, and the recordings choose.
+TEST(Catalogue, HoldsTheExponentOfStribeckFriction) {
+  const auto list = catalogue(job_with({Signal::velocity}), scales());
+  const Hypothesis* stribeck = find(list, "stribeck_friction");
+  ASSERT_NE(stribeck, nullptr);
+  EXPECT_EQ(stribeck->parameters(), 2u);
+  std::set<double> exponents;
+  for (const auto& setting : stribeck->settings) exponents.insert(setting.back());
+  EXPECT_EQ(exponents, (std::set{1.0, 2.0}));
 }
 
 TEST(Catalogue, OffersATorqueThatFadesStraightAndWithATimeConstant) {

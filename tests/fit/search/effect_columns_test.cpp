@@ -104,7 +104,7 @@ TEST_P(EffectColumnsOf, TellWhatTheShapesDo) {
   const EffectColumns columns(job_, 30.0, {});
   std::vector<EffectSetting> settings;
   for (const Hypothesis& c : hypotheses_)
-    if (c.probes.empty() && !c.shapes.empty() && c.estimates_shapes())
+    if (c.probes.empty() && !c.estimated_shapes().empty())
       settings.push_back(
           {&c,
            {std::vector<double>(c.strengths.size(), 1e-3), c.settings[1 % c.settings.size()]},

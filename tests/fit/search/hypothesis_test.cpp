@@ -74,7 +74,7 @@ TEST_F(WithHypothesis, AddsItsStrengthsAndShapesAndNothingElse) {
     Model<double> before = job_.model, after = job.model;
     for (std::size_t i = 0; i < c.shapes.size(); ++i) {
       EXPECT_EQ(*members(after)[c.shapes[i]], c.settings.back()[i]);
-      if (!c.estimates_shapes()) continue;
+      if (i >= c.estimated_shapes().size()) continue;
       const FreeParameter& p = job.free[2 + strengths.size() + i];
       EXPECT_EQ(p.quantity, c.shapes[i]);
       EXPECT_EQ(p.initial, c.settings.back()[i]);
@@ -97,7 +97,7 @@ TEST_F(WithHypothesis, AddsItsStrengthsAndShapesAndNothingElse) {
 
 TEST_F(WithHypothesis, SeeksAPlaceWhereItsSettingsLie) {
   Hypothesis c = *find(hypotheses_, "force_over_position");
-  c.kind = HypothesisKind::effect;
+  c.held = 0;
   c.settings = {{-0.1, 0.5}, {0.4, 0.5}};
   const std::vector<double> values{200.0, 2.7}, strengths(c.strengths.size(), 1.0);
   const Job job = with_hypothesis(job_, c, values, {strengths, c.settings[0]});
@@ -171,13 +171,32 @@ TEST(Hypothesis, IsTheSameWhateverItsShape) {
   EXPECT_FALSE(is_same(a, b));
 }
 
-TEST(Hypothesis, CountsItsShapesUnlessItIsACurve) {
+TEST(Hypothesis, CountsItsShapesUnlessTheyAreHeld) {
   Hypothesis h;
   h.strengths = {1, 2};
-  h.shapes = {3};
+  h.shapes = {3, 4};
+  EXPECT_EQ(h.parameters(), 4u);
+  h.held = 1;
   EXPECT_EQ(h.parameters(), 3u);
-  h.kind = HypothesisKind::curve;
-  EXPECT_EQ(h.parameters(), 2u);
+}
+
+TEST_F(WithHypothesis, HoldsTheLastShapesAtTheirSetting) {
+  const Hypothesis& c = *find(hypotheses_, "stribeck_friction");
+  ASSERT_EQ(c.held, 1u);
+  Job job = with_hypothesis(job_, c, std::vector{200.0, 2.7}, {{12.0}, {0.03, 2.0}});
+  EXPECT_EQ(job.free.size(), job_.free.size() + 2);
+  EXPECT_EQ(job.free.back().quantity, c.shapes.front());
+  EXPECT_EQ(*members(job.model)[c.shapes.back()], 2.0);
+}
+
+TEST(HeldAtSettings, TakesTheNearestOfWhatIsHeld) {
+  Hypothesis h;
+  h.strengths = {1};
+  h.shapes = {2, 3};
+  h.held = 1;
+  h.settings = {{0.1, 1.0}, {0.2, 2.0}};
+  EXPECT_EQ(held_at_settings(h, {{5.0}, {0.13, 1.7}}).shapes, (std::vector{0.13, 2.0}));
+  EXPECT_EQ(held_at_settings(h, {{5.0}, {0.13, 0.4}}).shapes, (std::vector{0.13, 1.0}));
 }
 
 TEST(DistanceFromNeutral, OfAStiffnessIsTheCompliance) {

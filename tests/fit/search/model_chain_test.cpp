@@ -185,6 +185,21 @@ TEST(Explained, IsWhatTheFreeRunExplainsWhereAModelTracks) {
   EXPECT_TRUE(asks.explained());
 }
 
+// A fit that a bound stopped too early leaves more than noise.
+TEST(Settled, IsExactNearTheNoiseAlone) {
+  const Job job = two_recordings(geared_slide(), geared_slide(), {"M", "B_a"});
+  const double exact = values_of(estimate(job)).front();
+  const auto settled_from = [&](double least) {
+    Job early = job;
+    early.free.front().lower = early.free.front().initial = least;
+    FittedModel model{"", job, estimate(early)};
+    EXPECT_TRUE(model.fit.is_usable() && !explains(model)) << least;
+    return settled(std::move(model), {}).fit.parameters.front().value;
+  };
+  EXPECT_NEAR(settled_from(20.1), exact, 1e-3);
+  EXPECT_EQ(settled_from(40.0), 40.0);
+}
+
 /// A geared slide whose fitted recording says little of it, and that is rather sure of the wrong
 /// viscous friction.
 FittedModel wrong_slide(const Model<double>& truth) {

@@ -28,6 +28,21 @@ TEST(Named, AddsWhatPassesAndEndsWhereNothingMoreDoes) {
   EXPECT_EQ(state.outcomes.list().front().round, 1);
 }
 
+// The Gaussian law is no start for Tustin's, nor is it richer.
+TEST(Named, ChoosesBetweenTheLawsOfStribeck) {
+  for (const double exponent : {1.0, 2.0}) {
+    Model<double> truth = slide();
+    add_effect<CoulombFriction>(truth).F_c = 15.0;
+    add_effect<StribeckFriction>(truth) = {20.0, 0.1, exponent};
+    Rounds rounds;
+    const SearchState state =
+        named(start_of(two_recordings(truth, slide(), {"M", "B_a"}), rounds), rounds);
+    EXPECT_EQ(names_in(state), (std::set<std::string>{"coulomb_friction", "stribeck_friction"}));
+    const auto& found = std::get<StribeckFriction<double>>(state.current().job.model.effects);
+    EXPECT_EQ(found.n, exponent);
+  }
+}
+
 TEST(Named, KeepsWhatItHasWhenItIsStopped) {
   StopFlag stop;
   Rounds rounds;

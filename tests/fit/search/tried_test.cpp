@@ -53,7 +53,7 @@ TEST_F(AsSimplerTest, IsBeyondWhatWasTried) {
 
 TEST_F(AsSimplerTest, IsNoneWhereShapesAreNotEstimated) {
   fit_.parameters[2].uncertainty.at_bound = true;
-  hypothesis_.kind = HypothesisKind::curve;
+  hypothesis_.held = hypothesis_.shapes.size();
   EXPECT_EQ(found(), std::nullopt);
 }
 

@@ -85,7 +85,7 @@ TEST(JournalTest, ASearchForEffectsThatIsBegunAgainEndsTheSame) {
   const EffectSelection wanted = select_effects(plain, fit);
   ASSERT_EQ(wanted.models.size(), 2u);
   EXPECT_EQ(wanted.models.back().added, "coulomb_friction");
-  for (const int stop_after : {2, 11}) {
+  for (const int stop_after : {2, 7}) {
     MemoryJournal journal;
     journal.stop_after = stop_after;
     EXPECT_TRUE(select_effects(plain, fit, {}, {&journal.stop, &journal}).interrupted);

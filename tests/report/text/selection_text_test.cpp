@@ -85,6 +85,24 @@ TEST(SelectionTextTest, TellsWhatWasEstimatedAndWhatOtherRecordingsSayOfIt) {
   EXPECT_EQ(told(), head + elsewhere + "tell alike: F_c = 5.5 N");
 }
 
+TEST(SelectionTextTest, TellsWhatIsHeld) {
+  RunResult run_result = searched();
+  Job& job = run_result.selection->result.job;
+  std::get<StribeckFriction<double>>(job.model.effects).n = 2.0;
+  Outcome stribeck = outcome("stribeck_friction", Reason::replicates);
+  stribeck.parameters = {estimated("stribeck_friction.F_st", 6.0412, 0.12)};
+  stribeck.hypothesis.shapes = {quantity_index("stribeck_friction.v_st"),
+                                quantity_index("stribeck_friction.n")};
+  stribeck.hypothesis.held = 1;
+  const auto tells = [&](const char* text) {
+    run_result.selection->effects = {stribeck};
+    return on_one_line(selection_text(run_result)).find(text) != std::string::npos;
+  };
+  EXPECT_TRUE(tells("F_st = 6.04 +- 0.12 N, n = 2 (held): explains"));
+  job.free.push_back(free_parameter("stribeck_friction.n", 2.0));
+  EXPECT_TRUE(tells("F_st = 6.04 +- 0.12 N: explains"));
+}
+
 // Of its coefficients nobody reads a list.
 TEST(SelectionTextTest, ACurveHasTheRangeOfItsCoefficients) {
   RunResult run_result = searched();
