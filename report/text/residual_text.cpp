@@ -28,6 +28,7 @@ std::string estimate_of(const Job& job, const Scored& suspect) {
                        const std::vector<double>& values) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const Quantity& q = job.entry(quantities[i]).quantity;
+      if (values[i] == q.default_value) continue;  // an exponent as it usually is
       parts.push_back(
           fmt::format("{} {}", q.symbol, with_unit(fmt::format("{:.3g}", values[i]), q.unit)));
     }
