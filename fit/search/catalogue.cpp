@@ -23,13 +23,8 @@ bool has_value(const Job& job, std::size_t quantity) {
          });
 }
 
-/// What a quantity is while nothing of a hypothesis acts. A shape, such as an exponent, may have a
-/// value that another takes the place of.
-double value_without(const Quantity& quantity, double in_model) {
-  return quantity.shape ? in_model : neutral_value(quantity);
-}
-
-/// Whether all strengths have a part in the job's axis, are not free yet and have no value.
+/// Whether all strengths have a part in the job's axis, are not free yet and have no value. A
+/// shape, such as an exponent, may have one: another takes its place.
 bool is_absent(const Job& job, const std::vector<std::size_t>& strengths) {
   Model<double> model = job.model;
   const auto member = members(model);
@@ -37,7 +32,7 @@ bool is_absent(const Job& job, const std::vector<std::size_t>& strengths) {
     const QuantityEntry& entry = quantity_list()[q];
     const bool written = entry.effect && !job.model.structure.effects[*entry.effect];
     return is_used(entry, with_effect_of(job.model.structure, q)) && !has_value(job, q) &&
-           (written || *member[q] == value_without(entry.quantity, *member[q]));
+           (written || entry.quantity.shape || *member[q] == neutral_value(entry.quantity));
   });
 }
 
@@ -146,8 +141,10 @@ std::vector<Hypothesis> catalogue(const Job& job, SearchScales scales) {
   std::vector<Hypothesis> list;
   const auto add_if_absent = [&](Hypothesis hypothesis) {
     if (hypothesis.settings.empty() || !is_absent(job, hypothesis.strengths)) return;
-    for (const std::size_t q : hypothesis.strengths)
-      hypothesis.neutral.push_back(value_without(quantity_list()[q].quantity, *members(model)[q]));
+    for (const std::size_t q : hypothesis.strengths) {
+      const Quantity& quantity = quantity_list()[q].quantity;
+      hypothesis.neutral.push_back(quantity.shape ? *members(model)[q] : neutral_value(quantity));
+    }
     list.push_back(std::move(hypothesis));
   };
   const bool has_dry_friction = Equations<double>(job.model).parts().directions;

@@ -29,7 +29,7 @@ std::vector<Pulse> pulses_in(const Recording& recording, const Observer& observe
   std::partial_sum(adjoint.begin(), adjoint.end(), sums.begin() + 1);
   std::vector<Pulse> found;
   for (std::size_t length = kOptions.fewest_samples; kOptions.fewest_in_recording * length <= n;
-       length = std::max(length + 1, static_cast<std::size_t>(kOptions.next * double(length)))) {
+       length = static_cast<std::size_t>(kOptions.next * static_cast<double>(length))) {
     // Responses to pulses of one length are about as large, wherever they are: the largest products
     // are the best of that length.
     std::vector<std::size_t> firsts;

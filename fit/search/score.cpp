@@ -18,7 +18,8 @@
 namespace axisfit {
 namespace {
 
-SearchScales scales_of(const Job& job, const ScorePoint& point, double gain,
+/// Pulses are for curves alone.
+SearchScales scales_of(const Job& job, const ScorePoint& point, double gain, bool curves,
                        const SearchContext& context) {
   SearchScales s{INFINITY, -INFINITY, 0.0, INFINITY, -INFINITY, INFINITY, -INFINITY};
   const ParameterSpace space(job);
@@ -49,10 +50,11 @@ SearchScales scales_of(const Job& job, const ScorePoint& point, double gain,
                       context.run.stop))
         periods.push_back(period);
     }
-    for (const Pulse& pulse :
-         pulses_in(recording, observer, point.base.residuals.segment(row, rows),
-                   point.basis.middleRows(row, rows), context.options.scoring.pulses))
-      s.pulses.push_back({pulse.start, pulse.end});
+    if (curves)
+      for (const Pulse& pulse :
+           pulses_in(recording, observer, point.base.residuals.segment(row, rows),
+                     point.basis.middleRows(row, rows), context.options.scoring.pulses))
+        s.pulses.push_back({pulse.start, pulse.end});
     row += rows;
   }
   for (const SeriesRows& series : point.base.series) {
@@ -208,8 +210,8 @@ ScoreTest scored(const Job& job, const std::vector<double>& values, double gain,
   test.mean_square = point->mean_square();
   test.usable = true;
   std::vector<Scored>& scores = test.scores;
-  scores =
-      settings_of(catalogue(job, scales_of(job, *point, gain, context)), curves, point->values);
+  scores = settings_of(catalogue(job, scales_of(job, *point, gain, curves, context)), curves,
+                       point->values);
 
   const Job fixed = fixed_at(job, point->values);
   const EffectColumns columns(fixed, gain, context.run);
