@@ -7,34 +7,13 @@
 
 #include "base/parallel.h"
 #include "fit/criterion/gains.h"
-#include "fit/solve/jet.h"
+#include "fit/search/trajectory_forces.h"
 #include "fit/solve/parameters.h"
 #include "fit/solve/solve.h"
+#include "sim/sampling.h"
 
 namespace axisfit {
 namespace {
-
-/// The effect that a quantity belongs to, if it does.
-std::optional<std::size_t> effect_of(std::size_t quantity) {
-  return quantity_list()[quantity].effect;
-}
-
-/// Whether a quantity acts by the affine slots of its effect, or has none.
-bool is_affine(std::size_t quantity) {
-  const auto effect = effect_of(quantity);
-  if (!effect) return true;
-  EffectSet alone;
-  alone.set(*effect);
-  Model<double> with{};
-  const Slots<double> without = slots::affine(with.effects, alone);
-  *members(with)[quantity] = 1.0;
-  return !slots::needs(alone).is_smooth() || !(slots::affine(with.effects, alone) == without);
-}
-
-/// Whether a hypothesis's forces can be read off a trajectory without it.
-bool is_smooth_force(const Hypothesis& hypothesis) {
-  return hypothesis.probes.empty() && std::ranges::none_of(hypothesis.strengths, is_affine);
-}
 
 /// The readings of an instrument that is late are taken more densely.
 bool is_late_instrument(std::size_t quantity) {
@@ -56,73 +35,6 @@ Job with_setting(const Job& job, const EffectSetting& setting) {
   return with_hypothesis(job, *setting.hypothesis, {}, setting.own, !setting.with_shapes);
 }
 
-/// Derivatives of the smooth accelerations along a trajectory, with respect to up to two quantities
-/// of a model.
-class SmoothForce {
- public:
-  using T = ceres::Jet<double, 2>;
-
-  /// `sticks`: whether the trajectory is that of an arm with dry friction; else its mode knows no
-  /// direction.
-  SmoothForce(const Model<double>& model, std::span<const std::size_t> quantities, bool sticks)
-      : model_(seeded(model, quantities)), equations_(model_), sticks_(sticks) {}
-
-  /// Calls write(instant, rates) with the derivatives of y1' and y3'.
-  template <class Write>
-  void along(const std::vector<AxisInstant>& trajectory, Write&& write) const {
-    RestMemory<T> memory{T(trajectory.front().state[0]), {}};
-    Mode before;
-    before.sliding = 0;
-    for (std::size_t i = 0; i < trajectory.size(); ++i) {
-      const AxisInstant& at = trajectory[i];
-      Mode mode = at.mode;
-      if (!sticks_ || mode.sliding != 0) mode.sliding = direction(at.state[1]);
-      if (mode.sliding != before.sliding && before.sliding != 0 && needs_memory())
-        memory = memory_after(before, trajectory[i - 1], memory);
-      before = mode;
-      write(i, equations_.smooth_rate(mode, state(at), input(at, memory)));
-    }
-  }
-
- private:
-  static Model<T> seeded(const Model<double>& model, std::span<const std::size_t> quantities) {
-    Model<T> with = convert<T>(model);
-    const std::vector<T*> member = members(with);
-    for (std::size_t k = 0; k < quantities.size(); ++k)
-      member[quantities[k]]->v[static_cast<Eigen::Index>(k)] = 1.0;
-    return with;
-  }
-  static std::int8_t direction(double velocity) {
-    return static_cast<std::int8_t>(velocity > 0.0 ? 1 : velocity < 0.0 ? -1 : 0);
-  }
-  static State<T> state(const AxisInstant& at) {
-    State<T> y;
-    for (std::size_t i = 0; i < kStates; ++i) y[i] = T(at.state[i]);
-    return y;
-  }
-  static Input<T> input(const AxisInstant& at, const RestMemory<T>& memory) {
-    Input<T> input;
-    input.command = T(at.input.command);
-    input.time = T(at.input.time);
-    input.memory = memory;
-    input.channels = at.input.channels;
-    return input;
-  }
-  bool needs_memory() const { return equations_.parts().needs.hysteresis; }
-  /// The memory at the place where the motion turned: between two instants, nearly at the first.
-  RestMemory<T> memory_after(const Mode& mode, const AxisInstant& at,
-                             const RestMemory<T>& memory) const {
-    State<T> y = state(at);
-    Input<T> there = input(at, memory);
-    equations_.cross(mode, Guard::stop, y, there);
-    return there.memory;
-  }
-
-  const Model<T> model_;
-  const Equations<T> equations_;
-  const bool sticks_;
-};
-
 }  // namespace
 
 EffectColumns::EffectColumns(const Job& job, double observer_gain, const RunContext& context)
@@ -134,6 +46,7 @@ EffectColumns::EffectColumns(const Job& job, double observer_gain, const RunCont
                         context.stop);
     first_rows_.push_back(rows_);
     rows_ += costs_.back().num_residuals();
+    interval_ = std::max(interval_, mean_interval(job.recordings[r].times));
   }
   trajectories_.resize(costs_.size());
   parallel_for(costs_.size(),
@@ -148,7 +61,7 @@ std::vector<Eigen::MatrixXd> EffectColumns::derivatives(
   for (std::size_t s = 0; s < settings.size(); ++s) {
     const EffectSetting& setting = settings[s];
     const Hypothesis& hypothesis = *setting.hypothesis;
-    if (!hypothesis.shapes.empty() && !is_smooth_force(hypothesis)) {
+    if (!hypothesis.shapes.empty() && !is_read_off(hypothesis, setting.own.shapes, interval_)) {
       alone.push_back(s);
       continue;
     }
@@ -158,7 +71,7 @@ std::vector<Eigen::MatrixXd> EffectColumns::derivatives(
     result[s].resize(rows_, static_cast<Eigen::Index>(quantities.size()));
     for (std::size_t k = 0; k < quantities.size(); ++k) {
       const std::size_t q = quantities[k];
-      const bool is_force = !hypothesis.shapes.empty() || !is_affine(q);
+      const bool is_force = !hypothesis.shapes.empty() || is_smooth_force(q);
       (is_force ? forces : is_late_instrument(q) ? late : batch).push_back({s, k, q});
     }
   }
@@ -223,9 +136,10 @@ Disturbances EffectColumns::disturbances(std::size_t place,
   d.arm.resize(static_cast<Eigen::Index>(trajectory.size()),
                static_cast<Eigen::Index>(columns.size()));
   d.motor.resizeLike(d.arm);
+  d.arm_mean.resizeLike(d.arm);
   const Model<double> plain = model_at(job_, space_, nullptr, recordings_[place]);
-  const bool sticks = Equations<double>(plain).parts().directions;
-  // Two columns of one setting at a time.
+  const Observer observer = observer_for(job_.recordings[recordings_[place]], observer_gain_);
+  // Columns of one setting, as many as go at a time.
   std::vector<std::size_t> firsts;
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const bool second = !firsts.empty() && firsts.back() + 1 == c &&
@@ -247,16 +161,13 @@ Disturbances EffectColumns::disturbances(std::size_t place,
     const ParameterSpace space(job);
     const Model<double> model =
         model_at(job, space, space.internal(initial_values(job)).data(), recordings_[place]);
-    SmoothForce(model, quantities, sticks)
-        .along(trajectory, [&](std::size_t i, const State<SmoothForce::T>& rates) {
-          for (std::size_t k = 0; k < quantities.size(); ++k) {
-            const auto row = static_cast<Eigen::Index>(i);
-            const auto column = static_cast<Eigen::Index>(first + k);
-            const auto part = static_cast<Eigen::Index>(k);
-            d.arm(row, column) = scales[k] * rates[1].v[part];
-            d.motor(row, column) = scales[k] * rates[3].v[part];
-          }
-        });
+    const Disturbances own = disturbances_of(model, plain, quantities, observer, trajectory);
+    for (std::size_t k = 0; k < quantities.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(first + k), part = static_cast<Eigen::Index>(k);
+      d.arm.col(column) = scales[k] * own.arm.col(part);
+      d.arm_mean.col(column) = scales[k] * own.arm_mean.col(part);
+      d.motor.col(column) = scales[k] * own.motor.col(part);
+    }
   });
   return d;
 }

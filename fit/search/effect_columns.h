@@ -57,6 +57,7 @@ class EffectColumns {
   std::vector<std::vector<AxisInstant>> trajectories_;
   std::vector<Eigen::Index> first_rows_;  ///< of each of them among all
   Eigen::Index rows_ = 0;
+  double interval_ = 0.0;  ///< s, the longest mean interval of samples
 };
 
 }  // namespace axisfit

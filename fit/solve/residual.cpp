@@ -333,10 +333,14 @@ std::vector<AxisInstant> RecordingCost::trajectory(const double* u) const {
   const Model<double> model = model_at(job_, space_, u, recording_);
   const Recorder<double> recorder(model.instruments, signals_, recording.times);
   std::vector<AxisInstant> instants;
-  const auto note = [&](std::size_t, const Integrator<double>& axis) {
-    instants.push_back({axis.mode(), axis.state(), axis.input()});
+  const std::vector<WindowStart> starts = this->starts(u);
+  auto next = starts.begin();
+  const auto note = [&](std::size_t i, const Integrator<double>& axis) {
+    const bool is_moved = next != starts.end() && recorder.instant_of(next->sample) == i;
+    if (is_moved) ++next;
+    instants.push_back({axis.mode(), axis.state(), axis.input(), is_moved});
   };
-  if (!run(job_, recording, model, observer_, recorder, starts(u), note, nullptr, stop_).finished)
+  if (!run(job_, recording, model, observer_, recorder, starts, note, nullptr, stop_).finished)
     return {};
   return instants;
 }
@@ -436,6 +440,8 @@ Eigen::MatrixXd RecordingCost::disturbance_response(const double* u,
       if (i > 0) {
         change.bottomRows(Transitions::kDisturbances) *= 0.5;
         disturb(i, 0.5);
+        if (disturbances.arm_mean.size() > 0)
+          change.row(n).head(count) = disturbances.arm_mean.row(i).segment(first, count);
         change.topRows(n) = (found->states_to.middleRows(i * n, n) * change).eval();
         change.bottomRows(Transitions::kDisturbances).setZero();
       }

@@ -42,12 +42,14 @@ struct AxisInstant {
   Mode mode;
   State<double> state;
   Input<double> input;
+  bool is_moved = false;  ///< whether a window begins here, with a state of its own
 };
 
 /// Small accelerations at the instants of a simulation: instants by columns, each column one of
 /// them. As in Disturbance, m/s^2 and rad/s^2.
 struct Disturbances {
   Eigen::MatrixXd arm, motor;
+  Eigen::MatrixXd arm_mean{};  ///< of the arm's since the instant before; empty: of the two
 };
 
 /// Residuals (measured - simulated) / sigma of all fitted measurements of a recording, measurement
