@@ -143,9 +143,9 @@ Hash& operator<<(Hash& hash, const FitOptions& options) {
 
 Hash& operator<<(Hash& hash, const SolveOptions& options) {
   const auto& [max_iterations, function_tolerance, parameter_tolerance,
-               penalize_distance_from_start, fixed, give_up_above, stop] = options;
+               penalize_distance_from_start, fixed, give_up_above, jumps, stop] = options;
   return hash << max_iterations << function_tolerance << parameter_tolerance
-              << penalize_distance_from_start << fixed << give_up_above;
+              << penalize_distance_from_start << fixed << give_up_above << jumps;
 }
 
 Hash& operator<<(Hash& hash, const Job& job) {

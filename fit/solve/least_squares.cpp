@@ -278,28 +278,61 @@ class Pace {
   bool is_known_ = false;
 };
 
-/// Ends a solution as soon as a step arrives at a bound at which it did not begin, it is too slow
-/// to be of use, or it is to stop.
+/// Whether a solution stands before a jump of its cost that bars little. Of a simulation a reading
+/// jumps where an event passes its instant, an acceleration at an impact above all. Then the search
+/// along each step ends just before the jump, and gains next to nothing of what the step promised.
+class Stall {
+ public:
+  Stall(bool jumps, int residuals) : jumps_(jumps), residuals_(residuals) {}
+
+  void enter(const ceres::IterationSummary& summary) {
+    if (!jumps_ || summary.iteration == 0) return;
+    const double mean_square = 2.0 * summary.cost / residuals_;
+    const bool is_in_vain = summary.step_is_successful && summary.relative_decrease < kPart &&
+                            summary.trust_region_radius > kWholeStep &&
+                            summary.cost_change < summary.relative_decrease * kLittle * mean_square;
+    in_vain_ = is_in_vain ? in_vain_ + 1 : 0;
+  }
+  bool is_stalled() const { return in_vain_ >= kSteps; }
+
+ private:
+  static constexpr double kPart = 0.1;  ///< of what a step promised
+  /// Mean squares of the residuals: the minimum that a step promises is within two thirds of a
+  /// standard error.
+  static constexpr double kLittle = 0.2;
+  static constexpr double kWholeStep = 10.0;  ///< radius that does not shorten one
+  static constexpr int kSteps = 2;
+  bool jumps_;
+  int residuals_;
+  int in_vain_ = 0;
+};
+
+/// Ends a solution as soon as a step arrives at a bound at which it did not begin, it stalls or is
+/// too slow to be of use, or it is to stop.
 class EarlyTermination : public ceres::IterationCallback {
  public:
-  EarlyTermination(const BoundConstraints& point, std::size_t size, Pace pace, const StopFlag* stop)
-      : point_(point), pace_(pace), stop_(stop) {
+  EarlyTermination(const BoundConstraints& point, std::size_t size, Pace pace, Stall stall,
+                   const StopFlag* stop)
+      : point_(point), pace_(pace), stall_(stall), stop_(stop) {
     for (std::size_t i = 0; i < size; ++i) began_there_.push_back(point.at_bound(i));
   }
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (is_set(stop_)) return ceres::SOLVER_ABORT;
     pace_.enter(summary);
-    if (pace_.is_too_slow()) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    stall_.enter(summary);
+    if (pace_.is_too_slow() || stall_.is_stalled()) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     for (std::size_t i = 0; i < began_there_.size() && summary.step_is_successful; ++i)
       if (!began_there_[i] && point_.at_bound(i)) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     return ceres::SOLVER_CONTINUE;
   }
   bool was_too_slow() const { return pace_.is_too_slow(); }
+  bool has_stalled() const { return stall_.is_stalled(); }
 
  private:
   const BoundConstraints& point_;
   Pace pace_;
+  Stall stall_;
   const StopFlag* stop_;
   std::vector<bool> began_there_;
 };
@@ -353,12 +386,14 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
         is_last ? kLastIterations : std::max(1, options.max_iterations - result.iterations);
     const Pace pace(0.5 * options.give_up_above * problem.NumResiduals(),
                     solver.max_num_iterations);
-    EarlyTermination end(point, space.size(), pace, options.stop);
+    EarlyTermination end(point, space.size(), pace, Stall(options.jumps, problem.NumResiduals()),
+                         options.stop);
     solver.callbacks = {&end};
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
     result.usable = summary.IsSolutionUsable();
-    result.converged = summary.termination_type == ceres::CONVERGENCE;
+    result.converged =
+        summary.termination_type == ceres::CONVERGENCE || (result.usable && end.has_stalled());
     // The solver reports a negative cost where even the start could not be evaluated.
     result.cost = result.usable ? summary.final_cost : std::numeric_limits<double>::infinity();
     result.iterations += static_cast<int>(summary.iterations.size());
@@ -369,7 +404,7 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
       is_last = true;
       continue;
     }
-    const bool stopped = summary.termination_type == ceres::USER_SUCCESS;
+    const bool stopped = summary.termination_type == ceres::USER_SUCCESS && !end.has_stalled();
     if (!point.review() && !stopped) break;
   }
   result.reduced_cost = 2.0 * result.cost / problem.NumResiduals();

@@ -29,6 +29,9 @@ struct SolveOptions {
   /// A reduced cost: a solution ends early, not converged, that would stay above it even if every
   /// iteration left to it did as much as the best of the last ones.
   double give_up_above = std::numeric_limits<double>::infinity();
+  /// The cost may jump, as that of a simulation does where an event passes the instant of a
+  /// reading: a solution that stands before a jump ends there.
+  bool jumps = false;
   const StopFlag* stop = nullptr;  ///< ends the solution, which is not usable then
 };
 

@@ -41,6 +41,7 @@ SolveResult solve(const Job& job, const ParameterSpace& space, const Eigen::Vect
                   double observer_gain, SolveOptions options, const RunContext& context) {
   context.check_stop();
   options.stop = context.stop;
+  options.jumps = true;
   Journal* const journal = context.journal;
   const ProblemKey key =
       journal != nullptr ? problem_key(job, u, observer_gain, options) : ProblemKey{};

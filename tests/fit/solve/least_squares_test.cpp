@@ -114,6 +114,61 @@ TEST(LeastSquares, GivesUpWhatWouldNotComeBelowACost) {
   EXPECT_LT(given_up.iterations, whole.iterations);
 }
 
+/// A first parameter that 1 would suit best, in noise of the size 1; but from `jump` on another
+/// residual is five of these.
+class Jumping : public ceres::CostFunction {
+ public:
+  Jumping(double jump, int* evaluations) : jump_(jump), evaluations_(evaluations) {
+    set_num_residuals(102);
+    mutable_parameter_block_sizes()->push_back(2);
+  }
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    ++*evaluations_;
+    std::fill_n(residuals, 102, 1.0);
+    residuals[0] = 10.0 * (parameters[0][0] - 1.0);
+    residuals[1] = 10.0 * parameters[0][1];
+    if (parameters[0][0] > jump_) residuals[2] = 5.0;
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    std::fill_n(jacobians[0], 204, 0.0);
+    jacobians[0][0] = jacobians[0][3] = 10.0;
+    return true;
+  }
+
+ private:
+  double jump_;
+  int* evaluations_;
+};
+
+struct Solved {
+  SolveResult result;
+  int evaluations = 0;
+};
+
+Solved solved_before(double jump, bool jumps) {
+  Solved solved;
+  Costs costs;
+  costs.push_back(std::make_unique<Jumping>(jump, &solved.evaluations));
+  SolveOptions options;
+  options.function_tolerance = 1e-12;
+  options.jumps = jumps;
+  solved.result =
+      minimize(two_parameters(), std::move(costs), Eigen::Vector2d(jump - 0.02, 0.001), options);
+  return solved;
+}
+
+// A tenth of a standard error before the minimum, and one before it.
+TEST(LeastSquares, EndsBeforeAJumpThatBarsLittle) {
+  const Solved little = solved_before(0.99, true), more = solved_before(0.9, true);
+  EXPECT_TRUE(little.result.usable && little.result.converged);
+  EXPECT_LT(little.result.u[0], 0.99);
+  EXPECT_LE(little.evaluations, 8);
+  EXPECT_GE(solved_before(0.99, false).evaluations, 30);
+  EXPECT_NEAR(more.result.u[0], 0.9, 1e-3);
+  EXPECT_EQ(more.evaluations, solved_before(0.9, false).evaluations);
+  EXPECT_NEAR(solved_before(10.0, true).result.u[0], 1.0, 1e-6);
+}
+
 TEST(LeastSquares, KnowsTheJacobianAtItsSolution) {
   std::vector<Asked> asked(2);
   const ParameterSpace space = two_parameters();
