@@ -240,8 +240,9 @@ class Integrator {
   }
   bool has_observer() const { return equations_.observer().active(); }
   bool affine() const { return !equations_.has_smooth_forces(); }
-  /// Whether nothing but switches and events sets anything off.
-  bool is_undisturbed() const { return affine() && !has_ramps(); }
+  /// Whether nothing but switches and events sets a fast swing off. Smooth forces on the arm are
+  /// slow; those of the motor are as fast as its current.
+  bool is_undisturbed() const { return !equations_.parts().needs.motor_torque && !has_ramps(); }
   bool has_ramps() const { return has_observer() || options_.has_command_ramp; }
   RampList ramps() const {
     RampList list;
@@ -280,8 +281,8 @@ class Integrator {
   }
 
   /// Level at which a cubic follows the fastest oscillation that guards may show. Where nothing but
-  /// switches sets any off, one is forgotten when it has died away to what a cubic does not follow
-  /// either.
+  /// switches and events sets any off, one is forgotten when it has died away to what a cubic does
+  /// not follow either.
   int resolving_level() const {
     constexpr double kForgotten = 9.0;  // e^-9 = 1e-4
     const double since = is_undisturbed() ? value_of(input_.time) - switched_ : 0.0;
