@@ -73,6 +73,7 @@ FreeParameter free_shape(const Job& job, const Hypothesis& hypothesis, std::size
   const Quantity& q = entry.quantity;
   FreeParameter p;
   p.quantity = entry.index;
+  p.recording = hypothesis.recording;
   p.scale = q.lower > 0.0 ? Scale::logarithmic : Scale::linear;
   std::tie(p.lower, p.upper) = p.scale == Scale::logarithmic ? std::pair(q.lower, q.upper)
                                                              : range_of_place(q, hypothesis, i);

@@ -56,8 +56,9 @@ struct Hypothesis {
   std::span<const std::size_t> estimated_shapes() const {
     return std::span(shapes).first(shapes.size() - held);
   }
-  /// As which parameter one of its strengths is estimated.
+  /// As which parameters one of its strengths and one of its shapes are estimated.
   ParameterId strength(std::size_t i) const { return {strengths[i], recording}; }
+  ParameterId shape(std::size_t i) const { return {shapes[i], recording}; }
   /// Whether it is in what is read of the machine, not in the machine.
   bool is_of_instrument() const;
   std::size_t parameters() const { return strengths.size() + estimated_shapes().size(); }

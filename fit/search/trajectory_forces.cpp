@@ -176,7 +176,7 @@ bool is_read_off(const Hypothesis& hypothesis, const std::vector<double>& shapes
   const auto acts_as_disturbance = [&](std::size_t quantity) {
     if (!is_elastic_mode(quantity)) return is_smooth_force(quantity);
     constexpr double kFollowed = 0.12;  // cycles between two instants
-    return shapes.front() * interval < kFollowed;
+    return shapes[0] * interval < kFollowed && shapes[1] < 1.0;
   };
   return hypothesis.probes.empty() &&
          std::ranges::all_of(hypothesis.strengths, acts_as_disturbance);

@@ -123,7 +123,7 @@ std::optional<Rejection> rejection_as_simpler(const Job& job, const FitResult& f
                                               const Hypothesis& hypothesis,
                                               const SearchOptions& options) {
   for (std::size_t k = 0; k < hypothesis.estimated_shapes().size(); ++k) {
-    const auto found = std::ranges::find(job.free, hypothesis.shapes[k], &FreeParameter::quantity);
+    const auto found = std::ranges::find(job.free, hypothesis.shape(k), &FreeParameter::id);
     if (found == job.free.end()) continue;
     const ParameterResult& p = fit.parameters[static_cast<std::size_t>(found - job.free.begin())];
     if (p.uncertainty.at_bound) return Rejection{.test = Rejection::Test::bound, .parameter = p.id};

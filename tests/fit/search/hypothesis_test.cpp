@@ -226,6 +226,14 @@ TEST_F(WithHypothesis, OfOneRecordingIsItsParameterAlone) {
   EXPECT_EQ(values_in(job, result_at_start(job), own).strengths, std::vector{3.0});
   EXPECT_EQ(values_in(job, result_at_start(job), shared).strengths, std::vector{0.0})
       << "of the others";
+
+  // What it is shaped by, too: another recording may have a payload of its own.
+  const Hypothesis& payload = *find(hypotheses, "payload_change@other");
+  const HypothesisValues picked_up{{2.0}, payload.settings.front()};
+  const Job with = with_hypothesis(job_, payload, {}, picked_up);
+  EXPECT_EQ(with.free.back().id(), payload.shape(0));
+  EXPECT_EQ(payload.shape(0).recording, 1u);
+  EXPECT_EQ(values_in(with, result_at_start(with), payload).shapes, picked_up.shapes);
 }
 
 TEST_F(WithHypothesis, LeavesFixedShapesOutOfTheFreeParameters) {

@@ -23,6 +23,7 @@ TEST(TrajectoryForces, SmoothForcesAndSlowModesAreReadOff) {
   EXPECT_TRUE(is_read_off(hypothesis("quadratic_drag.c"), {2.0}, 1e-3));
   EXPECT_TRUE(is_read_off(hypothesis("elastic_mode.m_e"), {100.0, 0.03}, 1e-3));
   EXPECT_FALSE(is_read_off(hypothesis("elastic_mode.m_e"), {200.0, 0.03}, 1e-3));
+  EXPECT_FALSE(is_read_off(hypothesis("elastic_mode.m_e"), {100.0, 1.5}, 1e-3));
   EXPECT_FALSE(is_read_off(hypothesis("constant_force.F_0"), {}, 1e-3));
   EXPECT_FALSE(is_read_off(hypothesis("M"), {}, 1e-3));
   Hypothesis probed = hypothesis("quadratic_drag.c");

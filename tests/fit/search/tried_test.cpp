@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "fit/search/catalogue.h"
 #include "sim/model.h"
 #include "tests/fit/search/selection.h"
 
@@ -55,6 +56,40 @@ TEST_F(AsSimplerTest, IsNoneWhereShapesAreNotEstimated) {
   fit_.parameters[2].uncertainty.at_bound = true;
   hypothesis_.held = hypothesis_.shapes.size();
   EXPECT_EQ(found(), std::nullopt);
+}
+
+/// Two fitted recordings, in the second of which a payload is picked up halfway.
+Job with_a_payload_picked_up() {
+  Model<double> truth = slide();
+  Job job = two_recordings(truth, slide(), {"M", "B_a"});
+  auto& payload = add_effect<PayloadChange>(truth);
+  payload.dM = 5.0;
+  payload.t_c = 0.6;
+  job.recordings[1] = two_recordings(truth, slide(), {"M", "B_a"}).recordings[1];
+  job.recordings[1].role = Role::fit;
+  return job;
+}
+
+TEST(Judge, FindsTheShapesOfWhatOneRecordingHasAlone) {
+  const Job job = with_a_payload_picked_up();
+  const FitResult without = estimate(job);
+  const SearchScales scales{-0.05, 0.2, 1.0, -1.0, 1.0, 0.0, 1.2, 1e-3};
+  const std::vector<Hypothesis> all = catalogue(job, scales);
+  const auto payload =
+      std::ranges::find(all, "payload_change@" + job.recordings[1].name, &Hypothesis::name);
+  ASSERT_NE(payload, all.end());
+  Scored start;
+  start.hypothesis = std::make_shared<const Hypothesis>(*payload);
+  start.own = {{3.0}, {0.5}};
+  start.others = values_of(without);
+  const SearchContext context;
+  Tried tried = try_hypothesis(job, start, context, {});
+  ASSERT_TRUE(tried.fit.is_usable());
+  EXPECT_NEAR(values_in(tried).shapes.front(), 0.6, 0.01);
+  const Determination d =
+      determination(tried.job, tried.fit, tried.hypothesis, tried.residuals, context.options);
+  EXPECT_FALSE(d.at_bound || d.undetermined);
+  EXPECT_GT(d.wald, d.required);
 }
 
 TEST(RejectionByForce, IsForOneThatRisesInAnyRecording) {
