@@ -1,7 +1,5 @@
 #include "fit/search/rival_models.h"
 
-#include <algorithm>
-
 namespace axisfit {
 
 std::vector<RivalModels> rival_models(const EffectSelection& selection) {
@@ -9,10 +7,10 @@ std::vector<RivalModels> rival_models(const EffectSelection& selection) {
   for (const Substitution& pair : selection.substitutions) {
     RivalModels& found = models.emplace_back(
         RivalModels{pair.chosen, pair.rival, pair.with_chosen, pair.with_rival, {}});
-    const auto chosen = std::ranges::find(selection.effects, pair.chosen,
-                                          [](const Outcome& o) { return o.hypothesis.name; });
-    if (chosen != selection.effects.end())
-      for (const ParameterResult& p : chosen->parameters) found.own.push_back(p.id);
+    // An effect may have been tried in several forms, and go with parts of it.
+    for (const Outcome& o : selection.effects)
+      if (o.hypothesis.name == pair.chosen || o.hypothesis.extends == pair.chosen)
+        for (const ParameterResult& p : o.parameters) found.own.push_back(p.id);
   }
   return models;
 }

@@ -29,5 +29,24 @@ TEST(RivalModels, HaveTheParametersOfTheChosenEffect) {
   EXPECT_TRUE(models[1].own.empty());  // it had no trial
 }
 
+// It goes with the effect: what it is without that is no estimate.
+TEST(RivalModels, HaveThePartsAndFormsOfTheChosenEffect) {
+  EffectSelection selection;
+  for (const auto& [name, parameter, extends] :
+       {std::tuple("dahl_friction", "dahl_friction.F_d", ""),
+        std::tuple("dahl_friction.B_d", "dahl_friction.B_d", "dahl_friction"),
+        std::tuple("dahl_friction", "dahl_friction.l_d", ""),
+        std::tuple("added_mass", "added_mass.dM", "")}) {
+    Outcome& outcome = selection.effects.emplace_back();
+    outcome.hypothesis.name = name;
+    outcome.hypothesis.extends = extends;
+    outcome.parameters.push_back({id_of(parameter), 1.0, {}});
+  }
+  selection.substitutions = {{"dahl_friction", "added_mass", slide(), slide()}};
+  EXPECT_EQ(rival_models(selection).at(0).own,
+            (std::vector{id_of("dahl_friction.F_d"), id_of("dahl_friction.B_d"),
+                         id_of("dahl_friction.l_d")}));
+}
+
 }  // namespace
 }  // namespace axisfit
