@@ -139,7 +139,7 @@ Determination determination(const Job& job, const FitResult& result, const Hypot
   Determination d;
   const std::vector<Index> strengths = places_of(hypothesis.strengths, hypothesis.recording, job);
   const auto note = [&](Index place, bool is_shape) {
-    const ParameterResult& p = result.parameters[static_cast<std::size_t>(place)];
+    const ParameterResult& p = result.parameters.at(static_cast<std::size_t>(place));
     if (p.uncertainty.at_bound && !d.at_bound) d.at_bound = p.id;
     if (is_shape && hypothesis.kind != HypothesisKind::transmission && !p.uncertainty.determined &&
         !d.undetermined)

@@ -142,9 +142,9 @@ Disturbances EffectColumns::disturbances(std::size_t place,
   // Columns of one setting, as many as go at a time.
   std::vector<std::size_t> firsts;
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    const bool second = !firsts.empty() && firsts.back() + 1 == c &&
-                        columns[firsts.back()].setting == columns[c].setting;
-    if (!second) firsts.push_back(c);
+    const bool goes_along = !firsts.empty() && c < firsts.back() + kMostQuantities &&
+                            columns[firsts.back()].setting == columns[c].setting;
+    if (!goes_along) firsts.push_back(c);
   }
   parallel_for(firsts.size(), [&](std::size_t f) {
     const std::size_t first = firsts[f];

@@ -69,7 +69,7 @@ std::optional<double> errors_of_nothing(const Job& job,
   const double neutral = hypothesis.neutral.front();
   if (hypothesis.strengths.size() != 1 || !std::isfinite(neutral)) return std::nullopt;
   const auto free = std::ranges::find(job.free, hypothesis.strength(0), &FreeParameter::id);
-  const ParameterResult& p = parameters[static_cast<std::size_t>(free - job.free.begin())];
+  const ParameterResult& p = parameters.at(static_cast<std::size_t>(free - job.free.begin()));
   const ParameterUncertainty known = combined(p.budget, p.value, *free);
   if (!known.determined) return 0.0;
   if (neutral < known.lower || neutral > known.upper) return std::nullopt;

@@ -30,7 +30,7 @@ struct SolveOptions {
   /// iteration left to it did as much as the best of the last ones.
   double give_up_above = std::numeric_limits<double>::infinity();
   /// The cost may jump, as that of a simulation does where an event passes the instant of a
-  /// reading: a solution that stands before a jump ends there.
+  /// reading: a solution ends before a jump that bars little.
   bool jumps = false;
   const StopFlag* stop = nullptr;  ///< ends the solution, which is not usable then
 };
