@@ -22,6 +22,11 @@ Improvement improvement(const FittedModel& before, const FittedModel& after) {
                      residual_series(after.job, after.fit));
 }
 
+double loss_of(const FittedModel& a, const FittedModel& b) {
+  return bic_difference(residual_series(a.job, a.fit), a.job.free.size(),
+                        residual_series(b.job, b.fit), b.job.free.size());
+}
+
 bool explains(const FittedModel& model) {
   auto series = residual_series(model.job, model.fit);
   const auto is_noise = [](const ResidualSeries& s) { return is_explained(s); };
@@ -68,7 +73,7 @@ FittedModel settled(FittedModel model, const SearchContext& context) {
   if (!model.fit.is_usable() || model.fit.reduced_chi_square > context.options.near_noise ||
       explains(model))
     return model;
-  FitResult exact = final_fit(model.job, values_of(model.fit), context);
+  FitResult exact = polished_fit(model.job, values_of(model.fit), context);
   if (exact.is_usable() && reduced_cost(exact) < reduced_cost(model.fit))
     model.fit = std::move(exact);
   return model;

@@ -24,6 +24,9 @@ struct FittedModel {
 /// By how much the second lowers the errors of the first, see acceptance.h.
 Improvement improvement(const FittedModel& before, const FittedModel& after);
 
+/// By how much the second explains the recordings worse, parameters counted.
+double loss_of(const FittedModel& a, const FittedModel& b);
+
 /// Whether the model leaves nothing but noise in any signal.
 bool explains(const FittedModel& model);
 

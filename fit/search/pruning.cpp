@@ -8,6 +8,7 @@
 
 #include "fit/errors/scatter.h"
 #include "fit/estimate/other_gains.h"
+#include "fit/search/rivals.h"
 
 namespace axisfit {
 namespace {
@@ -76,14 +77,37 @@ std::optional<double> errors_of_nothing(const Job& job,
   return std::abs(p.value - neutral) / known.standard_error;
 }
 
+/// The state with a plain rival in the place of an effect that has become no more than that; none
+/// where there is no such.
+std::optional<SearchState> with_plain_rival(SearchState& state, std::size_t place,
+                                            const Rejection& rejection, int round,
+                                            const SearchContext& context) {
+  std::optional<Tried> plain = plain_rival(state, place, context);
+  if (!plain) return std::nullopt;
+  SearchState other = state;
+  const Hypothesis hypothesis = state.accepted()[place].hypothesis;
+  other.outcomes.fail(hypothesis, rejection);
+  other.exchange(place, *std::move(plain), round);
+  other.degenerate.push_back(hypothesis);
+  // What is left at contacts differs by more than chance between models that are both complete.
+  if (is_clearly_worse(loss_of(state.current(), other.current()), context.options) &&
+      !(state.explained() && other.explained()))
+    return std::nullopt;
+  return other;
+}
+
 }  // namespace
 
-bool drop_degenerate(SearchState& state, const SearchOptions& options) {
+bool drop_degenerate(SearchState& state, int round, const SearchContext& context) {
   for (std::size_t a = 0; a < state.accepted().size(); ++a) {
     const Hypothesis hypothesis = state.accepted()[a].hypothesis;
     const auto rejection =
-        rejection_as_simpler(state.current().job, state.current().fit, hypothesis, options);
+        rejection_as_simpler(state.current().job, state.current().fit, hypothesis, context.options);
     if (!rejection) continue;
+    if (auto plain = with_plain_rival(state, a, *rejection, round, context)) {
+      state = *std::move(plain);
+      return true;
+    }
     FittedModel before = state.chain.before(a);
     if (!before.fit.is_usable()) continue;
     while (state.accepted().size() > a + 1) {

@@ -8,9 +8,10 @@
 namespace axisfit {
 
 /// Takes out the first effect that has become a simpler one beside those accepted after it, not to
-/// be tried again: the simpler one is in the catalogue. With it go those accepted after it, which
-/// were found beside what it is not. Whether there was one.
-bool drop_degenerate(SearchState& state, const SearchOptions& options);
+/// be tried again. Its plain rival takes its place, in this round; without one, the simpler one is
+/// in the catalogue, and those accepted after it, which were found beside what it is not, go with
+/// it. Whether there was one.
+bool drop_degenerate(SearchState& state, int round, const SearchContext& context);
 
 /// Takes away what is not needed any more, or never was but to a simulation that tracks. Where the
 /// fit stays far from the noise, what the recordings to validate tell alike beside all other

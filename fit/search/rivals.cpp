@@ -120,6 +120,17 @@ std::optional<TriedRival> better_rival(SearchState& state, const Shortlist& scor
   return std::nullopt;
 }
 
+std::optional<Tried> plain_rival(const SearchState& state, std::size_t place,
+                                 const SearchContext& context) {
+  const auto is_plain = [&](const Hypothesis& rival) {
+    return is_plain_beside(rival, state.accepted()[place].hypothesis);
+  };
+  std::optional<Tried> best;
+  for (Tried& rival : try_rivals(state, place, is_plain, context))
+    if (!best || bic_advantage(rival, *best) > 0.0) best = std::move(rival);
+  return best;
+}
+
 std::vector<TriedRival> equal_rivals(SearchState& state, int round, const SearchContext& context) {
   std::vector<Accepted>& accepted = state.chain.accepted();
   if (accepted.empty()) return {};

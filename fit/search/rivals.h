@@ -23,6 +23,11 @@ struct TriedRival {
 std::optional<TriedRival> better_rival(SearchState& state, const Shortlist& scores,
                                        const SearchContext& context);
 
+/// The best of the rivals with one strength and no shape in the place of an accepted hypothesis
+/// that has more.
+std::optional<Tried> plain_rival(const SearchState& state, std::size_t place,
+                                 const SearchContext& context);
+
 /// The equals of all accepted hypotheses, now that all else is known. Rivals without an outcome get
 /// one, of this round.
 std::vector<TriedRival> equal_rivals(SearchState& state, int round, const SearchContext& context);

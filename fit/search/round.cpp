@@ -262,8 +262,7 @@ class RoundTrial {
     const bool may_be_nearby = is_close() && model_.job.options.is_continued();
     Tried tried =
         try_hypothesis(model_.job, entry(place), context_,
-                       {.give_up_above = cost,
-                        .cost_nearby = may_be_nearby ? std::optional(present) : std::nullopt});
+                       {.give_up_above = cost, .before = &model_.fit, .is_nearby = may_be_nearby});
     tried.is_outdone = cost < present && !tried.fit.is_usable() && reduced_cost(tried.fit) > cost;
     if (!tried.is_outdone) known = tried;  // another round may lack what outdid it
     return tried;

@@ -19,6 +19,13 @@ void SearchState::take_out(std::size_t place, FittedModel reduced) {
   chain.set_last(std::move(reduced));
 }
 
+void SearchState::exchange(std::size_t place, Tried other, int round) {
+  outcomes.record(other, &other, round);
+  strike_off(place);
+  chain.accepted().push_back({other.hypothesis});
+  chain.set_last({other.hypothesis.name, std::move(other.job), std::move(other.fit)});
+}
+
 void SearchState::take_out_all(const Rejection& rejection) {
   for (const Accepted& a : chain.accepted()) outcomes.fail(a.hypothesis, rejection);
   chain.restart(chain.declared());

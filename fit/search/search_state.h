@@ -29,6 +29,8 @@ struct SearchState {
   void strike_off(std::size_t place);
   /// Takes it out of the models; that without it is given.
   void take_out(std::size_t place, FittedModel reduced);
+  /// Puts another in its place, with the model that has it; it goes last, where its parameters are.
+  void exchange(std::size_t place, Tried other, int round);
   /// Takes out all that was accepted.
   void take_out_all(const Rejection& rejection);
 

@@ -54,7 +54,10 @@ Accepted accepted_from(const RoundResult& round, const Tried& best, const Search
   Accepted accepted{best.hypothesis, {}, best.replication || best.on_blocks};
   for (const Tried& other : round.models) {
     if (&other == &best || !other.fit.is_usable() || !other.gain.comparable) continue;
-    if (is_clearly_worse(bic_advantage(best, other), options)) continue;
+    // Beside what is accepted later the best may turn out to be no more than the plain one.
+    if (is_clearly_worse(bic_advantage(best, other), options) &&
+        !is_plain_beside(other.hypothesis, best.hypothesis))
+      continue;
     accepted.rivals.push_back(
         {std::make_shared<const Hypothesis>(other.hypothesis), values_in(other)});
   }
@@ -63,12 +66,6 @@ Accepted accepted_from(const RoundResult& round, const Tried& best, const Search
         other.hypothesis->kind != HypothesisKind::transmission)
       accepted.rivals.push_back({other.hypothesis, {{}, other.own.shapes}});
   return accepted;
-}
-
-/// By how much b explains the recordings worse than a, parameters counted.
-double loss_of(const FittedModel& a, const FittedModel& b) {
-  return bic_difference(residual_series(a.job, a.fit), a.job.free.size(),
-                        residual_series(b.job, b.fit), b.job.free.size());
 }
 
 /// The model with another setting of a shape that a law holds, such as its exponent, if one of them
@@ -92,9 +89,9 @@ std::optional<FittedModel> with_better_held(const FittedModel& model, const Hypo
   return best;
 }
 
-/// Looks at the settings of accepted laws again, beside what was accepted since.
-void reconsider_held(SearchState& state, const SearchContext& context) {
-  for (std::size_t a = 0; a + 1 < state.accepted().size(); ++a) {
+/// Looks at the settings of the first so many accepted laws again, beside what was accepted since.
+void reconsider_held(SearchState& state, std::size_t count, const SearchContext& context) {
+  for (std::size_t a = 0; a < count; ++a) {
     const Hypothesis law = state.accepted()[a].hypothesis;
     if (law.kind != HypothesisKind::effect) continue;
     for (std::size_t k = law.estimated_shapes().size(); k < law.shapes.size(); ++k)
@@ -125,7 +122,7 @@ bool add_best(SearchState& state, bool curves, double chance, Rounds& rounds) {
     if (has_contacts(state.current()) && !tracks(state.current().job.options.criterion) &&
         !state.explained())
       state.chain.set_fit(settled(state.current(), rounds.context).fit);
-    reconsider_held(state, rounds.context);
+    reconsider_held(state, state.accepted().size() - 1, rounds.context);
   }
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
   rounds.context.run.report(
@@ -179,11 +176,9 @@ bool exchange(SearchState& state, const Rounds& rounds) {
   Tried& better = found->tried;
   state.outcomes.reject(state.accepted()[found->place].hypothesis, Reason::replaced,
                         better.hypothesis.name);
-  state.outcomes.record(better, &better, rounds.count);
-  // The exchanged effect goes last, where its parameters are.
-  state.strike_off(found->place);
-  state.chain.accepted().push_back({better.hypothesis});
-  state.chain.set_last({better.hypothesis.name, std::move(better.job), std::move(better.fit)});
+  state.exchange(found->place, std::move(better), rounds.count);
+  // One setting of a rival is tried.
+  reconsider_held(state, state.accepted().size(), rounds.context);
   return true;
 }
 
@@ -193,14 +188,14 @@ void add_named(SearchState& state, Rounds& rounds) {
   do {
     while (has_room(state, rounds)) {
       if (add_best(state, false, rounds)) continue;
-      if (drop_degenerate(state, rounds.context.options)) continue;
+      if (drop_degenerate(state, rounds.count, rounds.context)) continue;
       if (may_exchange && !state.accepted().empty()) {
         may_exchange = false;
         if (exchange(state, rounds)) continue;
       }
       if (!add_pair(state, rounds)) break;
     }
-  } while (drop_degenerate(state, rounds.context.options));
+  } while (drop_degenerate(state, rounds.count, rounds.context));
 }
 
 bool is_better(const FittedModel& a, const FittedModel& b, const SearchOptions& options) {
@@ -269,7 +264,7 @@ void find_together(SearchState& state, Rounds& rounds) {
     while (state.current().fit.is_usable() && has_room(state, rounds) && !state.explained() &&
            add_best(state, false, chance, rounds)) {
     }
-  } while (drop_degenerate(state, rounds.context.options));
+  } while (drop_degenerate(state, rounds.count, rounds.context));
   const bool is_new = std::ranges::any_of(state.accepted(), [&](const Accepted& found) {
     return std::ranges::none_of(
         known, [&](const Accepted& other) { return is_same(found.hypothesis, other.hypothesis); });

@@ -24,34 +24,73 @@ FitResult refit_from(Job job, const std::vector<double>& values, const SearchCon
   return refit(job, context);
 }
 
-FitResult final_fit(Job job, const std::vector<double>& values, const SearchContext& context) {
+FitResult polished_fit(Job job, const std::vector<double>& values, const SearchContext& context) {
   set_initial_values(job, values);
-  Job near = job;
-  near.options = recipe::polish(near.options);
-  FitResult fit = estimate(near, context.run.quiet());
+  job.options = recipe::polish(job.options);
+  return estimate(job, context.run.quiet());
+}
+
+FitResult final_fit(Job job, const std::vector<double>& values, const SearchContext& context) {
+  FitResult fit = polished_fit(job, values, context);
   // A minimum that leaves nothing but noise is no wrong one.
-  if (fit.is_usable() && is_fitted_to_noise(residual_series(near, fit))) return fit;
+  if (fit.is_usable() && is_fitted_to_noise(residual_series(job, fit))) return fit;
+  set_initial_values(job, values);
   job.options = recipe::final_fit(job);
   return estimate(job, context.run.quiet());
 }
+
+namespace {
+
+/// A part of the way from these values, of a model without the hypothesis, to where a score puts
+/// it: a whole step may go too far and end in another valley.
+Scored part_of_the_way(Scored start, const std::vector<double>& values) {
+  constexpr double part = 0.1;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    start.others[i] = std::lerp(values[i], start.others[i], part);
+  const std::vector<double>& neutral = start.hypothesis->neutral;
+  for (std::size_t k = 0; k < neutral.size(); ++k)
+    if (std::isfinite(neutral[k]))
+      start.own.strengths[k] = std::lerp(neutral[k], start.own.strengths[k], part);
+  return start;
+}
+
+}  // namespace
 
 Tried try_hypothesis(const Job& job, const Scored& start, const SearchContext& context,
                      const Try& how) {
   Tried tried;
   tried.hypothesis = *start.hypothesis;
   tried.score = start.gain;
-  tried.job = with_hypothesis(job, tried.hypothesis, start.others, start.own);
-  tried.job.options.give_up_above = how.give_up_above;
+  const auto job_from = [&](const Scored& from) {
+    Job with = with_hypothesis(job, tried.hypothesis, from.others, from.own);
+    with.options.give_up_above = how.give_up_above;
+    return with;
+  };
+  tried.job = job_from(start);
   const SearchOptions::Refit& limits = context.options.refit;
   const bool is_other_transmission = tried.hypothesis.kind == HypothesisKind::transmission;
-  if (how.cost_nearby && !is_other_transmission) {
-    Job near = tried.job;
+  const bool is_nearby = how.is_nearby && !is_other_transmission;
+  const auto polish = [&](Job near) {
     near.options = recipe::polish(near.options);
     tried.fit = refit(near, context);
-  }
-  if (!how.cost_nearby || !(reduced_cost(tried.fit) < *how.cost_nearby))
+  };
+  const auto track = [&] {
     tried.fit = refit(tried.job, context,
                       is_other_transmission ? limits.many_iterations : limits.iterations);
+  };
+  const auto is_higher = [&] {
+    return how.before != nullptr && !(reduced_cost(tried.fit) < reduced_cost(*how.before));
+  };
+  // The shapes of what does next to nothing wander.
+  const bool has_strengths_alone =
+      !is_other_transmission && tried.hypothesis.estimated_shapes().empty();
+  if (is_nearby)
+    polish(tried.job);
+  else
+    track();
+  if (has_strengths_alone && is_higher())
+    polish(job_from(part_of_the_way(start, values_of(*how.before))));
+  if (is_nearby && is_higher()) track();
   tried.job.options.give_up_above = job.options.give_up_above;
   tried.residuals = residual_series(tried.job, tried.fit);
   return tried;

@@ -32,17 +32,22 @@ FitResult refit(const Job& job, const SearchContext& context = {});
 /// The same from these values of the free parameters.
 FitResult refit_from(Job job, const std::vector<double>& values, const SearchContext& context = {});
 
-/// Fits with the full accuracy from close by: at once, and where that leaves more than noise, by a
-/// continuation.
+/// Fits with the full accuracy from close by, at once.
+FitResult polished_fit(Job job, const std::vector<double>& values,
+                       const SearchContext& context = {});
+
+/// The same, and where that leaves more than noise, by a continuation.
 FitResult final_fit(Job job, const std::vector<double>& values, const SearchContext& context = {});
 
 /// What a refit with a hypothesis begins with, and has to reach.
 struct Try {
   /// Given up where it would not come below this reduced cost (stage.h).
   double give_up_above = std::numeric_limits<double>::infinity();
-  /// Of a model that is close to the recordings, where the simulation need not track them first;
-  /// none: it has to. What ends above that is tried again, by tracking.
-  std::optional<double> cost_nearby{};
+  /// The fit without the hypothesis: what has no shapes to estimate and ends above it is tried
+  /// again from a part of the way.
+  const FitResult* before = nullptr;
+  /// Whether that is close to the recordings: the simulation need not track them first.
+  bool is_nearby = false;
 };
 
 /// Adds a hypothesis, started where its score puts it, and refits.

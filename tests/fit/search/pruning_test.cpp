@@ -72,12 +72,12 @@ TEST(DropDegenerate, TakesOutWhatHasBecomeASimplerEffect) {
   SearchState state = accepted_in(hidden_effect_named("coulomb_friction").job(),
                                   {{"dahl_friction", {{5.0}, {1e-5}}}});
   ASSERT_TRUE(state.current().fit.parameters.back().uncertainty.at_bound);
-  EXPECT_TRUE(drop_degenerate(state, {}));
+  EXPECT_TRUE(drop_degenerate(state, 2, kContext));
   EXPECT_TRUE(state.accepted().empty());
   ASSERT_EQ(state.degenerate.size(), 1u);
   EXPECT_EQ(state.degenerate[0].name, "dahl_friction");
   EXPECT_EQ(state.outcomes.list()[0].rejection->test, Rejection::Test::bound);
-  EXPECT_FALSE(drop_degenerate(state, {}));
+  EXPECT_FALSE(drop_degenerate(state, 2, kContext));
 }
 
 TEST(DropDegenerate, TakesOutWhatWasFoundBesideIt) {
@@ -88,13 +88,33 @@ TEST(DropDegenerate, TakesOutWhatWasFoundBesideIt) {
       accepted_in(two_recordings(truth, slide(), {"M", "B_a"}),
                   {{"dahl_friction", {{5.0}, {1e-5}}}, {"stroke_spring", {{20.0}, {}}}});
   ASSERT_EQ(names_in(state), (Names{"dahl_friction", "stroke_spring"}));
-  EXPECT_TRUE(drop_degenerate(state, {}));
+  EXPECT_TRUE(drop_degenerate(state, 2, kContext));
   EXPECT_TRUE(state.accepted().empty());
   ASSERT_EQ(state.degenerate.size(), 1u);
   EXPECT_EQ(state.degenerate[0].name, "dahl_friction");
   EXPECT_EQ(state.outcomes.list()[1].hypothesis.name, "stroke_spring");
   EXPECT_EQ(state.outcomes.list()[1].reason, Reason::falls_with);
   EXPECT_EQ(state.outcomes.list()[1].other, "dahl_friction");
+}
+
+TEST(DropDegenerate, PutsThePlainEffectInItsPlace) {
+  Model<double> truth = slide();
+  hidden_effect_named("coulomb_friction").put_into(truth);
+  hidden_effect_named("stroke_spring").put_into(truth);
+  const Job job = two_recordings(truth, slide(), {"M", "B_a"});
+  SearchState state =
+      accepted_in(job, {{"dahl_friction", {{5.0}, {1e-5}}}, {"stroke_spring", {{20.0}, {}}}});
+  ASSERT_EQ(names_in(state), (Names{"dahl_friction", "stroke_spring"}));
+  state.chain.accepted()[0].rivals.push_back(
+      {std::make_shared<const Hypothesis>(*find(catalogue(job, scales()), "coulomb_friction"))});
+  EXPECT_TRUE(drop_degenerate(state, 2, kContext));
+  EXPECT_EQ(names_in(state), (Names{"stroke_spring", "coulomb_friction"}));
+  ASSERT_EQ(state.degenerate.size(), 1u);
+  EXPECT_EQ(state.degenerate[0].name, "dahl_friction");
+  EXPECT_NEAR(state.current().fit.parameters.back().value, 5.0, 0.2);
+  EXPECT_EQ(state.outcomes.list().back().round, 2);
+  EXPECT_EQ(state.outcomes.list().back().reason, Reason::explains_best);
+  EXPECT_FALSE(drop_degenerate(state, 2, kContext));
 }
 
 // A gain of the velocity is most of what is missing. Of what repeats along the motion, only what

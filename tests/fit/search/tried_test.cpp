@@ -6,6 +6,7 @@
 
 #include "fit/search/catalogue.h"
 #include "sim/model.h"
+#include "tests/fit/search/hypotheses.h"
 #include "tests/fit/search/selection.h"
 
 namespace axisfit {
@@ -90,6 +91,24 @@ TEST(Judge, FindsTheShapesOfWhatOneRecordingHasAlone) {
       determination(tried.job, tried.fit, tried.hypothesis, tried.residuals, context.options);
   EXPECT_FALSE(d.at_bound || d.undetermined);
   EXPECT_GT(d.wald, d.required);
+}
+
+// A delay of a second, where four milliseconds are true: the motion is another one.
+TEST(TryHypothesis, StartsFromAPartOfTheWayWhereAWholeStepGoesTooFar) {
+  const Job job = hidden_effect_named("dead_time").job();
+  const FitResult without = estimate(job);
+  Scored start;
+  start.hypothesis =
+      std::make_shared<const Hypothesis>(*find(catalogue(job, scales()), "dead_time"));
+  start.own = {{1.0}, {}};
+  start.others = values_of(without);
+  SearchContext hasty;
+  hasty.options.refit.iterations = 4;
+  EXPECT_GT(reduced_cost(try_hypothesis(job, start, hasty).fit), reduced_cost(without));
+  for (const bool is_nearby : {false, true}) {
+    const Try how{.before = &without, .is_nearby = is_nearby};
+    EXPECT_LT(reduced_cost(try_hypothesis(job, start, hasty, how).fit), reduced_cost(without));
+  }
 }
 
 TEST(RejectionByForce, IsForOneThatRisesInAnyRecording) {
