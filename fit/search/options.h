@@ -41,8 +41,9 @@ struct SearchOptions {
     /// the mean square above which something is: ten times the noise.
     std::array<double, 3> close_gains{1.0, 1.0 / 3.0, 1.0 / 10.0};
     double large_mean_square = 100.0;
-    std::size_t suspects = 5;      ///< that a fit without a search names
-    double least_fraction = 0.02;  ///< of the sum of squares, that a suspect would explain
+    std::size_t suspects = 5;           ///< that a fit without a search names
+    double cause_fraction = 1.0 / 3.0;  ///< of the residual that the likely cause explains
+    double least_fraction = 0.02;       ///< of the sum of squares, that a suspect would explain
   } scoring;
 
   /// Which of the scored hypotheses are worth a refit.

@@ -21,4 +21,10 @@ std::vector<Scored> suspected_effects(const Job& job, const FitResult& fit,
   return suspects;
 }
 
+const Scored* likely_cause(const std::vector<Scored>& suspects,
+                           const SearchOptions::Scoring& options) {
+  if (suspects.empty() || !(suspects.front().fraction >= options.cause_fraction)) return nullptr;
+  return &suspects.front();
+}
+
 }  // namespace axisfit

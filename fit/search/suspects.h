@@ -14,4 +14,9 @@ namespace axisfit {
 std::vector<Scored> suspected_effects(const Job& job, const FitResult& fit,
                                       const SearchContext& context = {});
 
+/// The one that may be called the likely cause; null where the best of them explains too little:
+/// almost anything explains a little of what something else leaves.
+const Scored* likely_cause(const std::vector<Scored>& suspects,
+                           const SearchOptions::Scoring& options = {});
+
 }  // namespace axisfit

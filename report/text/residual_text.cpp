@@ -8,6 +8,7 @@
 #include "base/terminal.h"
 #include "base/text_table.h"
 #include "base/units.h"
+#include "fit/search/suspects.h"
 #include "report/text/report_text.h"
 #include "report/text/words.h"
 
@@ -150,8 +151,12 @@ std::string residual_verdict(const Job& job, const Diagnosis& diagnosis,
           input_noise_text(job));
     if (suspects.empty())
       text += "No effect that axisfit knows explains it. ";
+    else if (const Scored* cause = likely_cause(suspects))
+      text += fmt::format("Most likely cause: {}. ", cause->hypothesis->name);
     else
-      text += fmt::format("Most likely cause: {}. ", suspects.front().hypothesis->name);
+      text += fmt::format(
+          "The cause is unknown: no effect that axisfit knows explains more than {:.2g} % of it. ",
+          100.0 * suspects.front().fraction);
     if (loop_was_asked_for)
       text += "The declared model does not fit: nothing can be said about effects yet.";
     else if (!suspects.empty())

@@ -33,6 +33,16 @@ TEST(SuspectedEffects, AreNoMoreThanAskedFor) {
   EXPECT_TRUE(suspected_effects(job, estimate(job), none).empty());
 }
 
+TEST(LikelyCause, ExplainsAThird) {
+  std::vector<Scored> suspects;
+  EXPECT_EQ(likely_cause(suspects), nullptr);
+  suspects.resize(2);
+  suspects[0].fraction = 0.33;
+  EXPECT_EQ(likely_cause(suspects), nullptr);
+  suspects[0].fraction = 0.34;
+  EXPECT_EQ(likely_cause(suspects), &suspects[0]);
+}
+
 TEST(SuspectedEffects, AreNoneOfACleanRecording) {
   const Job job = two_recordings(slide(), slide(), {"M", "B_a"});
   EXPECT_TRUE(suspected_effects(job, estimate(job)).empty());

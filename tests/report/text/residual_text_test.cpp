@@ -144,6 +144,12 @@ TEST(ResidualTextTest, TheVerdictNamesTheWorstSignalAndItsCause) {
   friction.name = "coulomb_friction";
   suspects.resize(2);
   suspects[0].hypothesis = std::make_shared<const Hypothesis>(friction);
+  suspects[0].fraction = 0.049;
+  EXPECT_EQ(verdict(diagnosis),
+            "Unexplained: up to 12.3 % of the residual, in the velocity of judged. The cause is "
+            "unknown: no effect that axisfit knows explains more than 4.9 % of it. To test the "
+            "suspected effects, use --close-loop.");
+  suspects[0].fraction = 0.4;
   EXPECT_EQ(verdict(diagnosis),
             "Unexplained: up to 12.3 % of the residual, in the velocity of judged. Most likely "
             "cause: coulomb_friction. To test the suspected effects, use --close-loop.");
