@@ -1,6 +1,7 @@
 #include "fit/run.h"
 
 #include <algorithm>
+#include <chrono>
 #include <initializer_list>
 #include <stdexcept>
 
@@ -199,6 +200,27 @@ void find_model_errors(RunResult& result, const RunContext&) {
   if (result.selection) find_rival_errors(*result.selection);
 }
 
+/// After a stop, what linear algebra tells, while the user waits: first scatter, which tells how
+/// long that takes, too.
+void find_errors_after_stop(RunResult& result) {
+  constexpr double kWait = 0.6;  // s, altogether
+  constexpr double kMore = 2.0;  // times as long for both gains
+  if (!result.grade.is_usable()) return;
+  FitResult& fit = final_fit(result);
+  const auto begin = std::chrono::steady_clock::now();
+  result.scatter = add_scatter(result.job(), fit.parameters, fit.observer_gain);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  const bool in_time = (1.0 + kMore) * taken.count() < kWait;
+  if (in_time) add_linear_gain_errors(result.job(), fit);
+  result.errors_known = in_time || !tracks(result.job().options.criterion)
+                            ? ErrorsKnown::to_first_order
+                            : ErrorsKnown::no;
+  // A finished run might have found less.
+  if (result.grade.grade == Grade::explained)
+    result.grade = {
+        .grade = Grade::usable, .reason = FitGrade::Reason::stopped, .uses = result.grade.uses};
+}
+
 void combine_errors(const Job& job, FitResult& fit) {
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     ParameterResult& p = fit.parameters[i];
@@ -209,6 +231,9 @@ void combine_errors(const Job& job, FitResult& fit) {
 void combine_errors(RunResult& result) {
   FitResult& fit = final_fit(result);
   combine_errors(result.job(), fit);
+  if (result.errors_known == ErrorsKnown::no)
+    for (ParameterResult& p : fit.parameters)
+      p.uncertainty = {.error_not_known = true, .inflation = p.uncertainty.inflation};
   // The errors of a wrong model mean nothing.
   if (result.grade.grade == Grade::model_wrong)
     for (ParameterResult& p : fit.parameters)
@@ -334,6 +359,7 @@ RunResult run(Job job, const RunOptions& options, const RunContext& context) {
   result.checks = check_recordings(result.baseline);
   judge(result);
   run_stages(result, timed, {design_experiments, find_gain_errors, find_model_errors});
+  if (result.interrupted) find_errors_after_stop(result);
   score_models(result);
   combine_errors(result);
   run_stages(result, timed, {predict, compare});

@@ -54,6 +54,13 @@ struct RunOptions {
   std::vector<OtherModel> others{};         ///< of the same machine, to be compared
 };
 
+/// What a stop leaves of the errors of the estimates.
+enum class ErrorsKnown {
+  fully,           ///< there was no stop, or a later one
+  to_first_order,  ///< moves to other observer gains by one step of least squares, no rivals
+  no,              ///< there was no time even for that: estimates have no error
+};
+
 struct RunResult {
   Job baseline;  ///< the job as given, with the noise if that was estimated
   RunOptions options;
@@ -73,7 +80,8 @@ struct RunResult {
   FitGrade grade;                               ///< of the final model, with those for these
   std::optional<SecondOpinion> second_opinion;  ///< of the final model, where there can be one
   std::optional<Scatter> scatter;               ///< of the final model, in its errors
-  std::optional<AxisUncertainty> uncertainty;   ///< of the final model, where that is usable
+  ErrorsKnown errors_known = ErrorsKnown::fully;
+  std::optional<AxisUncertainty> uncertainty;    ///< of the final model, where that is usable
   std::vector<RecordingPrediction> predictions;  ///< by the final model, where asked for
   std::optional<MotionPrediction> motion;        ///< by the final model, where asked for
   std::string no_prediction;                     ///< why there can be none

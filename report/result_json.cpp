@@ -5,6 +5,7 @@
 
 #include "base/version.h"
 #include "fit/data/standstill.h"
+#include "fit/search/suspects.h"
 #include "io/config/axis_file.h"
 #include "report/text/names.h"
 #include "report/text/report_text.h"
@@ -433,11 +434,13 @@ Json residual_json(const Job& job, const Diagnosis& diagnosis,
     if (!found.is_null()) force.update(found);
     if (!found.is_null()) forces.push_back(std::move(force));
   }
-  return {
+  Json json{
       {"explained", diagnosis.explained},
       {"tests", list(diagnosis.tests, [&](const SeriesTest& t) { return test_json(job, t); })},
-      {"suspected_effects", list(suspects, [&](const Scored& s) { return suspect_json(job, s); })},
-      {"missing_force", std::move(forces)}};
+      {"suspected_effects", list(suspects, [&](const Scored& s) { return suspect_json(job, s); })}};
+  if (const Scored* cause = likely_cause(suspects)) json["likely_cause"] = cause->hypothesis->name;
+  json["missing_force"] = std::move(forces);
+  return json;
 }
 
 Json closed_form_term_json(const ClosedForm::Term& term) {
@@ -585,6 +588,18 @@ Json recording_check_json(const Job& job, const Recording& recording, const Reco
           {"warnings", warnings_for(job, recording, check)}};
 }
 
+const char* errors_known_name(ErrorsKnown known) {
+  switch (known) {
+    case ErrorsKnown::fully:
+      return "fully";
+    case ErrorsKnown::to_first_order:
+      return "to first order";
+    case ErrorsKnown::no:
+      return "no";
+  }
+  return "";
+}
+
 }  // namespace
 
 Json result_json(const RunResult& run_result) {
@@ -605,6 +620,7 @@ Json result_json(const RunResult& run_result) {
             {"grade", grade_name(run_result.grade.grade)},
             {"uses", uses_json(job, run_result.grade.uses)},
             {"interrupted", run_result.interrupted},
+            {"errors_known", errors_known_name(run_result.errors_known)},
             {"time_limit_reached", run_result.time_limit.has_value()},
             {"verdict", grade_text(job, run_result.grade, fit)},
             {"message", fit.message},

@@ -21,6 +21,10 @@ std::vector<FitResult> add_gain_errors(const Job& job, FitResult& fit,
                                        const RunContext& context = {},
                                        const ErrorOptions& options = {});
 
+/// The moves to first order: by one step of least squares at each of these gains, where there is no
+/// time for fits. Costs two residuals with their Jacobians.
+void add_linear_gain_errors(const Job& job, FitResult& fit, const ErrorOptions& options = {});
+
 /// The gain of the other fit whose estimates predict the recordings to validate best, simulated
 /// freely; none where none does clearly better than the fit.
 std::optional<double> better_gain(const Job& job, const FitResult& fit,

@@ -46,6 +46,7 @@ struct FitGrade {
     force,       ///< the missing force is too large a part of the drive's
     drift,       ///< the forces are right, but a free run drifts
     residual,    ///< is larger than the noise
+    stopped,     ///< the residual is no more than noise, but the errors were not found in time
     none,        ///< nothing speaks against the model
   };
   Reason reason = Reason::solver;

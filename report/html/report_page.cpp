@@ -131,8 +131,8 @@ class Page {
     for (const Discrimination& s : run_result_.discriminations)
       all += paragraph_of(discrimination_text(s, job_.vocabulary()));
     if (run_result_.interrupted)
-      all += paragraph_of(fmt::format("Stopped{} before everything requested was finished.",
-                                      stop_reason(run_result_)));
+      all += paragraph_of(fmt::format("Stopped{} before everything requested was finished. {}",
+                                      stop_reason(run_result_), stopped_errors_text(run_result_)));
     const auto determined = std::ranges::count_if(
         fit_.parameters, [](const ParameterResult& p) { return p.uncertainty.determined; });
     const bool closed = run_result_.selection && run_result_.selection->models.size() > 1;
@@ -248,6 +248,7 @@ class Page {
           return "bound";
         case ParameterVerdict::at_zero:
         case ParameterVerdict::not_determined:
+        case ParameterVerdict::error_not_known:
         case ParameterVerdict::of_wrong_model:
           return "open";
         case ParameterVerdict::weakly_determined:

@@ -179,9 +179,12 @@ std::string series_name(const Recording& recording, const char* role, Signal sig
 std::string report_text(const RunResult& run_result, bool colour) {
   const Job& job = run_result.job();
   const FitResult& result = run_result.fit();
+  std::string stopped_errors = stopped_errors_text(run_result);
+  if (!stopped_errors.empty()) stopped_errors = paragraph(stopped_errors, 2);
   std::string text = fmt::format(
       "{}\n{}{}\n{}\n{}\n", recordings_text(run_result), parameters_text(run_result),
-      uncertainty_text(job, result) + second_opinion_text(run_result) + starts_text(run_result),
+      uncertainty_text(job, result) + stopped_errors + second_opinion_text(run_result) +
+          starts_text(run_result),
       legend_text(job, result, colour),
       run_result.selection ? selection_text(run_result, colour) : errors_text(job, result));
   text += horizon_text(run_result) + scatter_text(run_result) + prediction_text(run_result) +

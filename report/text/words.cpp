@@ -275,6 +275,7 @@ std::string grade_text(const Job& job, const FitGrade& grade, const FitResult& f
           heading, words_on(vocabulary, "forces"), uses_text(job, grade.uses),
           followed_text(grade.percent, signal()));
     case residual:
+    case stopped:
     case none:
       break;
   }
@@ -282,7 +283,10 @@ std::string grade_text(const Job& job, const FitGrade& grade, const FitResult& f
   std::string text =
       fmt::format("{}: {}{} chi-square {:.4g} on the fitted data{}", heading, uses,
                   uses.empty() ? "reduced" : " Reduced", fit.reduced_chi_square,
-                  grade.reason == none ? ", and no signal shows more than its noise." : ".");
+                  grade.reason == none      ? ", and no signal shows more than its noise."
+                  : grade.reason == stopped ? ", and no signal shows more than its noise, but the "
+                                              "run was stopped before all errors were known."
+                                            : ".");
   std::vector<std::string> undetermined;
   for (const ParameterId& id : fit.verdict.undetermined) undetermined.push_back(name_of(job, id));
   if (!undetermined.empty())
@@ -575,6 +579,20 @@ std::string stop_reason(const RunResult& run_result) {
                                : "";
 }
 
+std::string stopped_errors_text(const RunResult& run_result) {
+  if (run_result.errors_known == ErrorsKnown::fully) return "";
+  if (run_result.errors_known == ErrorsKnown::no)
+    return "The run was stopped before the standard errors were known: at another observer gain "
+           "the estimates may be others.";
+  std::vector<std::string> lacks;
+  if (tracks(run_result.job().options.criterion))
+    lacks.push_back("allow for other observer gains by one step of least squares instead of fits");
+  if (run_result.options.select_effects)
+    lacks.push_back("do not allow for other effects that may explain as much");
+  if (lacks.empty()) return "";
+  return fmt::format("The run was stopped: standard errors {}.", fmt::join(lacks, ", and "));
+}
+
 std::string_view verdict_name(ParameterVerdict verdict) {
   switch (verdict) {
     case ParameterVerdict::determined:
@@ -587,6 +605,8 @@ std::string_view verdict_name(ParameterVerdict verdict) {
       return "not distinguishable from zero";
     case ParameterVerdict::at_bound:
       return "at bound";
+    case ParameterVerdict::error_not_known:
+      return "error not known";
     case ParameterVerdict::of_wrong_model:
       return "of a wrong model";
   }

@@ -68,10 +68,14 @@ bool drives_by_force(const Recording& recording, const Model<double>& model);
 /// "noise of 0.02 V in the command, estimated from its samples": the largest of the recordings.
 std::string input_noise_text(const Job& job);
 
+/// What the errors of a stopped run lack, a sentence or two; empty where they lack nothing.
+std::string stopped_errors_text(const RunResult& run_result);
+
 /// " by the time limit of 60 s", or nothing: to follow "stopped".
 std::string stop_reason(const RunResult& run_result);
 
-/// "determined", "weakly determined", "not determined", "at bound", "of a wrong model"
+/// "determined", "weakly determined", "not determined", "at bound", "error not known", "of a wrong
+/// model"
 std::string_view verdict_name(ParameterVerdict verdict);
 
 /// "accepted", "undecided", "rejected"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "tests/fit/search/selection.h"
+#include "tests/fit/estimate/tracking_job.h"
 
 namespace axisfit {
 namespace {
@@ -96,6 +96,47 @@ Job with_a_short_recording_to_fit() {
   Job job = two_recordings(truth, declared, {"M", "B_a"}, 6.0, signals);
   job.recordings[0] = recorded(truth, fit_motion(3.0), 1.2, 2, signals);
   return job;
+}
+
+/// A run that is stopped when it comes to a phase that begins so.
+RunResult stopped_at(const Job& job, const std::string& phase, const RunOptions& options = {}) {
+  StopFlag stop;
+  const auto progress = [&](const Progress& now) {
+    if (now.phase.starts_with(phase)) stop.set();
+  };
+  RunResult result = run(job, options, {.stop = &stop, .progress = progress});
+  EXPECT_TRUE(result.interrupted);
+  return result;
+}
+
+// The friction moves the estimates when the gain is another one: that is most of their error.
+TEST(StoppedRun, IsNoSurerThanAFinishedOne) {
+  const Job job = tracking_job(true, 20.0);
+  const RunResult whole = run(job);
+  EXPECT_EQ(whole.errors_known, ErrorsKnown::fully);
+  ASSERT_TRUE(whole.fit().parameters[0].budget.gain);
+  for (const char* phase : {"analysing the residual", "does the observer gain matter?"}) {
+    const RunResult stopped = stopped_at(job, phase);
+    EXPECT_EQ(stopped.errors_known, ErrorsKnown::to_first_order);
+    EXPECT_EQ(stopped.grade.grade, Grade::usable);
+    for (std::size_t i = 0; i < job.free.size(); ++i) {
+      const ParameterResult &early = stopped.fit().parameters[i], &late = whole.fit().parameters[i];
+      EXPECT_EQ(early.value, late.value);
+      EXPECT_EQ(early.budget.scatter.has_value(), late.budget.scatter.has_value());
+      EXPECT_GT(early.uncertainty.standard_error, 0.7 * late.uncertainty.standard_error);
+      EXPECT_EQ(early.budget.gain.has_value(), late.budget.gain.has_value());
+      if (!late.budget.gain) continue;
+      EXPECT_GT(early.uncertainty.standard_error, 1.5 * early.budget.sampling.standard_error);
+    }
+  }
+}
+
+TEST(StoppedRun, IsUsableAtMost) {
+  const Job job = tracking_job(false, 10.0);
+  EXPECT_EQ(run(job).grade.grade, Grade::explained);
+  const RunResult stopped = stopped_at(job, "does the observer gain matter?");
+  EXPECT_EQ(stopped.grade.grade, Grade::usable);
+  EXPECT_EQ(stopped.grade.reason, FitGrade::Reason::stopped);
 }
 
 TEST(Run, ExchangesTheRolesWhereOnlyTheRecordingToValidateShowsAnEffect) {

@@ -3,21 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "fit/errors/gain_error.h"
-#include "tests/fit/search/selection.h"
+#include "tests/fit/estimate/tracking_job.h"
 
 namespace axisfit {
 namespace {
-
-/// 30 s of a slide's position, with or without dry friction that the job does not have, tracked at
-/// 9 1/s.
-Job tracking_job(bool has_friction) {
-  HiddenEffect friction = hidden_effect_named("coulomb_friction");
-  if (!has_friction) friction.strengths[0].second = 0.0;
-  Job job = two_recordings(slide(), slide(), {"M", "B_a"});
-  job.recordings = {recorded(friction.truth(), fit_motion(), 30.0, 3, {Signal::position})};
-  job.options.criterion = Tracking{9.0};
-  return job;
-}
 
 /// Of the parameters, those that move by more than their errors.
 int moved(const FitResult& fit, const std::vector<FitResult>& others) {
@@ -55,6 +44,39 @@ TEST(OtherGains, AreOfUsableFitsWithFixedObserversAlone) {
   fit.verdict.kind = FitVerdict::Kind::usable;
   job.options.criterion = FreeRun{};
   EXPECT_TRUE(fits_at_other_gains(job, fit).empty());
+}
+
+// One step from the fit tells of the move what the fits at those gains do.
+TEST(LinearGainErrors, AreAboutThoseOfTheFits) {
+  const Job job = tracking_job(true);
+  FitResult fit = estimate(job), linear = fit;
+  add_gain_errors(job, fit);
+  add_linear_gain_errors(job, linear);
+  int moves = 0;
+  for (std::size_t i = 0; i < job.free.size(); ++i) {
+    const auto& exact = fit.parameters[i].budget.gain;
+    const auto& step = linear.parameters[i].budget.gain;
+    ASSERT_EQ(exact.has_value(), step.has_value());
+    if (!exact) continue;
+    ++moves;
+    EXPECT_EQ(step->observer_gain, exact->observer_gain);
+    const double value = fit.parameters[i].value;
+    EXPECT_NEAR(step->value - value, exact->value - value, 0.3 * std::abs(exact->value - value));
+  }
+  EXPECT_GT(moves, 0);
+}
+
+TEST(LinearGainErrors, AreNoneOfACompleteModelOrAFreeRun) {
+  const auto has_any = [](const Job& job) {
+    FitResult fit = estimate(job);
+    add_linear_gain_errors(job, fit);
+    return std::ranges::any_of(fit.parameters,
+                               [](const ParameterResult& p) { return p.budget.gain.has_value(); });
+  };
+  EXPECT_FALSE(has_any(tracking_job(false)));
+  Job free = tracking_job(true);
+  free.options.criterion = FreeRun{};
+  EXPECT_FALSE(has_any(free));
 }
 
 /// A fit that predicts the recording to validate with this error.
