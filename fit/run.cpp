@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "base/parallel.h"
+#include "fit/data/recording_warnings.h"
 #include "fit/data/validation.h"
 #include "fit/errors/guesses.h"
 #include "fit/errors/hold_shift.h"
@@ -67,6 +68,10 @@ void exchange_roles(RunResult& result, const RunContext& context) {
     return;
   std::optional<ExchangedSearch> found = search_with_exchanged_roles(result.baseline, context);
   if (!found) return;
+  if (found->selection.cut_short) {
+    result.selection->cut_short = true;
+    return;
+  }
   result.roles_exchanged = true;
   result.baseline = std::move(found->baseline);
   result.first = std::move(found->first);
@@ -147,8 +152,26 @@ FitGrade grade_with_other_days(const RunResult& result) {
   return grade_of(result.job(), fit, diagnosis);
 }
 
+/// A fit can follow one of two signals that contradict each other to its noise, and be wrong. Where
+/// it follows neither, that is why.
+void look_for_contradictions(RunResult& result) {
+  using enum FitGrade::Reason;
+  FitGrade& grade = result.grade;
+  if (grade.grade > Grade::model_wrong || grade.reason == drift) return;
+  const Job& job = result.baseline;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r)
+    for (const RecordingWarning& w : warnings_of(job, job.recordings[r], result.checks[r]))
+      if (const auto* wrong = std::get_if<warning::WrongRate>(&w))
+        grade = {.grade = std::max(grade.grade, Grade::usable),
+                 .reason = contradiction,
+                 .recording = r,
+                 .signal = wrong->rate.rate,
+                 .uses = grade.uses};
+}
+
 void judge(RunResult& result) {
   result.grade = grade_with_other_days(result);
+  look_for_contradictions(result);
   // Something is missing, though it cannot be told what.
   if (result.grade.grade == Grade::explained && result.selection &&
       (!result.selection->verdict.undecided.empty() ||

@@ -246,7 +246,7 @@ void collect_guesses(JobDraft& draft) {
     };
     list_guess(recording.guess.time);
     for (const GuessedColumn& c : recording.guess.columns)
-      if (draft.is_measured(c) || &c == &recording.input_column())
+      if (draft.is_measured(c) || c.contradicts || &c == &recording.input_column())
         list_guess(c);
       else if (!c.idle && c.kind != Kind::supply)
         unused.insert(c.title());

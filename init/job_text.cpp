@@ -201,25 +201,26 @@ std::string recording_text(const JobDraft& draft, const DraftRecording& recordin
   std::vector<std::string> unused = guess.unused;
   for (const GuessedColumn& c : guess.columns) {
     if (&c == &input || c.kind == Kind::supply) continue;
-    if (c.idle) {
+    if (c.idle && !c.contradicts) {
       text += reasons_text(c, 6) +
               fmt::format("      # {}: {}\n", name_of(draft, c.kind), column_map(c, c.unit));
       continue;
     }
-    if (!draft.is_measured(c)) {
+    if (!c.idle && !draft.is_measured(c)) {
       unused.push_back(c.column);
       continue;
     }
     GuessedColumn written = c;
-    const bool compared = c.kind == Kind::position && draft.is_rounded_away(c, guess);
-    if (compared)
+    const bool rounded_away = c.kind == Kind::position && draft.is_rounded_away(c, guess);
+    if (rounded_away)
       written.reasons.push_back(
           fmt::format("compared only: its resolution of {:.3g} {} is not noise, and the velocity "
                       "carries the same information",
                       resolution_of(c.values), unit_on(draft.vocabulary(), "m")));
     text += reasons_text(written, 6);
-    text += fmt::format("      {}: {}\n", name_of(draft, c.kind),
-                        compared ? column_map(c, c.unit, {"fit", "false"}) : column_map(c, c.unit));
+    text += fmt::format(
+        "      {}: {}\n", name_of(draft, c.kind),
+        rounded_away || c.idle ? column_map(c, c.unit, {"fit", "false"}) : column_map(c, c.unit));
   }
   text += channels_text(draft, guess.channels, unused);
   if (!unused.empty()) text += comment(fmt::format("Not used: {}", fmt::join(unused, ", ")), 4);

@@ -38,6 +38,33 @@ double followed_percent(double variance, const SignalError& error, double noisy_
   return 100.0 * (1.0 - std::sqrt(unexplained / std::max(variance - noise, 0.0)));
 }
 
+/// Whether a constant explains the signal as well as any model, see is_explained().
+bool stands_still(const Recording& recording, const Measurement& measurement,
+                  const GradeOptions& options) {
+  ResidualSeries about_mean;
+  about_mean.noise = measurement.noise;
+  about_mean.noise_time = noise_correlation_time(measurement);
+  double mean = 0.0;
+  for (std::size_t i = 0; i < measurement.values.size(); ++i)
+    if (recording.fits(measurement, i)) about_mean.values.push_back(measurement.values[i]);
+  for (const double x : about_mean.values)
+    mean += x / static_cast<double>(about_mean.values.size());
+  for (double& x : about_mean.values) x = (x - mean) / measurement.sigma;
+  return !about_mean.values.empty() && is_explained(about_mean, options);
+}
+
+/// Whether no fitted signal shows a motion: then any model, with any parameters, does as well.
+bool stands_still(const Job& job, const GradeOptions& options) {
+  bool any = false;
+  for (const Recording& recording : job.recordings)
+    for (const Measurement& m : recording.measurements) {
+      if (recording.role != Role::fit || !m.fitted) continue;
+      if (!stands_still(recording, m, options)) return false;
+      any = true;
+    }
+  return any;
+}
+
 /// The worst signal of the free-running simulation.
 FitGrade worst_simulation(const Job& job, const FitResult& fit, const GradeOptions& options) {
   FitGrade worst{.reason = FitGrade::Reason::simulation, .percent = 100.0};
@@ -132,6 +159,7 @@ FitGrade grade_without_uses(const Job& job, const FitResult& fit,
     informed =
         informed || is_informed(job.free[i], fit.parameters[i].uncertainty, options.informed_part);
   if (!informed) return graded(Grade::nothing_determined, {.reason = parameters});
+  if (stands_still(job, options)) return graded(Grade::nothing_determined, {.reason = standstill});
   const FitGrade simulation_found = worst_simulation(job, fit, options);
   const FitGrade force_found = diagnosis ? worst_force(*diagnosis) : FitGrade{};
   if (force_found.percent > options.largest_force) return graded(Grade::model_wrong, force_found);

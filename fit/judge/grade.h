@@ -40,14 +40,16 @@ FitUses uses_of(const Job& job, const FitResult& fit, const std::optional<Diagno
 struct FitGrade {
   Grade grade = Grade::not_converged;
   enum class Reason {
-    solver,      ///< FitResult::verdict tells why there is no minimum
-    parameters,  ///< none is determined
-    simulation,  ///< follows a signal too badly
-    force,       ///< the missing force is too large a part of the drive's
-    drift,       ///< the forces are right, but a free run drifts
-    residual,    ///< is larger than the noise
-    stopped,     ///< the residual is no more than noise, but the errors were not found in time
-    none,        ///< nothing speaks against the model
+    solver,         ///< FitResult::verdict tells why there is no minimum
+    parameters,     ///< none is determined
+    standstill,     ///< no fitted signal changes by more than its noise
+    simulation,     ///< follows a signal too badly
+    force,          ///< the missing force is too large a part of the drive's
+    drift,          ///< the forces are right, but a free run drifts
+    residual,       ///< is larger than the noise
+    contradiction,  ///< a recorded rate is not the derivative of the other signal
+    stopped,        ///< the residual is no more than noise, but the errors were not found in time
+    none,           ///< nothing speaks against the model
   };
   Reason reason = Reason::solver;
   std::size_t recording = 0;         ///< that is worst in this respect

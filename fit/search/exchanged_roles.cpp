@@ -37,7 +37,8 @@ std::optional<ExchangedSearch> search_with_exchanged_roles(const Job& baseline,
   SearchOptions options;
   options.far_from_noise.of_model = options.far_from_noise.of_model_exchanged;
   found.selection = select_effects(found.baseline, found.first, options, context);
-  if (found.selection.interrupted || found.selection.cut_short) throw Interrupted();
+  if (found.selection.interrupted) throw Interrupted();
+  if (found.selection.cut_short) return found;
   if (found.selection.verdict.kind != SelectionVerdict::Kind::effects_accepted) return std::nullopt;
   return found;
 }

@@ -20,7 +20,8 @@ struct ExchangedSearch {
 /// these never reach. So where a search finds nothing, one more fits those to validate: again what
 /// was not fitted decides. A second try finds more by chance, so more is asked for
 /// (SearchOptions::FarFromNoise). None where recordings differ in their fitted signals, their roles
-/// cannot be exchanged, or no effect is accepted. Throws Interrupted.
+/// cannot be exchanged, or no effect is accepted; one that was cut short found nothing yet. Throws
+/// Interrupted.
 std::optional<ExchangedSearch> search_with_exchanged_roles(const Job& baseline,
                                                            const RunContext& context = {});
 

@@ -138,6 +138,7 @@ Job with_hypothesis(const Job& job, const Hypothesis& hypothesis, std::span<cons
     if (i < hypothesis.estimated_shapes().size() && !fixed_shapes)
       extended.free.push_back(free_shape(job, hypothesis, i, own.shapes[i]));
   }
+  if (hypothesis.kind == transmission) limit_stiffness(extended);
   return extended;
 }
 

@@ -70,9 +70,12 @@ void review(SearchState& state, const Rounds& rounds, EffectSelection& selection
 void review_stopped(SearchState& state, const Rounds& rounds, EffectSelection& selection) {
   selection.interrupted = true;
   selection.substitutions.clear();
-  if (const auto rejection = rejection_of_all(state, rounds.context.options))
-    state.take_out_all(*rejection);
-  drop_all_of_a_misfit(state, selection.verdict);
+  try {
+    if (const auto rejection = rejection_of_all(state, rounds.context.options))
+      state.take_out_all(*rejection);
+    drop_all_of_a_misfit(state, selection.verdict);
+  } catch (const Interrupted&) {  // whether the model explains everything takes fits to tell
+  }
 }
 
 /// Effects that were rejected for their size alone, in the last round.
@@ -146,7 +149,12 @@ SearchState searched(SearchState declared, Rounds& rounds) {
   RunContext& context = rounds.context.run;
   const StopFlag* const stop = context.stop;
   if (context.end_search != nullptr) context.stop = context.end_search;
-  SearchState found = search(std::move(declared), rounds);
+  SearchState found = declared;
+  try {
+    found = search(std::move(declared), rounds);
+  } catch (const Interrupted&) {
+    found.interrupted = true;
+  }
   context.stop = stop;
   return found;
 }

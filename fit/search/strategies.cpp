@@ -238,6 +238,16 @@ bool is_nearly_exact(const SearchState& state, const SearchOptions& options) {
   return !state.accepted().empty() && is_near_noise(residual_series(last.job, last.fit), options);
 }
 
+/// Whether a search is at its end: it was stopped, if only while this was asked, or has explained
+/// everything.
+bool is_over(SearchState& state) {
+  try {
+    return state.interrupted || state.explained();
+  } catch (const Interrupted&) {
+    return state.interrupted = true;
+  }
+}
+
 /// The state that a strategy ends in, or if that is stopped the state before it.
 template <class Strategy>
 SearchState finished(const SearchState& before, Strategy&& strategy) {
@@ -302,15 +312,14 @@ SearchState with_named_effects(const SearchState& declared, bool tracks, Rounds&
     } catch (const Interrupted&) {
       best.interrupted = true;
     }
-    if (best.interrupted || (best.explained() && is_all_of_the_machine(best))) return best;
+    if (is_over(best) && (best.interrupted || is_all_of_the_machine(best))) return best;
     SearchState other = named(declared, rounds);
-    if (!other.interrupted && other.explained()) return other;
+    if (is_over(other) && !other.interrupted) return other;
     return better_of(std::move(best), std::move(other));
   }
   SearchState best = named(declared, rounds);
   // What leaves next to nothing masks nothing.
-  if (best.interrupted || best.explained() || tracks || is_nearly_exact(best, options) ||
-      is_fitted_to_noise(best))
+  if (is_over(best) || tracks || is_nearly_exact(best, options) || is_fitted_to_noise(best))
     return best;
   SearchState other = finished(best, [&](const SearchState& s) { return together(s, rounds); });
   return better_of(std::move(best), std::move(other));
@@ -364,7 +373,7 @@ SearchState search(SearchState declared, Rounds& rounds) {
   // effects that imitate a part of it.
   const bool tracks = axisfit::tracks(declared.chain.declared().job.options.criterion);
   SearchState best = with_named_effects(declared, tracks, rounds);
-  if (best.interrupted || best.explained() || is_fitted_to_noise(best)) return best;
+  if (is_over(best) || is_fitted_to_noise(best)) return best;
   // No curve takes the place of what leaves next to nothing.
   const bool is_exact = is_nearly_exact(best, options);
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "fit/data/recording_check.h"
 #include "fit/search/options.h"
 
 namespace axisfit {
@@ -114,6 +115,24 @@ void give_backlash(Job& job, double J_m) {
     p.lower = std::min(p.lower, 0.01 * p.initial);  // it was one of motor and arm, as what is known
     p.prior.reset();
   }
+}
+
+void limit_stiffness(Job& job) {
+  const auto free = [&](std::string_view quantity) {
+    return std::ranges::find(job.free, index_of(quantity), &FreeParameter::quantity);
+  };
+  const auto stiffness = free("k_g");
+  if (stiffness == job.free.end()) return;
+  double interval = INFINITY;
+  for (const Recording& r : job.recordings)
+    if (r.role == Role::fit) interval = std::min(interval, sampling(r.times).interval);
+  const auto M = free("M");
+  const double arm = M == job.free.end() ? job.model.axis.M : M->initial;
+  const double motor = job.model.axis.J_m / std::pow(motor_radius(job.model), 2);
+  const double stiffest = coupling(motor, arm, 0.5 / interval).stiffness;
+  if (!(stiffest > stiffness->lower)) return;
+  stiffness->upper = std::min(stiffness->upper, stiffest);
+  stiffness->initial = std::min(stiffness->initial, stiffness->upper);
 }
 
 double mass_of_motor(const Structure& declared, const Model<double>& fitted) {

@@ -23,6 +23,11 @@ std::vector<Hypothesis> transmission_hypotheses(const Job& job, const SearchScal
 /// armature inertia J_m, kg m^2, the free M and the axis' own become that of the arm alone.
 void give_backlash(Job& job, double J_m);
 
+/// Keeps a free k_g of a job below the stiffness at which motor and arm swing with half the
+/// sampling frequency of the densest recording that is fitted. What swings faster does not show: it
+/// stands for small errors of other kinds, and costs a simulation steps as short.
+void limit_stiffness(Job& job);
+
 /// What the arm's mass M of a fitted model lacks of the M of the declared job: the motor's part,
 /// kg, where the model has backlash and the job, driven by a force source, is rigid. Else zero.
 double mass_of_motor(const Structure& declared, const Model<double>& fitted);

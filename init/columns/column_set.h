@@ -25,6 +25,7 @@ struct GuessedColumn {
   bool negative = false;               ///< its sign is to be turned
   std::vector<std::string> reasons{};  ///< what was measured, sentences without a full stop
   bool idle = false;                   ///< told by another one, and more precisely
+  bool contradicts = false;            ///< another one, by a factor that no unit explains
   bool guessed = false;                ///< something of it neither name nor measurement says
   bool sized_by_range = false;         ///< its unit was guessed, by how large its values are
   double range = 0.0;                  ///< how large they are at most, as stored

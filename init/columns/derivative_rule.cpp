@@ -36,12 +36,15 @@ void size_rate(UnscaledColumn& rate, const UnscaledColumn& of, double size_of, d
   if (rate.answered && rate.size > 0.0) return;
   if (rate.size > 0.0 && std::abs(std::log(size / rate.size)) < kSameUnit) {
     rate.reason(fmt::format("{}, as expected for {}", measured, rate.named));
+  } else if (const auto unit = unit_of_size(rate.column.kind, size, of.joint);
+             rate.size > 0.0 && unit) {
+    rate.guess(fmt::format("the header says {}, but it is {}: taken as {}", rate.named, measured,
+                           unit->text));
+    rate.set_unit(*unit);
   } else if (rate.size > 0.0) {
-    const auto unit = unit_of_size(rate.column.kind, size, of.joint);
-    rate.guess(fmt::format("the header says {}, but it is {}: {}", rate.named, measured,
-                           unit ? fmt::format("taken as {}", unit->text)
-                                : fmt::format("a factor of {:.4g} makes them agree", size)));
-    unit ? rate.set_unit(*unit) : rate.set_size(round_to_digits(size, 4), of.joint);
+    rate.column.contradicts = true;
+    rate.guess(fmt::format("it is {}, which no unit explains: one of the two has a wrong scale",
+                           measured));
   } else {
     take_ratio(rate, size, measured, of.joint);
   }

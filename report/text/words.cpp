@@ -248,6 +248,11 @@ std::string grade_text(const Job& job, const FitGrade& grade, const FitResult& f
       return heading +
              ": these recordings determine none of the free parameters. Record a motion that shows "
              "them, or free fewer.";
+    case standstill:
+      return heading +
+             ": no fitted signal changes by more than its noise, and a constant explains it as "
+             "well "
+             "as the model. Are these the right columns?";
     case simulation:
       if (grade.uses.missing_force_percent < GradeOptions().largest_force &&
           grade.uses.missing_force_percent && !std::isnan(grade.percent))
@@ -274,6 +279,12 @@ std::string grade_text(const Job& job, const FitGrade& grade, const FitResult& f
           "{} for {}: {} The free-running simulation {}: do not simulate with it for long.",
           heading, words_on(vocabulary, "forces"), uses_text(job, grade.uses),
           followed_text(grade.percent, signal()));
+    case contradiction:
+      return fmt::format(
+          "{}: {} is not the derivative of what else is recorded of the motion, by its scale or "
+          "its "
+          "sign. One of them is wrong, and the estimates with it: see the warnings.",
+          heading, signal());
     case residual:
     case stopped:
     case none:

@@ -98,6 +98,20 @@ Job with_a_short_recording_to_fit() {
   return job;
 }
 
+// A position that is 1.25 times too large tells another mass, with no more than noise in it.
+TEST(Run, IsUsableAtMostWhereSignalsContradictEachOther) {
+  Model<double> truth = slide();
+  Job job = two_recordings(truth, slide(), {"M", "B_a"});
+  job.recordings = {recorded(truth, fit_motion(), 2.0, 3, {Signal::position, Signal::velocity})};
+  EXPECT_EQ(run(job).grade.grade, Grade::explained);
+  job.recordings[0].measurements[1].fitted = false;
+  for (double& x : job.recordings[0].measurements[0].values.edit()) x *= 1.25;
+  const FitGrade grade = run(job).grade;
+  EXPECT_EQ(grade.grade, Grade::usable);
+  EXPECT_EQ(grade.reason, FitGrade::Reason::contradiction);
+  EXPECT_EQ(grade.signal, Signal::velocity);
+}
+
 /// A run that is stopped when it comes to a phase that begins so.
 RunResult stopped_at(const Job& job, const std::string& phase, const RunOptions& options = {}) {
   StopFlag stop;

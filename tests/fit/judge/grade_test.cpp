@@ -178,6 +178,21 @@ TEST_F(GradeTest, WhatDeterminesNothingSaysSo) {
   EXPECT_EQ(grade().grade, Grade::nothing_determined);
 }
 
+// Its sigma is that of its readings: nothing moves.
+TEST_F(GradeTest, NothingIsDeterminedWhereNothingMoves) {
+  job_.recordings[0].measurements[0].sigma = 1.0;
+  EXPECT_EQ(grade().grade, Grade::nothing_determined);
+  EXPECT_EQ(grade().reason, Reason::standstill);
+  job_.recordings[0].measurements[0].sigma = 0.3;
+  EXPECT_EQ(grade().grade, Grade::explained);
+  // What is only compared may rest.
+  job_.recordings[0].measurements[0].sigma = 1.0;
+  job_.recordings[0].measurements.push_back(job_.recordings[0].measurements[0]);
+  job_.recordings[0].measurements[0].fitted = false;
+  job_.recordings[0].measurements[1].sigma = 0.01;
+  EXPECT_NE(grade().grade, Grade::nothing_determined);
+}
+
 TEST_F(GradeTest, AConstantThatDoesAsWellMakesTheModelWrong) {
   hide_forces();
   fit_.verdict = {.kind = FitVerdict::Kind::signal_not_followed, .recording = 1};

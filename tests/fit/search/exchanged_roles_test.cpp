@@ -40,5 +40,16 @@ TEST(ExchangedRoles, StopWithoutAResult) {
                Interrupted);
 }
 
+// There is time left to judge what the search before it found.
+TEST(ExchangedRoles, SayThatTheirSearchWasCutShort) {
+  const StopFlag stop;
+  StopFlag search_over(&stop);
+  search_over.set();
+  const auto found = search_with_exchanged_roles(hidden_effect_named("coulomb_friction").job(),
+                                                 {.stop = &stop, .end_search = &search_over});
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->selection.cut_short);
+}
+
 }  // namespace
 }  // namespace axisfit

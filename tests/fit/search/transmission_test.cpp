@@ -113,6 +113,24 @@ TEST(Backlash, SplitsTheMassOfAForceSource) {
   EXPECT_EQ(mass_of_motor(rigid, loose), 0.0);  // M never held the motor
 }
 
+// Sampled at 1 kHz: 500 Hz is the fastest swing that shows.
+TEST(Backlash, IsNoStifferThanTheRecordingsShow) {
+  Job job;
+  job.model = rigid_slide();
+  job.free = {free_parameter("M", 20.0)};
+  Recording& r = job.recordings.emplace_back();
+  for (int i = 0; i < 100; ++i) r.times.edit().push_back(1e-3 * i);
+  const Hypothesis soft = transmission_hypotheses(job, scales(20.0)).front();
+  for (const auto& setting : soft.settings) {
+    const Job stiff = with_hypothesis(job, soft, std::vector{20.0}, {{1e12}, setting});
+    const auto k_g = std::ranges::find(stiff.free, quantity_index("k_g"), &FreeParameter::quantity);
+    ASSERT_NE(k_g, stiff.free.end());
+    const double motor = setting.back(), arm = 20.0 - motor, swing = 2.0 * 3.14159265358979 * 500.0;
+    EXPECT_NEAR(k_g->upper, motor * arm / 20.0 * swing * swing, 1e-6 * k_g->upper);
+    EXPECT_EQ(k_g->initial, k_g->upper);
+  }
+}
+
 // The encoder of the motor alone shows what of the mass is behind the gap.
 TEST(Backlash, IsFoundByTheEncoderOfTheMotor) {
   const EffectSelection selection =

@@ -71,6 +71,16 @@ TEST(DerivativeRule, AWrongHeaderIsCorrectedButNoAnswer) {
   EXPECT_EQ(answered.velocity().column.unit, "m/s");
 }
 
+TEST(DerivativeRule, AFactorThatNoUnitExplainsIsAContradiction) {
+  Swing scaled("m", 1.0, "m/s", 0.8);
+  size_motion_by_derivative(scaled.time, scaled.columns);
+  EXPECT_EQ(scaled.velocity().column.unit, "m/s");
+  EXPECT_EQ(scaled.velocity().column.factor, 1.0);
+  EXPECT_TRUE(scaled.velocity().column.contradicts);
+  EXPECT_TRUE(scaled.velocity().column.guessed);
+  EXPECT_FALSE(scaled.position().column.contradicts);
+}
+
 TEST(DerivativeRule, ASignIsTurnedAndSaid) {
   Swing swing("m", 1.0, "", -1.0);
   size_motion_by_derivative(swing.time, swing.columns);
