@@ -16,4 +16,11 @@ inline double round_to_digits(double value, int digits) {
   return value;
 }
 
+/// "34 %", with so many significant digits, or all before the point where that are more.
+inline std::string percent(double value, int digits = 2) {
+  std::string text = fmt::format("{:.{}g}", value, digits);
+  if (text.find("e+") != std::string::npos) text = fmt::format("{:.0f}", value);
+  return text + " %";
+}
+
 }  // namespace axisfit

@@ -200,6 +200,16 @@ RecordingCheck check_recording(const Recording& recording) {
     check.measurements.push_back(check_values(recording, m, stuck_check, command_values));
   check.command.repetition = repetition_of(command_values);
   find_frames(recording, command_values, check);
+  // A command may well end at a limit of the drive; a measured input that ends sharply, amid noise,
+  // does so by its sensor.
+  if (recording.command.hold == Hold::linear && recording.command.meaning != Meaning::reference) {
+    Measurement input;
+    input.signal = Signal::motor_current;
+    input.values = command_values;
+    const ClippedValues clipped = stuck_check.clipped(input);
+    check.command.clipped = clipped.samples;
+    check.command.clipped_at = clipped.value;
+  }
   check.command_is_magnitude = is_magnitude(recording, command_values);
   check.hard_stop = hard_stop(recording, command_values);
 

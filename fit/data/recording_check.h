@@ -98,7 +98,7 @@ struct RateCheck {
 
 struct RecordingCheck {
   Sampling sampling;
-  ValueCheck command;                    ///< of its values: low, high and repetition alone
+  ValueCheck command;  ///< of its values: low, high, repetition, and of what was measured, clipped
   std::size_t switches = 0;              ///< changes of the command
   double at_maximum = 0.0;               ///< share of the time the command is at its largest size
   bool command_is_magnitude = false;     ///< see is_magnitude()

@@ -92,6 +92,8 @@ std::vector<RecordingWarning> warnings_of(const Job& job, const Recording& recor
   });
   if (check.command.repetition > 1 && (in_frames || recording.command.hold == Hold::linear))
     warnings.push_back(warning::RepeatedInput{check.command.repetition});
+  if (check.command.clipped > 0)
+    warnings.push_back(warning::ClippedInput{check.command.clipped, check.command.clipped_at});
   if (check.hard_stop) warnings.push_back(warning::OnHardStop{*check.hard_stop});
   // Friction and a short run keep the arm slower than expected; little makes it faster.
   constexpr double kMaxExcess = 3.0, kMaxDeficit = 30.0;

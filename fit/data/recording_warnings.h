@@ -64,6 +64,12 @@ struct RepeatedInput {
   std::size_t times = 1;
 };
 
+/// The sensor of a measured input is at the end of its range: the force beyond is not recorded.
+struct ClippedInput {
+  std::size_t samples = 0;
+  double value = 0.0;  ///< in the unit of the drive
+};
+
 /// A motion that ends on a hard stop, which the model does not have.
 struct OnHardStop {
   HardStop stop;
@@ -125,9 +131,10 @@ struct UnlikelySigma {
 using RecordingWarning =
     std::variant<warning::Gaps, warning::UnevenSampling, warning::TimeUnit,
                  warning::UnlikelyInterval, warning::WrongRate, warning::NoCommand,
-                 warning::NoDirection, warning::RepeatedInput, warning::OnHardStop,
-                 warning::UnlikelySpeed, warning::Constant, warning::Stuck, warning::Clipped,
-                 warning::Missing, warning::Repeated, warning::Filtered, warning::UnlikelySigma>;
+                 warning::NoDirection, warning::RepeatedInput, warning::ClippedInput,
+                 warning::OnHardStop, warning::UnlikelySpeed, warning::Constant, warning::Stuck,
+                 warning::Clipped, warning::Missing, warning::Repeated, warning::Filtered,
+                 warning::UnlikelySigma>;
 
 /// In the order of the alternatives, those of a signal after those of the whole recording.
 std::vector<RecordingWarning> warnings_of(const Job& job, const Recording& recording,

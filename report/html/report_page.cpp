@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/plain_text.h"
+#include "base/rounding.h"
 #include "base/text_table.h"
 #include "base/version.h"
 #include "report/html/assets/assets.h"
@@ -363,7 +364,7 @@ class Page {
     Html rows = each(diagnosis.tests, [&](const SeriesTest& test) {
       std::string on;
       for (const Dependence& d : test.dependences)
-        on += fmt::format("{}{} {:.2g} %", on.empty() ? "" : ", ", d.on, 100.0 * d.fraction);
+        on += fmt::format("{}{} {}", on.empty() ? "" : ", ", d.on, percent(100.0 * d.fraction));
       return row(head_cell(title_of(test)) + number_cell(number(test.reduced_chi_square)) +
                  number_cell(test.explained ? "noise only"
                                             : fmt::format("{:.3g} %", test.unexplained_percent)) +
@@ -373,8 +374,7 @@ class Page {
     if (run_result_.selection || run_result_.suspects.empty()) return all;
     rows = each(run_result_.suspects, [](const Scored& s) {
       return row(head_cell(s.hypothesis->name) + cell(s.hypothesis->meaning) +
-                 cell(s.hypothesis->acts_on) +
-                 number_cell(fmt::format("{:.2g} %", 100.0 * s.fraction)));
+                 cell(s.hypothesis->acts_on) + number_cell(percent(100.0 * s.fraction)));
     });
     return all + html("<h3>Suspected effects</h3>{}",
                       table({"Effect", "Meaning", "Acts on", "#explains"}, rows));

@@ -98,8 +98,8 @@ std::string first_look_text(const Job& job, const std::optional<FirstLook>& look
   see("constant_force.F_0", acting);
   std::string text = fmt::format(
       "A first look at the forces of all recordings, by one mass with friction and without a "
-      "simulation: {}. It leaves {:.2g} % of the {}.",
-      fmt::join(seen, ", "), 100.0 * look->unexplained, force);
+      "simulation: {}. It leaves {} of the {}.",
+      fmt::join(seen, ", "), percent(100.0 * look->unexplained), force);
   const double interval = sampling(job.recordings.front().times).interval;
   if (look->shows_delay(interval))
     text += fmt::format(" The motion {} the {} by {:.2g} ms.",

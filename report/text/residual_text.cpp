@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/rounding.h"
 #include "base/terminal.h"
 #include "base/text_table.h"
 #include "base/units.h"
@@ -61,10 +62,10 @@ std::vector<std::string> force_cells(const std::string& name, const MissingForce
                                      Vocabulary vocabulary) {
   if (!force.found) return {name, "-", "-", "-", "-"};
   const std::string_view unit = unit_on(vocabulary, "N");
-  return {
-      name, fmt::format("{:.3g} {}", force.rms, unit), fmt::format("{:.2g} {}", force.noise, unit),
-      force.drive_rms > 0.0 ? fmt::format("{:.3g} %", 100.0 * force.rms / force.drive_rms) : "-",
-      fmt::format("{:.3g} Hz", force.cutoff)};
+  return {name, fmt::format("{:.3g} {}", force.rms, unit),
+          fmt::format("{:.2g} {}", force.noise, unit),
+          force.drive_rms > 0.0 ? percent(100.0 * force.rms / force.drive_rms, 3) : "-",
+          fmt::format("{:.3g} Hz", force.cutoff)};
 }
 
 std::string residual_text(const Job& job, const Diagnosis& diagnosis) {
@@ -75,7 +76,7 @@ std::string residual_text(const Job& job, const Diagnosis& diagnosis) {
     std::vector<std::string> on;
     constexpr std::size_t kNamed = 3;
     for (const Dependence& d : test.dependences)
-      if (on.size() < kNamed) on.push_back(fmt::format("{} {:.2g} %", d.on, 100.0 * d.fraction));
+      if (on.size() < kNamed) on.push_back(fmt::format("{} {}", d.on, percent(100.0 * d.fraction)));
     rows.push_back(
         {series_name(recording, role_name(recording, test.series.fitted),
                      recording.measurements[test.series.measurement].signal, job.vocabulary()),
@@ -125,8 +126,8 @@ std::string suspected_effects_text(const Job& job, const Diagnosis& diagnosis,
   if (found) text += "\n";
   std::vector<std::vector<std::string>> rows{{"", "acts on", "explains", "estimate"}};
   for (const Scored& s : suspects)
-    rows.push_back({s.hypothesis->name, s.hypothesis->acts_on,
-                    fmt::format("{:.2g} %", 100.0 * s.fraction), estimate_of(job, s)});
+    rows.push_back({s.hypothesis->name, s.hypothesis->acts_on, percent(100.0 * s.fraction),
+                    estimate_of(job, s)});
   return text + "Suspected effects, from the residual of the tracking simulation\n" +
          format_table(rows,
                       {Alignment::left, Alignment::left, Alignment::right, Alignment::wrapped});
@@ -155,8 +156,8 @@ std::string residual_verdict(const Job& job, const Diagnosis& diagnosis,
       text += fmt::format("Most likely cause: {}. ", cause->hypothesis->name);
     else
       text += fmt::format(
-          "The cause is unknown: no effect that axisfit knows explains more than {:.2g} % of it. ",
-          100.0 * suspects.front().fraction);
+          "The cause is unknown: no effect that axisfit knows explains more than {} of it. ",
+          percent(100.0 * suspects.front().fraction));
     if (loop_was_asked_for)
       text += "The declared model does not fit: nothing can be said about effects yet.";
     else if (!suspects.empty())
@@ -174,14 +175,16 @@ std::string residual_verdict(const Job& job, const Diagnosis& diagnosis,
       std::ranges::any_of(tests, [](const SeriesTest& t) { return !t.series.fitted; })
           ? "Data that were not fitted are also explained down to the noise. "
           : "";
-  text += on.empty() ? "The residual shows no dependence on motion, position, command or time."
-                     : fmt::format(
-                           "A small dependence on {} remains: at most {:.2g} % of the mean square.",
-                           fmt::join(on, ", "), 100.0 * fraction);
+  text += on.empty()
+              ? "The residual shows no dependence on motion, position, command or time."
+              : fmt::format("A small dependence on {} remains: at most {} of the mean square.",
+                            fmt::join(on, ", "), percent(100.0 * fraction));
   return paragraph(text);
 }
 
 std::string residual_verdict(const RunResult& run_result, bool colour) {
+  // That any model explains the recordings says nothing of this one.
+  if (run_result.grade.grade == Grade::nothing_determined) return "";
   Diagnosis usual = *run_result.diagnosis;
   for (const OtherDay& day : run_result.other_days)
     std::erase_if(usual.tests,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/rounding.h"
 #include "base/terminal.h"
 #include "base/text_table.h"
 #include "base/units.h"
@@ -109,8 +110,8 @@ std::string uncertainty_text(const Job& job, const FitResult& result) {
                : ", uncorrelated in time";
   // Less than a tenth of a variance is 5 % of the error.
   if (constexpr double kPart = 0.1; result.input_part > kPart)
-    noise += fmt::format(", and {}, which makes up to {:.2g} % of their squares",
-                         input_noise_text(job), 100.0 * result.input_part);
+    noise += fmt::format(", and {}, which makes up to {} of their squares", input_noise_text(job),
+                         percent(100.0 * result.input_part));
   return paragraph("Standard errors and intervals assume " + noise + ".", 2) +
          remarks_text(job, result) + correlation_text(job, result) +
          identifiability_text(job, result.identifiability);
@@ -137,9 +138,9 @@ std::string second_opinion_text(const RunResult& run_result) {
                                    number(e, unit_of(run_result.job(), e.parameter))));
   if (!values.empty())
     text += paragraph(
-        fmt::format("Inverse dynamics, without a simulation: {}. {:.2g} % of the {} remain "
-                    "unexplained.",
-                    fmt::join(values, ", "), 100.0 * estimate.residual / estimate.drive_rms,
+        fmt::format("Inverse dynamics, without a simulation: {}. {} of the {} remain unexplained.",
+                    fmt::join(values, ", "),
+                    percent(100.0 * estimate.residual / estimate.drive_rms),
                     words_on(run_result.job().vocabulary(), "drive force")),
         2);
   if (contradictions.empty()) return text;

@@ -7,6 +7,7 @@
 #include "base/rounding.h"
 #include "base/units.h"
 #include "report/text/report_text.h"
+#include "report/text/words.h"
 
 namespace axisfit {
 namespace {
@@ -144,6 +145,15 @@ std::string text_of(const warning::RepeatedInput& w, const Names&) {
       "The command: each value is recorded {} times. If the drive did not take it as such a "
       "staircase, record it at every sample, or keep only the rows with a new value.",
       w.times);
+}
+
+std::string text_of(const warning::ClippedInput& w, const Names& name) {
+  return fmt::format(
+      "The command is exactly {} in {} samples, and noisy elsewhere: its sensor is at the end of "
+      "its "
+      "range, and the {} beyond is not recorded. Record with a wider range, or what the drive was "
+      "told.",
+      command_text(w.value, name.vocabulary), w.samples, words_on(name.vocabulary, "force"));
 }
 
 std::string text_of(const warning::OnHardStop& w, const Names& name) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <variant>
 
+#include "base/rounding.h"
 #include "base/terminal.h"
 #include "base/text_table.h"
 #include "base/units.h"
@@ -52,8 +53,9 @@ std::string rejection_text(const Job& job, const Rejection& rejection) {
       return "the declared model does not fit, with it or without";
     case force:
       return fmt::format(
-          "raises the missing {} of a recording to validate from {:.2g} to {:.2g} % of the drive's",
-          words_on(job.vocabulary(), "force"), rejection.required, rejection.found);
+          "raises the missing {} of a recording to validate from {} to {} of the drive's",
+          words_on(job.vocabulary(), "force"), percent(rejection.required),
+          percent(rejection.found));
     case period:
       return fmt::format(
           "the recordings to validate, fitted by themselves, show another period, {:.3g}: a slow "
@@ -61,9 +63,9 @@ std::string rejection_text(const Job& job, const Rejection& rejection) {
           rejection.found);
     case share:
       return fmt::format(
-          "lowers the validation error beyond the noise by no more than {:.2g} %, where most "
+          "lowers the validation error beyond the noise by no more than {}, where most "
           "remains unexplained: it may imitate what is missing",
-          rejection.found);
+          percent(rejection.found));
   }
   return "";
 }
@@ -217,7 +219,7 @@ std::string uses_text(const Job& job, const FitUses& uses) {
   std::vector<std::string> parts;
   if (uses.missing_force_percent)
     parts.push_back(fmt::format(
-        "the model leaves {:.2g} % of the {} of {} unexplained", *uses.missing_force_percent,
+        "the model leaves {} of the {} of {} unexplained", percent(*uses.missing_force_percent),
         words_on(job.vocabulary(), "drive force"), job.recordings[uses.force_recording].name));
   if (uses.followed_for)
     parts.push_back(fmt::format("a free run stays within 1 % of the range {}{:.2g} s",
@@ -271,9 +273,9 @@ std::string grade_text(const Job& job, const FitGrade& grade, const FitResult& f
                             followed_text(grade.percent, signal())));
     case force:
       return fmt::format(
-          "{}: the {} that the model lacks in {} is {:.3g} % of the drive's. Check the units and "
+          "{}: the {} that the model lacks in {} is {} of the drive's. Check the units and "
           "signs of the columns and what the axis file declares.",
-          heading, words_on(vocabulary, "force"), recording(), grade.percent);
+          heading, words_on(vocabulary, "force"), recording(), percent(grade.percent, 3));
     case drift:
       return fmt::format(
           "{} for {}: {} The free-running simulation {}: do not simulate with it for long.",
@@ -321,13 +323,15 @@ std::string verdict_text(const EffectSelection& selection) {
   std::string text;
   switch (verdict.kind) {
     case no_usable_fit:
-      return "No effect selection: without a usable fit the residual says nothing about effects.";
+      return "No effects were looked for: a search had no fit to start from.";
     case nothing_missing:
       return "Nothing is missing: the baseline model explains every signal down to its noise.";
     case stopped:
       return "The search for missing effects was stopped: no effect has been accepted so far.";
     case none_passes:
-      return "Something is missing, but no effect passes the tests: see the reasons.";
+      return selection.effects.empty()
+                 ? "Something is missing, but no effect that axisfit knows comes near it."
+                 : "Something is missing, but no effect passes the tests: see the reasons.";
     case hardly_anything:
       return fmt::format(
           "Hardly anything is missing: {} {} significant, but hardly lowers the validation error.",
@@ -354,9 +358,10 @@ std::string verdict_text(const EffectSelection& selection) {
                        "about effects yet.",
                        name_of(job, *verdict.at_bound))
                  : fmt::format(
-                       "The declared model does not fit: of {}, {:.3g} % of the {} is missing. "
+                       "The declared model does not fit: of {}, {} of the {} is missing. "
                        "Nothing can be said about effects yet.",
-                       job.recordings[verdict.recording.value()].name, verdict.force_percent,
+                       job.recordings[verdict.recording.value()].name,
+                       percent(verdict.force_percent, 3),
                        words_on(job.vocabulary(), "drive force"));
   }
   return text;
@@ -394,10 +399,9 @@ std::string other_day_text(const Job& job, const FitResult& fit, const OtherDay&
   }
   return fmt::format(
       " {} differs from the fitted recordings: with {}, found in its first half, the model leaves "
-      "{:.2g} % of the {} of the second half unexplained, and not {:.2g} %. The grade counts it "
-      "so.",
-      job.recordings[day.recording].name, fmt::join(own, " and "), day.percent,
-      words_on(job.vocabulary(), "drive force"), day.percent_before);
+      "{} of the {} of the second half unexplained, and not {}. The grade counts it so.",
+      job.recordings[day.recording].name, fmt::join(own, " and "), percent(day.percent),
+      words_on(job.vocabulary(), "drive force"), percent(day.percent_before));
 }
 
 std::string overall_verdict(const RunResult& run_result, bool colour) {

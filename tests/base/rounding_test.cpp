@@ -20,5 +20,16 @@ TEST(Rounding, TakesNumbersOfAnySize) {
   EXPECT_EQ(round_to_digits(-INFINITY, 2), -INFINITY);
 }
 
+TEST(Percent, HasNoExponentAboveOne) {
+  EXPECT_EQ(percent(0.0), "0 %");
+  EXPECT_EQ(percent(33.46), "33 %");
+  EXPECT_EQ(percent(99.6), "100 %");
+  EXPECT_EQ(percent(123.4), "123 %");
+  EXPECT_EQ(percent(123.4, 3), "123 %");
+  EXPECT_EQ(percent(45678.9, 3), "45679 %");
+  EXPECT_EQ(percent(0.0000123), "1.2e-05 %");
+  EXPECT_EQ(percent(NAN), "nan %");
+}
+
 }  // namespace
 }  // namespace axisfit

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -37,6 +38,35 @@ Recording moving() {
   recording.command = {{0.0, 0.5, 1.0}, {2.0, -3.0, 1.0}};
   recording.measurements = {position, velocity, acceleration};
   return recording;
+}
+
+// A current that is measured: noisy, and cut off at 2 A.
+TEST(RecordingCheckTest, SeesAMeasuredInputAtTheEndOfItsRange) {
+  Recording recording = moving();
+  std::mt19937_64 generator(2);
+  std::normal_distribution<double> noise;
+  std::size_t beyond = 0;
+  const auto measured = [&](double range) {
+    Schedule current;
+    current.hold = Hold::linear;
+    beyond = 0;
+    for (const double t : recording.times) {
+      const double value = 3.0 * std::sin(5.0 * t) + 0.02 * noise(generator);
+      beyond += value > range ? 1 : 0;
+      current.times.edit().push_back(t);
+      current.values.edit().push_back(std::clamp(value, -range, range));
+    }
+    return current;
+  };
+  recording.command = measured(2.0);
+  const ValueCheck clipped = check_recording(recording).command;
+  EXPECT_EQ(clipped.clipped_at, 2.0);
+  EXPECT_NEAR(static_cast<double>(clipped.clipped), static_cast<double>(beyond), 5.0);
+  // What a drive was told may well end so.
+  recording.command.hold = Hold::zero_order;
+  EXPECT_EQ(check_recording(recording).command.clipped, 0u);
+  recording.command = measured(10.0);
+  EXPECT_EQ(check_recording(recording).command.clipped, 0u);
 }
 
 TEST(SamplingTest, TellsGapsFromJitter) {

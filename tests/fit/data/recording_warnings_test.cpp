@@ -121,6 +121,13 @@ TEST_F(RecordingWarningsTest, OfTheCommand) {
   EXPECT_EQ(only<warning::OnHardStop>().stop.last_before, 1.4);
 }
 
+TEST_F(RecordingWarningsTest, OfAnInputAtTheEndOfItsRange) {
+  check_.command.clipped = 30;
+  check_.command.clipped_at = 1.2;
+  EXPECT_EQ(only<warning::ClippedInput>().samples, 30u);
+  EXPECT_EQ(only<warning::ClippedInput>().value, 1.2);
+}
+
 TEST_F(RecordingWarningsTest, OfAnInputThatIsRepeatedUnlessItActsSo) {
   check_.command.repetition = 4;
   EXPECT_TRUE(found().empty());

@@ -169,6 +169,8 @@ TEST(ResidualTextTest, TheVerdictLeavesOutRecordingsThatDiffer) {
   EXPECT_NE(residual_verdict(result).find("5 %"), std::string::npos);
   result.diagnosis->tests[0].explained = true;
   EXPECT_EQ(residual_verdict(result).find("Unexplained"), std::string::npos);
+  result.grade.grade = Grade::nothing_determined;
+  EXPECT_EQ(residual_verdict(result), "");
 }
 
 TEST(ResidualTextTest, TheVerdictOnNoiseSaysOfWhichData) {

@@ -91,7 +91,7 @@ TEST(WordsTest, OfWhatASearchComesTo) {
   using enum SelectionVerdict::Kind;
   EffectSelection selection;
   EXPECT_EQ(verdict_text(selection),
-            "No effect selection: without a usable fit the residual says nothing about effects.");
+            "No effects were looked for: a search had no fit to start from.");
   selection.verdict.kind = nothing_missing;
   EXPECT_EQ(verdict_text(selection),
             "Nothing is missing: the baseline model explains every signal down to its noise.");
@@ -99,6 +99,9 @@ TEST(WordsTest, OfWhatASearchComesTo) {
   EXPECT_EQ(verdict_text(selection),
             "The search for missing effects was stopped: no effect has been accepted so far.");
   selection.verdict.kind = none_passes;
+  EXPECT_EQ(verdict_text(selection),
+            "Something is missing, but no effect that axisfit knows comes near it.");
+  selection.effects.resize(1);
   EXPECT_EQ(verdict_text(selection),
             "Something is missing, but no effect passes the tests: see the reasons.");
   selection.verdict = {
@@ -211,6 +214,7 @@ TEST(WordsTest, OfARunNameTheFitOnce) {
   run_result.selection.emplace();
   run_result.selection->result.fit = run_result.first;
   run_result.selection->verdict.kind = SelectionVerdict::Kind::none_passes;
+  run_result.selection->effects.resize(1);
   EXPECT_EQ(overall_verdict(run_result),
             "Usable. Something is missing, but no effect passes the tests: see the reasons.");
 }
