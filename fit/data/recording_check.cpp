@@ -206,9 +206,13 @@ RecordingCheck check_recording(const Recording& recording) {
     Measurement input;
     input.signal = Signal::motor_current;
     input.values = command_values;
-    const ClippedValues clipped = stuck_check.clipped(input);
-    check.command.clipped = clipped.samples;
-    check.command.clipped_at = clipped.value;
+    // Of either sign, where one end shows what it is.
+    if (const ClippedValues clipped = stuck_check.clipped(input); clipped.samples > 0) {
+      const double limit = std::abs(clipped.value);
+      check.command.clipped_at = limit;
+      check.command.clipped = static_cast<std::size_t>(
+          std::ranges::count(command_values, limit, [](double x) { return std::abs(x); }));
+    }
   }
   check.command_is_magnitude = is_magnitude(recording, command_values);
   check.hard_stop = hard_stop(recording, command_values);

@@ -98,7 +98,8 @@ struct RateCheck {
 
 struct RecordingCheck {
   Sampling sampling;
-  ValueCheck command;  ///< of its values: low, high, repetition, and of what was measured, clipped
+  /// Of its values: low, high, repetition, and of what was measured, clipped, either way.
+  ValueCheck command;
   std::size_t switches = 0;              ///< changes of the command
   double at_maximum = 0.0;               ///< share of the time the command is at its largest size
   bool command_is_magnitude = false;     ///< see is_magnitude()

@@ -67,7 +67,7 @@ struct RepeatedInput {
 /// The sensor of a measured input is at the end of its range: the force beyond is not recorded.
 struct ClippedInput {
   std::size_t samples = 0;
-  double value = 0.0;  ///< in the unit of the drive
+  double value = 0.0;  ///< magnitude, in the unit of the drive
 };
 
 /// A motion that ends on a hard stop, which the model does not have.

@@ -65,10 +65,12 @@ TEST(WarningsTextTest, OfSignals) {
   EXPECT_EQ(text_of(warning::RepeatedInput{4}),
             "The command: each value is recorded 4 times. If the drive did not take it as such a "
             "staircase, record it at every sample, or keep only the rows with a new value.");
-  EXPECT_EQ(text_of(warning::ClippedInput{30, -8.0}),
-            "The command is exactly -8 V in 30 samples, and noisy elsewhere: its sensor is at the "
-            "end of its range, and the force beyond is not recorded. Record with a wider range, or "
-            "what the drive was told.");
+  EXPECT_EQ(
+      text_of(warning::ClippedInput{30, 8.0}),
+      "The size of the command is exactly 8 V in 30 samples, and noisy elsewhere: its sensor is "
+      "at the end of its range, and the force beyond is not recorded. Record with a wider range, "
+      "or "
+      "what the drive was told.");
   EXPECT_EQ(text_of(warning::OnHardStop{{1.2345, 1.2325}}),
             "The arm runs into a hard stop at 1.2345 s and stays there to the end, while the drive "
             "still pushes. The model has no such stop: exclude it with 'trim: {to: 1.2325 s}'.");
