@@ -58,6 +58,9 @@ std::optional<SecondOpinion> second_opinion(const Job& job, const FitResult& fit
   std::optional<InverseDynamics> estimate = inverse_dynamics(job);
   if (!estimate) return std::nullopt;
   SecondOpinion opinion{*std::move(estimate), {}};
+  // Of the drive force: a balance that leaves more contradicts nothing.
+  constexpr double kLeaves = 0.1;
+  if (!(opinion.estimate.residual < kLeaves * opinion.estimate.drive_rms)) return opinion;
   const GradeOptions options;
   for (std::size_t i = 0; i < opinion.estimate.parameters.size() && opinion.estimate.exact; ++i) {
     const InverseEstimate& own = opinion.estimate.parameters[i];

@@ -27,7 +27,7 @@ struct SecondOpinion {
   InverseDynamics estimate;
   /// Places in its parameters of those that fit and estimate both determine, and where they differ
   /// by more than five of their standard errors together and by more than a tenth. Empty where the
-  /// estimate is not exact.
+  /// estimate is not exact, or leaves more than a tenth of the drive force unexplained.
   std::vector<std::size_t> contradictions;
 };
 

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/data/filter.h"
 #include "fit/data/noise.h"
 #include "io/config/axis_file.h"
 #include "io/config/recording_column.h"
 #include "io/config/recording_keys.h"
+#include "io/config/recording_measurement.h"
 #include "sim/controller.h"
 
 namespace axisfit {
@@ -109,35 +111,47 @@ class InputReader {
     return std::nullopt;
   }
 
+  /// What was there before it begins stays.
+  static void delay_by(double delay, Series& series) {
+    if (delay == 0.0 || series.times.empty()) return;
+    const double begin = series.times.front();
+    for (double& t : series.times) t += delay;
+    series.times.insert(series.times.begin(), begin);
+    series.values.insert(series.values.begin(), series.values.front());
+  }
+
   /// The reference for the controller of the axis file, or the command that this makes of it.
   std::optional<Series> read_reference(const ConfigNode& node, ConfigMap& signals) const {
     const std::string_view unit = info(Signal::position, vocabulary()).unit;
     ConfigMap map(node, measurement_keys("position_reference"));
-    const auto reference = read_column(series_.file(), map, unit);
+    std::optional<Series> reference = series_.read(node, map, unit);
+    double delay = 0.0;
+    map.read("delay", delay);
+    if (const auto given = map.optional("filter"); given && reference)
+      reference->values =
+          filtered(read_filter(*given, sampling(reference->times)), std::move(reference->values));
     std::optional<Loop> loop;
     map.read("loop", loop);
     Hold hold = Hold::zero_order;
     map.read("hold", hold);
     map.finish();
     const bool is_direct = capabilities(rig_.model.structure).is_direct();
-    if (!reference || !series_.times() || !has_value_for_each(*series_.times(), node, *reference))
+    if (!reference || !series_.times()) return std::nullopt;
+    const auto is_missing = [](double x) { return std::isnan(x); };
+    const bool has_all_times = std::ranges::none_of(*series_.times(), is_missing);
+    const auto say_incomplete = [](const ConfigNode& of, const char* what) {
+      of.error(fmt::format(
+          "the controller needs the {} at every sample, and some are missing: trim the recording "
+          "or fill the gaps",
+          what));
       return std::nullopt;
-    const auto is_complete = [&](const ConfigNode& of, const std::vector<double>& values) {
-      const auto is_missing = [](double x) { return std::isnan(x); };
-      const bool complete = std::ranges::none_of(values, is_missing) &&
-                            std::ranges::none_of(*series_.times(), is_missing);
-      if (!complete)
-        of.error(fmt::format(
-            "the controller needs the {} at every sample, and some are missing: trim the "
-            "recording or fill the gaps",
-            &of == &node ? "reference" : "position"));
-      return complete;
     };
-    if (!is_complete(node, *reference)) return std::nullopt;
+    if (reference->missing > 0 || !has_all_times) return say_incomplete(node, "reference");
+    delay_by(delay, *reference);
     if (loop.value_or(is_direct ? Loop::simulated : Loop::computed) == Loop::simulated) {
       recording_.command.meaning = Meaning::reference;
       recording_.command.hold = hold;
-      return Series{*series_.times(), *reference};
+      return reference;
     }
     const auto position_node = signals.optional("position");
     if (!position_node) {
@@ -150,9 +164,10 @@ class InputReader {
     const auto position = read_column(series_.file(), position_map, unit);
     if (!position || !has_value_for_each(*series_.times(), *position_node, *position))
       return std::nullopt;
-    if (!is_complete(*position_node, *position)) return std::nullopt;
+    if (std::ranges::any_of(*position, is_missing))
+      return say_incomplete(*position_node, "position");
     const Controller<double>& controller = rig_.model.controller;
-    const Schedule track{*series_.times(), *reference, Hold::linear};
+    const Schedule track{reference->times, reference->values, Hold::linear};
     const auto at = [&](double t) { return track.value_at(series_.times()->front() + t); };
     return Series{*series_.times(),
                   command_from_reference(controller, *series_.times(),

@@ -61,8 +61,14 @@ Key input_hold_key() {
 
 /// The position that a controller was asked for.
 Section reference_keys() {
-  Section keys = column_keys();
+  Section keys = series_keys();
   keys.push_back(input_hold_key());
+  keys.push_back(Key::optional("delay", NumberWithUnit{"s", 0.0, 1.0}, 0.0,
+                               "by which the drive delays it before its controller follows it"));
+  keys.push_back(Key::optional("filter", Map{filter_keys(), 1, false, "filter"},
+                               DefaultText{"none"},
+                               "digital filter by which the drive smooths it before, such as a "
+                               "jerk filter, which is a moving average"));
   keys.push_back(Key::optional(
       "loop",
       Choice{{{"computed", "the command is computed from it and the recorded position"},

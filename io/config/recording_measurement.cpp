@@ -6,7 +6,6 @@
 
 #include "base/units.h"
 #include "fit/data/noise.h"
-#include "fit/data/recording_check.h"
 #include "fit/data/validation.h"
 #include "io/config/recording_keys.h"
 #include "sim/sampling.h"
@@ -27,53 +26,6 @@ void take_noise(const ConfigNode& node, const Series& series,
         fmt::format("the noise of {} cannot be estimated from these samples: give its "
                     "sigma, for example 'sigma: {}'",
                     node.name(), with_unit("0.01", unit)));
-}
-
-/// None where anything is wrong, with a diagnostic, or without enough samples.
-Filter read_filter(const ConfigNode& node, const Sampling& sampling) {
-  const Section& keys = keys_below(measurement_keys(kSignalTable.front().name), "filter");
-  ConfigMap map(node, keys);
-  Filter filter;
-  const auto average = map.read("moving_average", filter.length);
-  std::optional<double> cutoff;
-  std::optional<int> order;
-  std::optional<ConfigNode> at;
-  const auto butterworth = map.optional("butterworth");
-  if (butterworth) {
-    ConfigMap of_butterworth(*butterworth, keys_below(keys, "butterworth"));
-    of_butterworth.read("order", order);
-    at = of_butterworth.read("cutoff", cutoff);
-    of_butterworth.finish();
-  }
-  map.read("zero_phase", filter.zero_phase);
-  map.finish();
-  if (average.has_value() == butterworth.has_value()) {
-    if (node.is_map()) node.error("give either a moving_average or a butterworth filter");
-    return {};
-  }
-  if (sampling.samples < kLeastSamples) return {};
-  if (!sampling.is_even() || sampling.gaps > 0) {
-    node.error(
-        "a filter needs even sampling, and these sample times are uneven: fit the unfiltered "
-        "samples, or remove the filter");
-    return {};
-  }
-  if (average) {
-    filter.kind = Filter::Kind::moving_average;
-    if (!filter.zero_phase || filter.length % 2 == 1) return filter;
-    average->error(fmt::format(
-        "an average of {} samples has none in the middle: with zero_phase give an odd number",
-        filter.length));
-    return {};
-  }
-  if (!order || !cutoff) return {};
-  filter.kind = Filter::Kind::butterworth;
-  filter.order = *order;
-  filter.cutoff = *cutoff * sampling.interval;
-  if (filter.cutoff < 0.5) return filter;
-  at->error(fmt::format("the cutoff must be below {:.4g} Hz, half the sampling rate",
-                        0.5 / sampling.interval));
-  return {};
 }
 
 /// Leaves the samples that a filter or a hold leaves, with a diagnostic where that cannot be.
@@ -138,6 +90,52 @@ std::optional<Measured> read_measurement(const ConfigNode& node, const SignalInf
 }
 
 }  // namespace
+
+Filter read_filter(const ConfigNode& node, const Sampling& sampling) {
+  const Section& keys = keys_below(measurement_keys(kSignalTable.front().name), "filter");
+  ConfigMap map(node, keys);
+  Filter filter;
+  const auto average = map.read("moving_average", filter.length);
+  std::optional<double> cutoff;
+  std::optional<int> order;
+  std::optional<ConfigNode> at;
+  const auto butterworth = map.optional("butterworth");
+  if (butterworth) {
+    ConfigMap of_butterworth(*butterworth, keys_below(keys, "butterworth"));
+    of_butterworth.read("order", order);
+    at = of_butterworth.read("cutoff", cutoff);
+    of_butterworth.finish();
+  }
+  map.read("zero_phase", filter.zero_phase);
+  map.finish();
+  if (average.has_value() == butterworth.has_value()) {
+    if (node.is_map()) node.error("give either a moving_average or a butterworth filter");
+    return {};
+  }
+  if (sampling.samples < kLeastSamples) return {};
+  if (!sampling.is_even() || sampling.gaps > 0) {
+    node.error(
+        "a filter needs even sampling, and these sample times are uneven: fit the unfiltered "
+        "samples, or remove the filter");
+    return {};
+  }
+  if (average) {
+    filter.kind = Filter::Kind::moving_average;
+    if (!filter.zero_phase || filter.length % 2 == 1) return filter;
+    average->error(fmt::format(
+        "an average of {} samples has none in the middle: with zero_phase give an odd number",
+        filter.length));
+    return {};
+  }
+  if (!order || !cutoff) return {};
+  filter.kind = Filter::Kind::butterworth;
+  filter.order = *order;
+  filter.cutoff = *cutoff * sampling.interval;
+  if (filter.cutoff < 0.5) return filter;
+  at->error(fmt::format("the cutoff must be below {:.4g} Hz, half the sampling rate",
+                        0.5 / sampling.interval));
+  return {};
+}
 
 void read_measurements(ConfigMap& signals, const Structure& structure, const Trim& trim,
                        SeriesReader& series, std::vector<Measured>& measured) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fit/data/job.h"
+#include "fit/data/recording_check.h"
 #include "io/config/recording_series.h"
 
 namespace axisfit {
@@ -16,6 +17,10 @@ struct Measured {
   ConfigNode node;
   std::optional<ConfigNode> shaped;  ///< the filter or the hold
 };
+
+/// A filter of samples like these. None where anything is wrong, with a diagnostic, or without
+/// enough samples.
+Filter read_filter(const ConfigNode& node, const Sampling& sampling);
 
 /// All signals of an axis but the input.
 void read_measurements(ConfigMap& signals, const Structure& structure, const Trim& trim,

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/fit/example.h"
+#include "tests/fit/search/selection.h"
 
 namespace axisfit {
 namespace {
@@ -56,6 +56,20 @@ TEST(SecondOpinion, ContradictsNothingThatIsNotKnown) {
   open = fit_of_slide();
   open.verdict.kind = FitVerdict::Kind::no_minimum;
   EXPECT_TRUE(contradictions_at(1.3, open).empty());
+}
+
+TEST(SecondOpinion, IsNoneOfABalanceThatLeavesMuch) {
+  HiddenEffect spring = hidden_effect_named("stroke_spring");
+  FitResult other = fit_of_slide();
+  other.parameters[0].value *= 3.0;
+  const auto contradictions = [&](double stiffness) {
+    spring.strengths[0].second = stiffness;
+    Job job = job_of_slide();
+    job.recordings = {recorded(spring.truth(), fit_motion(), 1.2, 1)};
+    return second_opinion(job, other)->contradictions;
+  };
+  EXPECT_EQ(contradictions(1.0), std::vector<std::size_t>{0});
+  EXPECT_TRUE(contradictions(1000.0).empty());
 }
 
 TEST(SecondOpinion, NeedsABalanceOfForces) {

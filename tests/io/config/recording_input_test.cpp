@@ -92,6 +92,32 @@ TEST_F(InputTest, AReferenceIsFollowedByTheController) {
   EXPECT_EQ(recording_.command.meaning, Meaning::reference);
 }
 
+// As drives do before their controller sees it.
+TEST_F(InputTest, AReferenceMayBeDelayedAndSmoothed) {
+  const auto plain = read("position_reference: {column: u, unit: mm}");
+  ASSERT_TRUE(plain) << said();
+  const auto late = read("position_reference: {column: u, unit: mm, delay: 2 ms}");
+  ASSERT_TRUE(late) << said();
+  ASSERT_EQ(late->times.size(), plain->times.size() + 1);
+  EXPECT_EQ(late->times[0], plain->times[0]);
+  EXPECT_EQ(late->values[0], plain->values[0]);
+  for (std::size_t i = 0; i < plain->times.size(); ++i) {
+    EXPECT_DOUBLE_EQ(late->times[i + 1], plain->times[i] + 2e-3);
+    EXPECT_EQ(late->values[i + 1], plain->values[i]);
+  }
+  const auto smooth =
+      read("position_reference: {column: u, unit: mm, filter: {moving_average: 2}}");
+  ASSERT_TRUE(smooth) << said();
+  EXPECT_EQ(smooth->values[0], plain->values[0]);
+  EXPECT_DOUBLE_EQ(smooth->values[3], 0.5 * (plain->values[2] + plain->values[3]));
+  const auto logged = read("position_reference: {column: u, unit: mm, offset: -1 ms}");
+  ASSERT_TRUE(logged) << said();
+  EXPECT_TRUE(logged->own_clock);
+  EXPECT_DOUBLE_EQ(logged->times[3], plain->times[3] - 1e-3);
+  EXPECT_FALSE(read("position_reference: {column: u, unit: mm, delay: -1 ms}"));
+  EXPECT_NE(said(), "");
+}
+
 TEST_F(InputTest, AReferenceIsThereAtEverySample) {
   sources_.tables["a.csv"].columns[1].values[7] = NAN;
   EXPECT_FALSE(read("position_reference: {column: u, unit: mm}"));
