@@ -113,5 +113,23 @@ TEST(ExamplesTest, TwoPayloads) {
   EXPECT_NEAR(fit.parameters[1].value - fit.parameters[0].value, 15.0, 3.0 * error);
 }
 
+// The drive follows what it has delayed and smoothed. The generator's loop is not quite that of the
+// axis file, so that more than noise is left.
+TEST(ExamplesTest, AReferenceThatTheDriveDelaysAndSmooths) {
+  const RunResult result =
+      run(read_job_file(AXISFIT_TESTDATA "/contact/delayed-reference.yaml").job);
+  const FitResult& fit = result.fit();
+  ASSERT_TRUE(result.grade.is_usable());
+  EXPECT_LT(fit.reduced_chi_square, 300.0);
+  const auto value = [&](const char* name) {
+    return std::ranges::find(fit.parameters, ParameterId{quantity_index(name)},
+                             &ParameterResult::id)
+        ->value;
+  };
+  EXPECT_NEAR(value("M"), 40.0, 0.4);
+  EXPECT_NEAR(value("B_a"), 120.0, 5.0);
+  EXPECT_NEAR(value("coulomb_friction.F_c"), 15.0, 2.0);
+}
+
 }  // namespace
 }  // namespace axisfit

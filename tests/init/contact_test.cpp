@@ -3,7 +3,9 @@
 // edit.
 #include <gtest/gtest.h>
 
-#include "fit/search/select_effects.h"
+#include <algorithm>
+
+#include "fit/run.h"
 #include "tests/init/made_job.h"
 
 namespace axisfit {
@@ -126,6 +128,28 @@ TEST_F(ContactTest, AStepInTheFirstSampleIsNoSpeed) {
   for (const Recording& r : job_.recordings)
     for (const auto& [quantity, value] : r.overrides)
       EXPECT_NEAR(value, 0.0, 1e-6) << "the axis begins at rest";
+}
+
+// Both cannot be right: the velocity is compared, and asked about.
+TEST_F(ContactTest, AVelocityThatContradictsThePositionIsAskedAbout) {
+  const InitialJob made = contact({"scale-wrong-r0.csv"});
+  EXPECT_TRUE(std::ranges::any_of(made.guesses, [](const std::string& guess) {
+    return guess.starts_with("velocity_mps: it is 0.80015 times the derivative of the position");
+  }));
+  job_ = read().job;
+  const Measurement* velocity = job_.recordings[0].find(Signal::velocity);
+  ASSERT_NE(velocity, nullptr);
+  EXPECT_FALSE(velocity->fitted);
+  const RunResult result = run(job_);
+  EXPECT_EQ(result.grade.reason, FitGrade::Reason::contradiction);
+  EXPECT_NE(result.grade.grade, Grade::explained);
+}
+
+TEST_F(ContactTest, ACurrentAtTheEndOfItsSensorIsSaid) {
+  contact({"clipped-r0.csv"});
+  const ValueCheck command = check_recording(read().job.recordings[0]).command;
+  EXPECT_EQ(command.clipped, 101u);
+  EXPECT_EQ(command.clipped_at, 1.2);
 }
 
 }  // namespace
