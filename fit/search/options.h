@@ -99,7 +99,7 @@ struct SearchOptions {
 
   /// Two effects that hide each other.
   struct Pairs {
-    std::size_t refitted = 2;  ///< of all that gain together what neither does
+    std::size_t refitted = 2;  ///< of each kind (pairs.h)
   } pairs;
 
   /// Whether other recordings, fitted by themselves, tell the same.

@@ -60,10 +60,11 @@ class JointGains {
 struct Candidate {
   std::size_t first = 0, second = 0;  ///< settings
   double gain = 0.0;
+  bool is_hidden = false;
 };
 
-/// The pairs that gain more, beyond what each does alone, than the best of so many does by chance;
-/// the best first. The unit is that of one sample.
+/// The pairs that gain more, beyond what the better of them does alone, than the best of so many
+/// does by chance; the best first. The unit is that of one sample.
 std::vector<Candidate> candidates(const std::vector<Block>& blocks, const JointGains& joint,
                                   const std::vector<EffectSetting>& settings, double unit,
                                   double samples) {
@@ -76,7 +77,8 @@ std::vector<Candidate> candidates(const std::vector<Block>& blocks, const JointG
                        &other = *settings[b.setting].hypothesis;
       const double least = least_gain(one, samples, all) + least_gain(other, samples, 1);
       const double gain = joint.of(a, b);
-      if (gain - a.gain - b.gain > unit * least) found.push_back({a.setting, b.setting, gain});
+      if (gain - std::max(a.gain, b.gain) > unit * least)
+        found.push_back({a.setting, b.setting, gain, gain - a.gain - b.gain > unit * least});
     }
   std::ranges::stable_sort(found, std::greater{}, &Candidate::gain);
   return found;
@@ -105,7 +107,9 @@ std::vector<ScoredPair> pairs_at(const FittedModel& model, double observer_gain,
   const double unit = std::max(1.0, point->mean_square());
   std::vector<ScoredPair> pairs;
   for (const Candidate& c : candidates(blocks, joint, settings, unit, samples)) {
-    if (pairs.size() == limits.refitted) break;
+    if (std::ranges::count(pairs, c.is_hidden, &ScoredPair::is_hidden) ==
+        static_cast<std::ptrdiff_t>(limits.refitted))
+      continue;
     const std::array both{settings[c.first], settings[c.second]};
     const std::array rows{derivatives[c.first], derivatives[c.second]};
     std::optional<ScoreStep> step = scorer.step(both, rows, 0.0);
@@ -116,7 +120,8 @@ std::vector<ScoredPair> pairs_at(const FittedModel& model, double observer_gain,
                      {.hypothesis = hypotheses[c.second].hypothesis,
                       .own = std::move(step->own[1]),
                       .others = step->others},
-                     c.gain / unit});
+                     c.gain / unit,
+                     c.is_hidden});
   }
   return pairs;
 }
@@ -150,8 +155,13 @@ std::vector<ScoredPair> score_pairs(const FittedModel& model,
       });
       if (!is_known) all.push_back(std::move(pair));
     }
-  std::ranges::stable_sort(all, std::greater{}, &ScoredPair::gain);
-  if (all.size() > context.options.pairs.refitted) all.resize(context.options.pairs.refitted);
+  std::ranges::stable_sort(all, std::greater{}, [](const ScoredPair& pair) {
+    return std::pair(pair.is_hidden, pair.gain);
+  });
+  std::size_t of_kind[2] = {};
+  std::erase_if(all, [&](const ScoredPair& pair) {
+    return ++of_kind[pair.is_hidden] > context.options.pairs.refitted;
+  });
   return all;
 }
 

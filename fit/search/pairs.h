@@ -1,6 +1,7 @@
 // Two hypotheses that hide each other: each alone explains next to nothing, both together much, as
 // a neighbour's inertia and a wrist that swings at the same time, or a weight and a friction on an
-// axis that hardly moves.
+// axis that hardly moves. Or each explains much, and recordings that were not fitted refuse it, for
+// what the other would explain is more.
 //
 // With Q_a and Q_b orthonormal and spanning what each does that the free parameters cannot do, and
 // r the residual as in score.h, the joint score is
@@ -20,12 +21,15 @@
 namespace axisfit {
 
 struct ScoredPair {
-  Scored first, second;  ///< where a refit with both starts; `others` are those of the job alone
-  double gain = 0.0;     ///< of both, in units as Scored::scaled_gain
+  Scored first, second;    ///< where a refit with both starts; `others` are those of the job alone
+  double gain = 0.0;       ///< of both, in units as Scored::scaled_gain
+  bool is_hidden = false;  ///< what they gain together neither does alone
 };
 
-/// Those of these hypotheses that gain together what neither does: more, beyond the sum of what
-/// each gains alone, than chance makes of the best of all pairs. The best first, no more than
+/// Those of these hypotheses that gain together more, beyond what the better of them gains alone,
+/// than chance makes of the best of all pairs. First those that are hidden: they gain as much
+/// beyond the sum of both. Then others, each of which may fail on what the other would explain, as
+/// a friction without its offset does. Of each kind the best, and no more than
 /// SearchOptions::Pairs::refitted.
 std::vector<ScoredPair> score_pairs(const FittedModel& model,
                                     std::span<const double> observer_gains,

@@ -4,9 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -131,6 +134,26 @@ TEST(Pairs, PassWhereEachIsNeededBesideTheOther) {
   }
   EXPECT_GT(found->first.gain.fit_gain, 100.0);
   EXPECT_GT(found->second.gain.fit_gain, 100.0);
+}
+
+// Each explains a part of its own, and may fail on what the other would explain.
+TEST(Pairs, AreTwoThatAddUp) {
+  Model<double> truth = slide();
+  hidden_effect_named("coulomb_friction").put_into(truth);
+  hidden_effect_named("constant_force").put_into(truth);
+  const FittedModel model = fitted(two_recordings(truth, slide(), {"M", "B_a"}));
+  const std::vector<ScoredPair> pairs = pairs_in(model, list_of(model));
+  EXPECT_LE(pairs.size(), 4u);
+  EXPECT_TRUE(std::ranges::is_sorted(pairs, std::greater{}, &ScoredPair::is_hidden));
+  bool is_found = false;
+  for (const ScoredPair& pair : pairs) {
+    const std::set<std::string> both{pair.first.hypothesis->name, pair.second.hypothesis->name};
+    if (both != std::set<std::string>{"coulomb_friction", "constant_force"}) continue;
+    is_found = true;
+    EXPECT_FALSE(pair.is_hidden);
+    EXPECT_TRUE(try_pair(model, pair, {}));
+  }
+  EXPECT_TRUE(is_found);
 }
 
 TEST(Pairs, AreNoneWhereOneCauseIsAll) {
