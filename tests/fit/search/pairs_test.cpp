@@ -140,7 +140,7 @@ TEST(Pairs, PassWhereEachIsNeededBesideTheOther) {
 TEST(Pairs, AreTwoThatAddUp) {
   Model<double> truth = slide();
   hidden_effect_named("coulomb_friction").put_into(truth);
-  hidden_effect_named("constant_force").put_into(truth);
+  hidden_effect_named("stroke_spring").put_into(truth);
   const FittedModel model = fitted(two_recordings(truth, slide(), {"M", "B_a"}));
   const std::vector<ScoredPair> pairs = pairs_in(model, list_of(model));
   EXPECT_LE(pairs.size(), 4u);
@@ -148,7 +148,7 @@ TEST(Pairs, AreTwoThatAddUp) {
   bool is_found = false;
   for (const ScoredPair& pair : pairs) {
     const std::set<std::string> both{pair.first.hypothesis->name, pair.second.hypothesis->name};
-    if (both != std::set<std::string>{"coulomb_friction", "constant_force"}) continue;
+    if (both != std::set<std::string>{"coulomb_friction", "stroke_spring"}) continue;
     is_found = true;
     EXPECT_FALSE(pair.is_hidden);
     EXPECT_TRUE(try_pair(model, pair, {}));
