@@ -77,7 +77,8 @@ std::optional<OtherDay> other_day(const Job& job, const FitResult& fit, std::siz
     best.result = std::move(found.recordings.front());
     best.force = std::move(force);
   }
-  if (!(best.percent < usual)) return std::nullopt;
+  // What the first half alone lacks is no other value of a parameter.
+  if (best.differing.empty() || !(best.percent < usual)) return std::nullopt;
   return best;
 }
 

@@ -171,6 +171,7 @@ std::optional<TriedPair> try_pair(const FittedModel& model, const ScoredPair& pa
   Tried second = together(model, pair, context);
   const Improvement both = improvement(residual_series(model.job, model.fit), second.residuals);
   if (!second.fit.is_usable() || !both.comparable || !(both.p_value < strictness.chance) ||
+      rejection_by_free_run(model.fit, second.fit) ||
       rejection_by_force(missing_percents(model.job, model.fit),
                          missing_percents(second.job, second.fit), context.options.acceptance))
     return std::nullopt;

@@ -51,7 +51,7 @@ class RoundTrial {
     // Where nothing but noise is left, what lowers no error elsewhere is chance.
     if (!options_.explained && !options_.held_out_blocks && all_are_rejected(result_.models)) {
       try_elsewhere();
-      reject_what_raises_the_force();
+      reject_what_does_harm();
     }
     choose();
     return std::move(result_);
@@ -187,7 +187,7 @@ class RoundTrial {
       const auto end = std::ranges::upper_bound(next, places.end(), turn(*next), {}, turn);
       const std::size_t known = result_.models.size();
       refit_all({next, end});
-      reject_what_raises_the_force(known);
+      reject_what_does_harm(known);
       next = end;
     }
     for (; next != places.end(); ++next)
@@ -269,11 +269,14 @@ class RoundTrial {
   }
 
   /// An error of an instrument or of time may follow a recording more closely and yet ask for a
-  /// larger force that the machine does not have.
-  /// Looks at the refits from `first` on.
-  void reject_what_raises_the_force(std::size_t first = 0) {
+  /// larger force that the machine does not have; a force beside the like of it may leave both
+  /// open. Looks at the refits from `first` on.
+  void reject_what_does_harm(std::size_t first = 0) {
     for (Tried& e : std::span(result_.models).subspan(first)) {
       if (e.rejection) continue;
+      if ((e.rejection = rejection_by_free_run(model_.fit, e.fit)) ||
+          (e.rejection = rejection_as_indistinct(model_.fit, e.fit)))
+        continue;
       if (!force_before_) force_before_ = missing_percents(model_.job, model_.fit);
       e.rejection = rejection_by_force(*force_before_, missing_percents(e.job, e.fit),
                                        context_.options.acceptance);

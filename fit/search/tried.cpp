@@ -154,6 +154,25 @@ std::optional<Rejection> rejection_by_force(const std::vector<double>& before,
   return std::nullopt;
 }
 
+std::optional<Rejection> rejection_by_free_run(const FitResult& before, const FitResult& after) {
+  for (std::size_t r = 0; r < before.recordings.size(); ++r)
+    if (before.recordings[r].free_running.finished && !after.recordings[r].free_running.finished)
+      return Rejection{.test = Rejection::Test::simulation};
+  return std::nullopt;
+}
+
+std::optional<Rejection> rejection_as_indistinct(const FitResult& before, const FitResult& after) {
+  constexpr double kTimes = 100.0;
+  for (std::size_t i = 0; i < before.parameters.size(); ++i) {
+    const ParameterUncertainty &known = before.parameters[i].uncertainty,
+                               &now = after.parameters[i].uncertainty;
+    if (known.determined && !now.at_bound &&
+        !(now.determined && now.standard_error < kTimes * known.standard_error))
+      return Rejection{.test = Rejection::Test::distinct};
+  }
+  return std::nullopt;
+}
+
 HypothesisValues values_in(const Tried& tried) {
   return values_in(tried.job, tried.fit, tried.hypothesis);
 }

@@ -76,6 +76,15 @@ std::optional<Rejection> rejection_by_force(const std::vector<double>& before,
                                             const std::vector<double>& after,
                                             const SearchOptions::Acceptance& limits);
 
+/// Why one is refused whose free run does not finish where that of the model before did, of a
+/// recording to validate, too. None where it does.
+std::optional<Rejection> rejection_by_free_run(const FitResult& before, const FitResult& after);
+
+/// Why one is refused beside which a parameter of the model is not known any more: its standard
+/// error is a hundred times what it was before, so that the two stand for the same. None where
+/// there is no such parameter.
+std::optional<Rejection> rejection_as_indistinct(const FitResult& before, const FitResult& after);
+
 /// What its quantities are.
 HypothesisValues values_in(const Tried& tried);
 

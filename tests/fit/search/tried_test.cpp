@@ -120,6 +120,34 @@ TEST(RejectionByForce, IsForOneThatRisesInAnyRecording) {
             (Rejection{.test = Rejection::Test::force, .found = 343.0, .required = 12.5}));
 }
 
+TEST(RejectionByFreeRun, IsForOneThatEndsEarlierInAnyRecording) {
+  FitResult before, after;
+  before.recordings.resize(2);
+  before.recordings[1].free_running.finished = true;
+  after = before;
+  EXPECT_EQ(rejection_by_free_run(before, after), std::nullopt);
+  after.recordings[0].free_running.finished = true;
+  EXPECT_EQ(rejection_by_free_run(before, after), std::nullopt);
+  after.recordings[1].free_running.finished = false;
+  EXPECT_EQ(rejection_by_free_run(before, after), Rejection{.test = Rejection::Test::simulation});
+}
+
+TEST(RejectionAsIndistinct, IsForOneBesideWhichAParameterIsOpen) {
+  FitResult before, after;
+  before.parameters.resize(2);
+  before.parameters[0].uncertainty = {.determined = true, .standard_error = 0.1};
+  after = before;
+  after.parameters.resize(3);
+  EXPECT_EQ(rejection_as_indistinct(before, after), std::nullopt);
+  after.parameters[0].uncertainty.standard_error = 5.0;
+  EXPECT_EQ(rejection_as_indistinct(before, after), std::nullopt);
+  const Rejection rejection{.test = Rejection::Test::distinct};
+  after.parameters[0].uncertainty.standard_error = 50.0;
+  EXPECT_EQ(rejection_as_indistinct(before, after), rejection);
+  after.parameters[0].uncertainty = {};
+  EXPECT_EQ(rejection_as_indistinct(before, after), rejection);
+}
+
 TEST(MissingPercents, AreOfTheRecordingsThatValidate) {
   const HiddenEffect secret = hidden_effect_named("coulomb_friction");
   Job job = secret.job();
