@@ -131,9 +131,11 @@ class Page {
     Html all = html(R"(<div class="verdict {}">{}</div>)", verdict_class(), summary);
     for (const Discrimination& s : run_result_.discriminations)
       all += paragraph_of(discrimination_text(s, job_.vocabulary()));
-    if (run_result_.interrupted)
-      all += paragraph_of(fmt::format("Stopped{} before everything requested was finished. {}",
-                                      stop_reason(run_result_), stopped_errors_text(run_result_)));
+    if (run_result_.interrupted) {
+      all += paragraph_of(fmt::format("Stopped{} before everything requested was finished.",
+                                      stop_reason(run_result_)));
+      all += paragraph_of(stopped_errors_text(run_result_));
+    }
     const auto determined = std::ranges::count_if(
         fit_.parameters, [](const ParameterResult& p) { return p.uncertainty.determined; });
     const bool closed = run_result_.selection && run_result_.selection->models.size() > 1;

@@ -150,10 +150,8 @@ std::string text_of(const warning::RepeatedInput& w, const Names&) {
 std::string text_of(const warning::ClippedInput& w, const Names& name) {
   return fmt::format(
       "The size of the command is exactly {} in {} samples, and noisy elsewhere: its sensor is at "
-      "the end of "
-      "its "
-      "range, and the {} beyond is not recorded. Record with a wider range, or what the drive was "
-      "told.",
+      "the end of its range, and the {} beyond is not recorded. Record with a wider range, or what "
+      "the drive was told.",
       command_text(w.value, name.vocabulary), w.samples, words_on(name.vocabulary, "force"));
 }
 

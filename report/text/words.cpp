@@ -253,8 +253,7 @@ std::string grade_text(const Job& job, const FitGrade& grade, const FitResult& f
     case standstill:
       return heading +
              ": no fitted signal changes by more than its noise, and a constant explains it as "
-             "well "
-             "as the model. Are these the right columns?";
+             "well as the model. Are these the right columns?";
     case simulation:
       if (grade.uses.missing_force_percent < GradeOptions().largest_force &&
           grade.uses.missing_force_percent && !std::isnan(grade.percent))
@@ -284,8 +283,7 @@ std::string grade_text(const Job& job, const FitGrade& grade, const FitResult& f
     case contradiction:
       return fmt::format(
           "{}: {} is not the derivative of what else is recorded of the motion, by its scale or "
-          "its "
-          "sign. One of them is wrong, and the estimates with it: see the warnings.",
+          "its sign. One of them is wrong, and the estimates with it: see the warnings.",
           heading, signal());
     case residual:
     case stopped:
