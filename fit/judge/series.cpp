@@ -6,6 +6,7 @@
 #include "base/linear_algebra.h"
 #include "fit/errors/input_noise.h"
 #include "fit/solve/solve.h"
+#include "sim/sampling.h"
 
 namespace axisfit {
 namespace {
@@ -22,6 +23,14 @@ void add_input_noise(const Job& job, const Linearization& at, const InputNoise& 
   }
 }
 
+/// Whether an event of a simulation passes so close to an instant (s) that no clock would tell on
+/// which side of it that is: two parts in a hundred of the interval of the readings.
+bool is_at_event(const std::vector<ModeChange>& modes, double time, double interval) {
+  constexpr double kPart = 0.02;
+  const auto next = std::ranges::lower_bound(modes, time - kPart * interval, {}, &ModeChange::time);
+  return next != modes.begin() && next != modes.end() && next->time < time + kPart * interval;
+}
+
 }  // namespace
 
 std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& result) {
@@ -30,6 +39,7 @@ std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& res
     const Recording& recording = job.recordings[r];
     const SimulatedRecording& simulation = result.recordings[r].as_fitted();
     if (!simulation.finished) continue;
+    const double interval = mean_interval(recording.times);
     for (std::size_t m = 0; m < recording.measurements.size(); ++m) {
       const Measurement& measurement = recording.measurements[m];
       if (!measurement.fitted) continue;
@@ -44,12 +54,18 @@ std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& res
       for (std::size_t i = first; i < recording.times.size(); ++i) {
         if (!measurement.counts(i)) continue;
         ResidualSeries& series = recording.fits(measurement, i) ? fitted : unfitted;
+        const double residual =
+            (measurement.values[i] - simulation.simulated[m][i]) / measurement.sigma;
         series.samples.push_back(i);
-        series.values.push_back((measurement.values[i] - simulation.simulated[m][i]) /
-                                measurement.sigma);
+        series.values.push_back(residual);
+        if (is_at_event(simulation.modes, recording.times[i], interval))
+          series.at_events += std::max(0.0, residual * residual - 1.0);
       }
-      for (ResidualSeries* series : {&fitted, &unfitted})
-        if (!series->values.empty()) list.push_back(std::move(*series));
+      for (ResidualSeries* series : {&fitted, &unfitted}) {
+        if (series->values.empty()) continue;
+        series->at_events /= static_cast<double>(series->values.size());
+        list.push_back(std::move(*series));
+      }
     }
   }
   if (result.at_solution && result.at_solution->input_noise)
@@ -103,9 +119,9 @@ bool is_explained(const ResidualSeries& series, const GradeOptions& options) {
   const double spread =
       series.noise == NoiseSource::given ? std::sqrt(2.0) : options.spread_of_estimated_noise;
   const double input = series.input_noise_given ? series.input_noise : 0.0;
-  return mean_square(series.values) < 1.0 +
-                                          std::max(options.excess, options.errors * spread / root) +
-                                          options.errors * series.allowance + input;
+  return mean_square(series.values) <
+         1.0 + std::max(options.excess, options.errors * spread / root) +
+             options.errors * series.allowance + series.at_events + input;
 }
 
 bool is_fitted_to_noise(const std::vector<ResidualSeries>& list) {

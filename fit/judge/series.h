@@ -33,6 +33,9 @@ struct ResidualSeries : SeriesKey {
   /// Samples of the noise per independent one: above one where the filter of the measurement made
   /// it so.
   double noise_time = 1.0;
+  /// Mean square that readings add, beyond the noise, at whose instant an event passes: an
+  /// acceleration jumps there, and no clock tells on which side it was read.
+  double at_events = 0.0;
   /// Mean square that the uncertainty of the estimates adds, on average; zero where the series was
   /// fitted, and until allow_for_parameters() finds it.
   double allowance = 0.0;
@@ -56,11 +59,11 @@ void allow_for_parameters(const Job& job, const FitResult& result,
                           std::vector<ResidualSeries>& list);
 
 /// Whether a series shows no more than its noise: a mean square within 5 % of one, or within four
-/// standard errors of that of white noise, the allowance four times, and noise of the input where
-/// its size is given. The colour of the residual does not widen these limits, for what a model
-/// lacks is coloured, too; the colour that a filter of the measurement gives its noise does. Where
-/// the noise was estimated from the series itself, its size carries no information: the series is
-/// then explained if it is hardly more coloured than that.
+/// standard errors of that of white noise, the allowance four times, what events at readings add,
+/// and noise of the input where its size is given. The colour of the residual does not widen these
+/// limits, for what a model lacks is coloured, too; the colour that a filter of the measurement
+/// gives its noise does. Where the noise was estimated from the series itself, its size carries no
+/// information: the series is then explained if it is hardly more coloured than that.
 bool is_explained(const ResidualSeries& series, const GradeOptions& options = {});
 
 /// Whether every fitted series shows no more than its noise. What only those to validate lack shows

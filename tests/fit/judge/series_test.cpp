@@ -103,6 +103,15 @@ TEST_F(ResidualSeriesTest, AreThoseOfTheHeldSimulationWhereThatWasFitted) {
   EXPECT_EQ(residual_series(job_, result_)[0].values[3], 1.5);
 }
 
+TEST_F(ResidualSeriesTest, KnowWhatReadingsAddAtWhoseInstantAnEventPasses) {
+  // Sampled every 100 ms: 2 ms to either side. The first mode is that of the start.
+  result_.recordings[0].free_running.modes = {{0.0, {}}, {0.3015, {}}, {0.503, {}}, {0.7985, {}}};
+  const ResidualSeries series = residual_series(job_, result_)[0];
+  EXPECT_EQ(series.values[3], 6.5);
+  EXPECT_EQ(series.values[8], 9.0);
+  EXPECT_NEAR(series.at_events, (6.5 * 6.5 - 1.0 + 9.0 * 9.0 - 1.0) / 10.0, 1e-12);
+}
+
 ResidualSeries series_of(std::vector<double> values) {
   ResidualSeries series;
   series.values = std::move(values);
@@ -126,6 +135,14 @@ TEST(IsFittedToNoise, AsksFittedSeriesAlone) {
   EXPECT_TRUE(is_fitted_to_noise({noise, more}));
   more.fitted = true;
   EXPECT_FALSE(is_fitted_to_noise({noise, more}));
+}
+
+TEST(IsExplained, LeavesOutWhatEventsAtReadingsAdd) {
+  ResidualSeries series = series_of(Normal(1).values(2000));
+  series.values[700] = 15.0;
+  EXPECT_FALSE(is_explained(series));
+  series.at_events = (15.0 * 15.0 - 1.0) / 2000.0;
+  EXPECT_TRUE(is_explained(series));
 }
 
 TEST(IsExplained, OfManySamplesIsFivePercent) {
