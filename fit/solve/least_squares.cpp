@@ -10,10 +10,15 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <span>
+#include <utility>
 
+#include "base/linear_algebra.h"
 #include "base/parallel.h"
 
 namespace axisfit {
@@ -278,6 +283,33 @@ class Pace {
   bool is_known_ = false;
 };
 
+/// Whether what the linearised costs promise leads to a cost.
+class Promise {
+ public:
+  /// `linearized` gives the costs at the present point with their Jacobian, if that is known.
+  Promise(double cost, std::function<std::optional<Linearization>()> linearized)
+      : cost_(cost), linearized_(std::move(linearized)) {}
+
+  void enter(const ceres::IterationSummary& summary) {
+    // A first step has to show first what a promise is worth.
+    if (!std::isfinite(cost_) || summary.iteration == 0 || !summary.step_is_successful) return;
+    const std::optional<Linearization> at = linearized_();
+    if (!at) return;
+    Eigen::MatrixXd columns = at->jacobian;
+    for (auto column : columns.colwise())
+      if (const double length = column.norm(); length > 0.0) column /= length;
+    const Eigen::VectorXd shown = columns * LeastSquaresSolver(columns).solve(at->residuals);
+    is_too_little_ = summary.cost - kTimes * 0.5 * shown.squaredNorm() > cost_;
+  }
+  bool is_too_little() const { return is_too_little_; }
+
+ private:
+  static constexpr double kTimes = 5.0;  ///< what is curved may hold more than was promised
+  double cost_;
+  std::function<std::optional<Linearization>()> linearized_;
+  bool is_too_little_ = false;
+};
+
 /// Whether a solution stands before a jump of its cost that bars little. Of a simulation a reading
 /// jumps where an event passes its instant, an acceleration at an impact above all. Then the search
 /// along each step ends just before the jump, and gains next to nothing of what the step promised.
@@ -307,31 +339,33 @@ class Stall {
   int in_vain_ = 0;
 };
 
-/// Ends a solution as soon as a step arrives at a bound at which it did not begin, it stalls or is
-/// too slow to be of use, or it is to stop.
+/// Ends a solution as soon as a step arrives at a bound at which it did not begin, it stalls, is
+/// too slow or promises too little to be of use, or it is to stop.
 class EarlyTermination : public ceres::IterationCallback {
  public:
-  EarlyTermination(const BoundConstraints& point, std::size_t size, Pace pace, Stall stall,
-                   const StopFlag* stop)
-      : point_(point), pace_(pace), stall_(stall), stop_(stop) {
+  EarlyTermination(const BoundConstraints& point, std::size_t size, Pace pace, Promise promise,
+                   Stall stall, const StopFlag* stop)
+      : point_(point), pace_(pace), promise_(std::move(promise)), stall_(stall), stop_(stop) {
     for (std::size_t i = 0; i < size; ++i) began_there_.push_back(point.at_bound(i));
   }
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (is_set(stop_)) return ceres::SOLVER_ABORT;
     pace_.enter(summary);
+    promise_.enter(summary);
     stall_.enter(summary);
-    if (pace_.is_too_slow() || stall_.is_stalled()) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    if (is_of_no_use() || stall_.is_stalled()) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     for (std::size_t i = 0; i < began_there_.size() && summary.step_is_successful; ++i)
       if (!began_there_[i] && point_.at_bound(i)) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     return ceres::SOLVER_CONTINUE;
   }
-  bool was_too_slow() const { return pace_.is_too_slow(); }
+  bool is_of_no_use() const { return pace_.is_too_slow() || promise_.is_too_little(); }
   bool has_stalled() const { return stall_.is_stalled(); }
 
  private:
   const BoundConstraints& point_;
   Pace pace_;
+  Promise promise_;
   Stall stall_;
   const StopFlag* stop_;
   std::vector<bool> began_there_;
@@ -373,6 +407,12 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
   // gradient points inwards.
   BoundConstraints point(space, options.fixed, u, problem);
   if (point.any_at_bound()) point.review();
+  const auto& cached = parallel_evaluation.costs();
+  const auto known_linearization = [&]() -> std::optional<Linearization> {
+    const auto is_known = [u](const CachedCost* cost) { return cost->knows_jacobian(u); };
+    if (!std::ranges::all_of(cached, is_known)) return std::nullopt;
+    return evaluated(space, {cached.begin(), cached.end()}, result.u, true);
+  };
   // One that comes and goes is left free, and may creep along its bound until the iterations are
   // spent. Then it is fixed there, and a few more find the rest.
   constexpr int kLastIterations = 10;
@@ -384,10 +424,10 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
     }
     solver.max_num_iterations =
         is_last ? kLastIterations : std::max(1, options.max_iterations - result.iterations);
-    const Pace pace(0.5 * options.give_up_above * problem.NumResiduals(),
-                    solver.max_num_iterations);
-    EarlyTermination end(point, space.size(), pace, Stall(options.jumps, problem.NumResiduals()),
-                         options.stop);
+    const double cost_to_reach = 0.5 * options.give_up_above * problem.NumResiduals();
+    EarlyTermination end(point, space.size(), Pace(cost_to_reach, solver.max_num_iterations),
+                         Promise(cost_to_reach, known_linearization),
+                         Stall(options.jumps, problem.NumResiduals()), options.stop);
     solver.callbacks = {&end};
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
@@ -398,7 +438,7 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
     result.cost = result.usable ? summary.final_cost : std::numeric_limits<double>::infinity();
     result.iterations += static_cast<int>(summary.iterations.size());
     result.message = summary.message;
-    if (!result.usable || !point.any_at_bound() || is_last || end.was_too_slow()) break;
+    if (!result.usable || !point.any_at_bound() || is_last || end.is_of_no_use()) break;
     if (result.iterations > options.max_iterations) {
       if (result.converged || !point.fix_at_bounds()) break;
       is_last = true;
@@ -408,11 +448,9 @@ SolveResult minimize(const ParameterSpace& space, Costs costs, const Eigen::Vect
     if (!point.review() && !stopped) break;
   }
   result.reduced_cost = 2.0 * result.cost / problem.NumResiduals();
-  const auto& cached = parallel_evaluation.costs();
-  const auto is_known = [u](const CachedCost* cost) { return cost->knows_jacobian(u); };
-  if (result.usable && std::ranges::all_of(cached, is_known))
-    result.at_solution = std::make_shared<const Linearization>(
-        evaluated(space, {cached.begin(), cached.end()}, result.u, true));
+  if (result.usable)
+    if (auto known = known_linearization())
+      result.at_solution = std::make_shared<const Linearization>(*std::move(known));
   return result;
 }
 

@@ -27,7 +27,8 @@ struct SolveOptions {
   bool penalize_distance_from_start = false;
   std::vector<std::size_t> fixed;  ///< parameters that stay as they are
   /// A reduced cost: a solution ends early, not converged, that would stay above it even if every
-  /// iteration left to it did as much as the best of the last ones.
+  /// iteration left to it did as much as the best of the last ones, or if it gained five times what
+  /// the linearised costs promise.
   double give_up_above = std::numeric_limits<double>::infinity();
   /// The cost may jump, as that of a simulation does where an event passes the instant of a
   /// reading: a solution ends before a jump that bars little.

@@ -114,6 +114,22 @@ TEST(LeastSquares, GivesUpWhatWouldNotComeBelowACost) {
   EXPECT_LT(given_up.iterations, whole.iterations);
 }
 
+TEST(LeastSquares, GivesUpWhatPromisesTooLittle) {
+  const auto solved = [](double start, double give_up_above) {
+    Costs costs;
+    costs.push_back(std::make_unique<Cubes>());
+    SolveOptions options;
+    options.function_tolerance = 1e-15;
+    options.give_up_above = give_up_above;
+    return minimize(two_parameters(), std::move(costs), Eigen::Vector2d(start, start), options);
+  };
+  // From x = 1.2 steps lead to 0.8, 0.53 and 0.36. There the cost is 0.5 + x^6, and the linearised
+  // costs promise x^6: five times as much would lead to 0.5 - 4 x^6 = 0.49.
+  EXPECT_FALSE(solved(1.2, 0.32).converged);
+  EXPECT_LE(solved(1.2, 0.32).iterations, 4);  // the start is the first of them
+  EXPECT_GT(solved(1.2, 0.34).iterations, 8);
+}
+
 /// A first parameter that 1 would suit best, in noise of the size 1; but from `jump` on another
 /// residual is five of these.
 class Jumping : public ceres::CostFunction {
