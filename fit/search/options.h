@@ -93,8 +93,10 @@ struct SearchOptions {
     /// score is many times that: then the refit may find more.
     double promise = 0.4, much = 10.0;
     double rival_part = 0.6;  ///< of the best gain: is refitted with the best, others if that fails
-    std::size_t at_once = 2;  ///< that are asked of other recordings side by side
-    std::size_t blocks = 10;  ///< of a recording, every second of which is held out
+    /// Times the gain of the best effect alone, of two that are tried at once before any alone.
+    double pair_times = 1.25;
+    std::ptrdiff_t at_once = 2;  ///< that are refitted, or asked of other recordings, side by side
+    std::size_t blocks = 10;     ///< of a recording, every second of which is held out
   } round;
 
   /// Two effects that hide each other.
@@ -128,6 +130,8 @@ struct SearchOptions {
     /// The same where the roles of the recordings were exchanged: a second try finds more by
     /// chance.
     double of_model_exchanged = 70.0;
+    /// The same of effects that were found together, where no other way to them is tried.
+    double of_complete_model = 90.0;
     /// Along the motion, of an effect with a period: what it could imitate does not repeat as
     /// often, so that it is named whatever part it explains.
     double periods = 30.0;

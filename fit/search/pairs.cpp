@@ -104,7 +104,8 @@ std::vector<ScoredPair> pairs_at(const FittedModel& model, double observer_gain,
   const JointGains joint(blocks, point->residuals);
 
   const SearchOptions::Pairs& limits = context.options.pairs;
-  const double unit = std::max(1.0, point->mean_square());
+  const double sum_of_squares = point->residuals.squaredNorm(),
+               unit = std::max(1.0, point->mean_square());
   std::vector<ScoredPair> pairs;
   for (const Candidate& c : candidates(blocks, joint, settings, unit, samples)) {
     if (std::ranges::count(pairs, c.is_hidden, &ScoredPair::is_hidden) ==
@@ -114,14 +115,17 @@ std::vector<ScoredPair> pairs_at(const FittedModel& model, double observer_gain,
     const std::array rows{derivatives[c.first], derivatives[c.second]};
     std::optional<ScoreStep> step = scorer.step(both, rows, 0.0);
     if (!step) continue;  // a strength would leave its range
-    pairs.push_back({{.hypothesis = hypotheses[c.first].hypothesis,
-                      .own = std::move(step->own[0]),
-                      .others = step->others},
-                     {.hypothesis = hypotheses[c.second].hypothesis,
-                      .own = std::move(step->own[1]),
-                      .others = step->others},
-                     c.gain / unit,
-                     c.is_hidden});
+    pairs.push_back(
+        {{.hypothesis = hypotheses[c.first].hypothesis,
+          .own = std::move(step->own[0]),
+          .others = step->others},
+         {.hypothesis = hypotheses[c.second].hypothesis,
+          .own = std::move(step->own[1]),
+          .others = step->others},
+         c.gain / unit,
+         c.is_hidden,
+         is_most(c.gain, sum_of_squares, sum_of_squares / std::max(1e-300, point->mean_square()),
+                 context.options.shortlist)});
   }
   return pairs;
 }

@@ -24,6 +24,7 @@ struct ScoredPair {
   Scored first, second;    ///< where a refit with both starts; `others` are those of the job alone
   double gain = 0.0;       ///< of both, in units as Scored::scaled_gain
   bool is_hidden = false;  ///< what they gain together neither does alone
+  bool is_most = false;    ///< they explain most of what is missing (Shortlist::has_most)
 };
 
 /// Those of these hypotheses that gain together more, beyond what the better of them gains alone,

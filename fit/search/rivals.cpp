@@ -69,15 +69,18 @@ std::vector<Tried> try_rivals(const SearchState& state, std::size_t place, Count
   if (list.empty()) return list;
   const Job others = state.chain.job_with_accepted(state.chain.declared().job, place);
   const FittedModel& present = state.current();
-  const double worthless =
-      worthless_cost(present.fit, residual_series(present.job, present.fit),
-                     state.accepted()[place].hypothesis.parameters(), context.options);
+  const auto residuals = residual_series(present.job, present.fit);
+  const double worthless = worthless_cost(
+      present.fit, residuals, state.accepted()[place].hypothesis.parameters(), context.options);
+  // What does as well as a model that leaves noise alone is not far from it.
+  const bool is_nearby = is_fitted_to_noise(residuals);
   parallel_for(list.size(), [&](std::size_t i) {
     const auto score = exchange_score(present, state.accepted(), others, rivals[i]);
     if (score && is_out_of_reach(*score, context.options)) return;
     Scored start = with_strengths(rivals[i], others, context);
     if (start.others.empty()) start.others = initial_values(others);
-    list[i] = try_hypothesis(others, start, context, {.give_up_above = worthless});
+    list[i] = try_hypothesis(others, start, context,
+                             {.give_up_above = worthless, .is_nearby = is_nearby});
   });
   std::erase_if(list, [](const Tried& t) { return !t.fit.is_usable(); });
   return list;

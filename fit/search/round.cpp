@@ -1,6 +1,8 @@
 #include "fit/search/round.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <mutex>
@@ -41,6 +43,7 @@ class RoundTrial {
   }
 
   RoundResult run() && {
+    if (options_.pairs && (result_.pair = large_pair())) return std::move(result_);
     refit_in_turns(choice());
     if (all_are_rejected(result_.models) && score_the_rest()) {
       result_.models.clear();
@@ -96,10 +99,43 @@ class RoundTrial {
 
   const Scored& entry(std::size_t place) const { return memory_.list->entries[place]; }
 
+  bool is_excluded(const Hypothesis& hypothesis) const {
+    return std::ranges::any_of(options_.excluded,
+                               [&](const Hypothesis& c) { return is_same_form(c, hypothesis); });
+  }
+
+  void score_first() {
+    if (!memory_.list) memory_.list = scored({first_gain()});
+  }
+
+  /// Two plain laws that explain most of what is missing, if none does alone, and pass.
+  std::optional<TriedPair> large_pair() {
+    const bool is_near = is_exact_ || model_.fit.reduced_chi_square < context_.options.near_noise;
+    if (is_near || memory_.has_no_large_pair) return std::nullopt;
+    score_first();
+    const Shortlist& list = *memory_.list;
+    memory_.has_no_large_pair = true;
+    if (list.has_most) return std::nullopt;
+    std::vector<Shortlist::Promise> hypotheses = list.promises;
+    std::erase_if(hypotheses, [&](const Shortlist::Promise& p) {
+      return p.hypothesis->kind != HypothesisKind::effect || p.hypothesis->parameters() > 1 ||
+             is_excluded(*p.hypothesis);
+    });
+    if (hypotheses.empty()) return std::nullopt;
+    const auto pairs = score_pairs(model_, std::array{first_gain()}, hypotheses, context_);
+    const auto best = std::ranges::max_element(pairs, {}, &ScoredPair::gain);
+    if (best == pairs.end() || !best->is_most) return std::nullopt;
+    const double alone = std::ranges::max(list.promises, {}, &Shortlist::Promise::gain).gain;
+    if (best->gain < limits().pair_times * alone) return std::nullopt;
+    report_progress("trying " + best->first.hypothesis->name + " and " +
+                    best->second.hypothesis->name);
+    return try_pair(model_, *best, context_);
+  }
+
   /// The places in the shortlist of what is to be refitted.
   std::vector<std::size_t> choice() {
-    if (!memory_.list) {
-      memory_.list = scored({first_gain()});
+    score_first();
+    if (!std::exchange(memory_.is_compared, true)) {
       fit_entries_from_afar();
       if (!memory_.list->has_most) score_the_rest();
       memory_.refits.resize(memory_.list->entries.size());
@@ -108,10 +144,7 @@ class RoundTrial {
     std::vector<std::size_t> places(memory_.list->entries.size());
     std::iota(places.begin(), places.end(), 0);
     std::erase_if(places, [&](std::size_t place) {
-      const auto is_this = [&other = *entry(place).hypothesis](const Hypothesis& c) {
-        return is_same_form(c, other);
-      };
-      return is_hopeless(entry(place)) || std::ranges::any_of(options_.excluded, is_this);
+      return is_hopeless(entry(place)) || is_excluded(*entry(place).hypothesis);
     });
     return places;
   }
@@ -179,19 +212,45 @@ class RoundTrial {
     const auto turn = [&](std::size_t place) {
       return best == nullptr ? Turn::second : turn_of(entry(place), *best);
     };
-    std::ranges::stable_sort(places, {}, turn);
+    std::ranges::stable_sort(places, {}, [&](std::size_t place) {
+      return std::pair(turn(place), -entry(place).scaled_gain);
+    });
     auto next = places.begin();
     while (next != places.end()) {
       const bool none_passes = all_are_rejected(result_.models);
       if (!none_passes && (turn(*next) > Turn::near_it || any_explains())) break;
-      const auto end = std::ranges::upper_bound(next, places.end(), turn(*next), {}, turn);
-      const std::size_t known = result_.models.size();
-      refit_all({next, end});
-      reject_what_does_harm(known);
-      next = end;
+      next = refit_while_open(next,
+                              std::ranges::upper_bound(next, places.end(), turn(*next), {}, turn));
+    }
+    // What leaves more than noise may be the plain form of a richer law.
+    if (next != places.end() && !any_explains()) {
+      const auto rest = std::stable_partition(
+          next, places.end(), [&](std::size_t place) { return is_richer_form(entry(place)); });
+      next = refit_while_open(next, rest);
     }
     for (; next != places.end(); ++next)
       if (turn(*next) != Turn::less) result_.unrefitted.push_back(entry(*next));
+  }
+
+  /// A few at once, until one that passes leaves nothing but noise; returns the first of the rest.
+  std::vector<std::size_t>::iterator refit_while_open(std::vector<std::size_t>::iterator next,
+                                                      std::vector<std::size_t>::iterator end) {
+    while (next != end && !any_explains()) {
+      const auto few = next + std::min<std::ptrdiff_t>(end - next, limits().at_once);
+      const std::size_t known = result_.models.size();
+      refit_all({next, few});
+      reject_what_does_harm(known);
+      next = few;
+    }
+    return next;
+  }
+
+  /// Whether it is one that passes, with more shapes.
+  bool is_richer_form(const Scored& entry) const {
+    return std::ranges::any_of(result_.models, [&](const Tried& e) {
+      return !e.rejection && is_same(e.hypothesis, *entry.hypothesis) &&
+             e.hypothesis.shapes.size() < entry.hypothesis->shapes.size();
+    });
   }
 
   /// Whether one that passes leaves nothing but noise.
@@ -201,15 +260,28 @@ class RoundTrial {
     });
   }
 
-  /// The reduced cost below which a refit must come: that of the model, or of one that is clearly
-  /// worse than the best that passes.
-  double cost_to_reach() const {
-    double cost = reduced_cost(model_.fit);
+  /// The reduced cost above which a refit is clearly worse than the best that passes.
+  double worthless_cost_here() const {
+    double cost = INFINITY;
     for (const Tried& e : result_.models)
       if (!e.rejection)
         cost = std::min(
             cost, worthless_cost(e.fit, e.residuals, e.hypothesis.parameters(), context_.options));
     return cost;
+  }
+
+  /// The reduced cost above which a refit with it is no better than chance, by half of what the
+  /// acceptance test asks.
+  double chance_cost(const Hypothesis& hypothesis) const {
+    double unit = INFINITY, count = 0.0;
+    for (const ResidualSeries& series : before_) {
+      if (!series.fitted) continue;
+      const std::vector<double> slow(series.values.size(), 1.0);
+      unit = std::min({unit, mean_square(series.values), variance_along(slow, series.values)});
+      count += static_cast<double>(series.values.size());
+    }
+    const double least = least_gain(hypothesis, samples_of(before_), result_.tried);
+    return reduced_cost(model_.fit) - 0.5 * least * unit / std::max(1.0, count);
   }
 
   /// Refits with each of these and judges it.
@@ -223,7 +295,7 @@ class RoundTrial {
     std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) {
       return entry(places[i]).hypothesis->parameters();
     });
-    const double cost = cost_to_reach();
+    const double worthless = worthless_cost_here();
     int done = 0;
     std::mutex mutex;
     parallel_for(order.size(), [&](std::size_t k) {
@@ -236,7 +308,7 @@ class RoundTrial {
       };
       report(0);
       Tried& e = models[first + order[k]];
-      e = refitted(place, cost);
+      e = refitted(place, worthless);
       judge(e, before_, strictness(), context_.options);
       if (is_cut_short(e)) {
         resume(e, context_);
@@ -254,16 +326,19 @@ class RoundTrial {
            e.gain.fit_gain > least_gain(e.hypothesis, e.gain.samples, result_.tried);
   }
 
-  /// With an entry of the shortlist, given up above a reduced cost.
-  Tried refitted(std::size_t place, double cost) {
+  /// With an entry of the shortlist, given up above a reduced cost at which it is worthless, or no
+  /// better than chance.
+  Tried refitted(std::size_t place, double worthless) {
     std::optional<Tried>& known = memory_.refits[place];
     if (known) return *known;
-    const double present = reduced_cost(model_.fit);
+    const double chance = chance_cost(*entry(place).hypothesis);
     const bool may_be_nearby = is_close() && model_.job.options.is_continued();
-    Tried tried =
-        try_hypothesis(model_.job, entry(place), context_,
-                       {.give_up_above = cost, .before = &model_.fit, .is_nearby = may_be_nearby});
-    tried.is_outdone = cost < present && !tried.fit.is_usable() && reduced_cost(tried.fit) > cost;
+    Tried tried = try_hypothesis(model_.job, entry(place), context_,
+                                 {.give_up_above = std::min(worthless, chance),
+                                  .before = &model_.fit,
+                                  .is_nearby = may_be_nearby});
+    const double cost = reduced_cost(tried.fit);
+    tried.is_outdone = !tried.fit.is_usable() && cost > worthless && cost < chance;
     if (!tried.is_outdone) known = tried;  // another round may lack what outdid it
     return tried;
   }
@@ -309,7 +384,7 @@ class RoundTrial {
       if (e.fit.is_usable() && is_of_validation(*e.rejection)) order.push_back(&e);
     std::ranges::stable_sort(order, std::greater{},
                              [](const Tried* e) { return e->gain.fit_gain; });
-    const std::size_t at_once = limits().at_once;
+    const auto at_once = static_cast<std::size_t>(limits().at_once);
     const Tried* best = nullptr;
     for (std::size_t first = 0; first < order.size(); first += at_once) {
       std::span<Tried*> next(order);

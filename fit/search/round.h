@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fit/search/model_chain.h"
+#include "fit/search/pairs.h"
 #include "fit/search/shortlist.h"
 
 namespace axisfit {
@@ -14,6 +15,7 @@ namespace axisfit {
 /// What a round is to do.
 struct RoundOptions {
   bool curves = false;  ///< those without a name, instead of the catalogue's
+  bool pairs = false;   ///< two at once, too, where only that explains most of what is missing
   /// How probable it may be that an effect lowers the validation error by chance.
   double chance = SearchOptions::Acceptance().chance;
   bool held_out_blocks = false;        ///< no recording is to validate, see with_held_out_blocks()
@@ -26,16 +28,21 @@ struct RoundOptions {
 struct RoundMemory {
   std::vector<double> of{};  ///< values and observer gain of the model
   std::optional<Shortlist> list{};
+  bool is_compared = false;                    ///< the list, by fits where scores tell little
   bool is_whole = false;                       ///< the list, scored at all gains
   std::vector<std::optional<Tried>> refits{};  ///< of the list's entries, not judged
   /// By the values of the extended model, see fit_elsewhere().
   std::map<std::vector<double>, std::optional<FitResult>> elsewhere{};
   /// The residuals of the model fitted to every second block, see with_held_out_blocks().
   std::optional<std::vector<ResidualSeries>> on_blocks{};
-  bool has_no_pair = false;  ///< no two hypotheses that hide each other (pairs.h) pass
+  bool has_no_large_pair = false;  ///< no two plain laws that explain most pass
+  bool has_no_pair = false;        ///< no two hypotheses that hide each other (pairs.h) pass
 };
 
 struct RoundResult {
+  /// Two plain laws that explain most of what is missing where none does alone: then none was tried
+  /// alone.
+  std::optional<TriedPair> pair{};
   std::vector<Tried> models;          ///< refitted and judged, each hypothesis once
   std::optional<std::size_t> best{};  ///< of them; none: none passes
   std::size_t tried = 1;              ///< hypotheses and settings among which they were chosen

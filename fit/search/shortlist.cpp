@@ -122,13 +122,6 @@ void note(std::vector<Shortlist::Promise>& promises, const Shortlist::Promise& p
     *known = promise;
 }
 
-/// Whether a gain is most of what is beyond the noise of so many samples.
-bool is_most(double gain, double sum_of_squares, double samples,
-             const SearchOptions::Shortlist& options) {
-  const double beyond = sum_of_squares - samples;
-  return beyond > 0.0 && gain >= options.most * beyond;
-}
-
 bool has_most(const ScoreTest& test, const SearchOptions::Shortlist& options) {
   return !test.scores.empty() &&
          is_most(test.scores.front().gain, test.sum_of_squares,
@@ -136,6 +129,12 @@ bool has_most(const ScoreTest& test, const SearchOptions::Shortlist& options) {
 }
 
 }  // namespace
+
+bool is_most(double gain, double sum_of_squares, double samples,
+             const SearchOptions::Shortlist& options) {
+  const double beyond = sum_of_squares - samples;
+  return beyond > 0.0 && gain >= options.most * beyond;
+}
 
 std::optional<double> Shortlist::promised_by(const Hypothesis& hypothesis) const {
   const auto found = std::ranges::find_if(

@@ -31,6 +31,10 @@ struct Shortlist {
   std::optional<double> promised_by(const Hypothesis& hypothesis) const;
 };
 
+/// Whether a gain is most of what is beyond the noise in a sum of squares of so many samples.
+bool is_most(double gain, double sum_of_squares, double samples,
+             const SearchOptions::Shortlist& options);
+
 /// The best by score_test() at each of these observer gains, from a fit with the given values of
 /// the free parameters; those of the catalogue or, with `curves`, those without a name. How many:
 /// SearchOptions::Shortlist. The thread pool shares the work.

@@ -101,37 +101,63 @@ void reconsider_held(SearchState& state, std::size_t count, const SearchContext&
   }
 }
 
-/// Adds the hypothesis that explains the most; whether one passes.
+bool has_room_for_two(const SearchState& state, const SearchOptions& options) {
+  return state.accepted().size() + 2 <= static_cast<std::size_t>(options.max_effects);
+}
+
+/// Both, with what else was on the list and acts on the same as their rivals.
+void append_pair(SearchState& state, TriedPair pair, const Shortlist& list, int round) {
+  state.outcomes.record_pair(pair.first, pair.second, round);
+  for (Tried* one : {&pair.first, &pair.second}) {
+    Accepted accepted{one->hypothesis, {}};
+    for (const Shortlist::Promise& other : list.promises)
+      if (other.hypothesis->kind == HypothesisKind::effect &&
+          other.hypothesis->acts_on == one->hypothesis.acts_on &&
+          !is_same_form(*other.hypothesis, one->hypothesis))
+        accepted.rivals.push_back({other.hypothesis, {{}, other.shapes}});
+    state.chain.append(std::move(accepted), std::move(one->job), std::move(one->fit));
+  }
+}
+
+/// Adds the hypothesis that explains the most, or two that do only together; whether any pass.
 bool add_best(SearchState& state, bool curves, double chance, Rounds& rounds) {
   const auto begin = std::chrono::steady_clock::now();
   ++rounds.count;
-  RoundResult round = try_round(state.current(),
-                                {.curves = curves,
-                                 .chance = chance,
-                                 .held_out_blocks = rounds.held_out_blocks,
-                                 .explained = state.explained(),
-                                 .excluded = state.degenerate},
-                                curves ? rounds.of_curves : rounds.of_names, rounds.context);
+  const std::size_t before = state.accepted().size();
+  RoundResult round = try_round(
+      state.current(),
+      {.curves = curves,
+       .pairs = !curves && !state.explained() && has_room_for_two(state, rounds.context.options),
+       .chance = chance,
+       .held_out_blocks = rounds.held_out_blocks,
+       .explained = state.explained(),
+       .excluded = state.degenerate},
+      curves ? rounds.of_curves : rounds.of_names, rounds.context);
   Tried* best = round.best ? &round.models[*round.best] : nullptr;
   for (const Tried& tried : round.models) state.outcomes.record(tried, best, rounds.count);
-  if (best == nullptr) {
-    for (const Tried& tried : round.models) note_relative(tried, state.chain);
-  } else {
+  if (round.pair) {
+    append_pair(state, *std::move(round.pair), *rounds.of_names.list, rounds.count);
+  } else if (best != nullptr) {
     Accepted accepted = accepted_from(round, *best, rounds.context.options);
     state.chain.append(std::move(accepted), std::move(best->job), std::move(best->fit));
+  } else {
+    for (const Tried& tried : round.models) note_relative(tried, state.chain);
+  }
+  const bool is_any = state.accepted().size() > before;
+  if (is_any) {
     if (has_contacts(state.current()) && !tracks(state.current().job.options.criterion) &&
         !state.explained())
       state.chain.set_fit(settled(state.current(), rounds.context).fit);
-    reconsider_held(state, state.accepted().size() - 1, rounds.context);
+    reconsider_held(state, before, rounds.context);
   }
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
   rounds.context.run.report(
       {.phase = "search",
        .best = state.current().fit.reduced_chi_square,
        .finished = fmt::format("round {}, {:.1f} s: {}", rounds.count, time.count(),
-                               best != nullptr ? state.current().added : "none"),
+                               is_any ? state.current().added : "none"),
        .work = Work::substitutes});
-  return best != nullptr;
+  return is_any;
 }
 
 bool add_best(SearchState& state, bool curves, Rounds& rounds) {
@@ -142,7 +168,7 @@ bool add_best(SearchState& state, bool curves, Rounds& rounds) {
 bool add_pair(SearchState& state, Rounds& rounds) {
   const SearchOptions& options = rounds.context.options;
   if (rounds.of_names.has_no_pair || state.explained() || is_fitted_to_noise(state) ||
-      state.accepted().size() + 2 > static_cast<std::size_t>(options.max_effects))
+      !has_room_for_two(state, options))
     return false;
   state.report_progress(rounds.context.run, "do two effects hide each other?", Work::trials);
   const Shortlist& list = *rounds.of_names.list;
@@ -159,10 +185,7 @@ bool add_pair(SearchState& state, Rounds& rounds) {
   for (const ScoredPair& pair : score_pairs(model, gains, hypotheses, rounds.context)) {
     std::optional<TriedPair> found = try_pair(model, pair, rounds.context);
     if (!found) continue;
-    ++rounds.count;
-    state.outcomes.record_pair(found->first, found->second, rounds.count);
-    for (Tried* one : {&found->first, &found->second})
-      state.chain.append({one->hypothesis}, std::move(one->job), std::move(one->fit));
+    append_pair(state, *std::move(found), list, ++rounds.count);
     return true;
   }
   rounds.of_names.has_no_pair = true;
@@ -260,6 +283,21 @@ SearchState finished(const SearchState& before, Strategy&& strategy) {
   }
 }
 
+/// Whether what was found takes nearly all of the error beyond the noise away.
+bool is_nearly_all(const SearchState& state, const SearchOptions& options) {
+  return improvement(state.chain.declared(), state.current()).missing_percent >=
+         options.far_from_noise.of_complete_model;
+}
+
+/// Whether a curve is part of that. What is left beside it is how it differs from the truth: no
+/// effect that could be told from it.
+bool is_left_by_a_curve(const SearchState& state, const SearchOptions& options) {
+  return std::ranges::any_of(
+             state.accepted(),
+             [](const Accepted& a) { return a.hypothesis.kind == HypothesisKind::curve; }) &&
+         is_nearly_all(state, options);
+}
+
 /// together(), of a state that holds what was found when this is stopped.
 void find_together(SearchState& state, Rounds& rounds) {
   const std::vector<Accepted> known = state.accepted();
@@ -275,6 +313,10 @@ void find_together(SearchState& state, Rounds& rounds) {
            add_best(state, false, chance, rounds)) {
     }
   } while (drop_degenerate(state, rounds.count, rounds.context));
+  // No name for what is missing, but a pulse of force is seen as well by a simulation that tracks.
+  if (state.accepted().empty() && state.current().fit.is_usable() && has_room(state, rounds) &&
+      !state.explained())
+    add_best(state, true, rounds);
   const bool is_new = std::ranges::any_of(state.accepted(), [&](const Accepted& found) {
     return std::ranges::none_of(
         known, [&](const Accepted& other) { return is_same(found.hypothesis, other.hypothesis); });
@@ -285,6 +327,7 @@ void find_together(SearchState& state, Rounds& rounds) {
     if (!all.fit.is_usable()) return state.restart(declared);
     state.chain.replace(declared, std::move(all));
   }
+  if (is_left_by_a_curve(state, rounds.context.options)) return;
   add_named(state, rounds);
   eliminate_backward(state, rounds.context);
 }
@@ -312,7 +355,9 @@ SearchState with_named_effects(const SearchState& declared, bool tracks, Rounds&
     } catch (const Interrupted&) {
       best.interrupted = true;
     }
-    if (is_over(best) && (best.interrupted || is_all_of_the_machine(best))) return best;
+    const bool is_end = is_over(best);
+    if (best.interrupted || is_nearly_all(best, options) || (is_end && is_all_of_the_machine(best)))
+      return best;
     SearchState other = named(declared, rounds);
     if (is_over(other) && !other.interrupted) return other;
     return better_of(std::move(best), std::move(other));
@@ -373,7 +418,7 @@ SearchState search(SearchState declared, Rounds& rounds) {
   // effects that imitate a part of it.
   const bool tracks = axisfit::tracks(declared.chain.declared().job.options.criterion);
   SearchState best = with_named_effects(declared, tracks, rounds);
-  if (is_over(best) || is_fitted_to_noise(best)) return best;
+  if (is_over(best) || is_fitted_to_noise(best) || is_left_by_a_curve(best, options)) return best;
   // No curve takes the place of what leaves next to nothing.
   const bool is_exact = is_nearly_exact(best, options);
 

@@ -87,6 +87,45 @@ TEST(RoundTest, EndsWithThePlainLawWhereThatLeavesNothing) {
 }
 
 // A disturbance that no effect of the catalogue makes: some promise a part of what the test asks.
+// A torque that fades with a time constant: the straight form, of fewer numbers, passes first, and
+// leaves more than noise.
+TEST(RoundTest, GoesOnFromAPlainFormToARicherOne) {
+  const HiddenEffect on_motor = hidden_effect_named("torque_ripple");
+  Model<double> truth = on_motor.declared();
+  add_effect<TorqueFade>(truth) = {0.4, 1.5};
+  RoundMemory memory;
+  const RoundResult found = try_round(
+      declared_model(two_recordings(truth, on_motor.declared(), on_motor.free)), {}, memory, {});
+  ASSERT_TRUE(found.best);
+  const Hypothesis& best = found.models[*found.best].hypothesis;
+  EXPECT_EQ(best.name, "torque_fade");
+  EXPECT_EQ(best.shapes.size(), 1u);
+}
+
+// A friction with an offset: each explains a part, only both explain most of what is missing.
+TEST(RoundTest, TriesTwoAtOnceWhereOnlyTheyExplainMost) {
+  Model<double> truth = slide();
+  add_effect<CoulombFriction>(truth).F_c = 10.0;
+  add_effect<ConstantForce>(truth).F_0 = 6.0;
+  const FittedModel model = declared_model(two_recordings(truth, slide(), {"M", "B_a"}));
+  RoundMemory memory, of_singles;
+  const RoundResult found = try_round(model, {.pairs = true}, memory, {});
+  ASSERT_TRUE(found.pair);
+  const std::set<std::string> names{found.pair->first.hypothesis.name,
+                                    found.pair->second.hypothesis.name};
+  EXPECT_EQ(names, (std::set<std::string>{"coulomb_friction", "constant_force"}));
+  EXPECT_TRUE(found.models.empty());
+  EXPECT_FALSE(try_round(model, {}, of_singles, {}).pair);
+}
+
+TEST(RoundTest, TriesOneAloneThatExplainsMost) {
+  RoundMemory memory;
+  const FittedModel model = declared_model(hidden_effect_named("coulomb_friction").job());
+  const RoundResult found = try_round(model, {.pairs = true}, memory, {});
+  EXPECT_FALSE(found.pair);
+  EXPECT_TRUE(found.best);
+}
+
 TEST(RoundTest, RefitsNothingThatIsHopeless) {
   Job job = two_recordings(slide(), slide(), {"M", "B_a"});
   for (Recording& r : job.recordings)

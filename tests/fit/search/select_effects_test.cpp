@@ -278,7 +278,7 @@ Job weight_beside_friction(double friction, double volts) {
 }
 
 TEST(SelectEffects, ExchangesASimpleEffectForOneThatLaterProvesBetter) {
-  const EffectSelection selection = close(weight_beside_friction(120.0, 9.0));
+  const EffectSelection selection = close(weight_beside_friction(80.0, 9.0));
   EXPECT_EQ(accepted(selection), (Names{"coulomb_friction", "pendulum_gravity"}));
   EXPECT_EQ(undecided(selection), Names{});
   EXPECT_TRUE(selection.explained);

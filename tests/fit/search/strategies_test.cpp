@@ -133,6 +133,24 @@ TEST(Search, BeginsWithASimulationThatTracksWhereTheFreeRunIsLost) {
   EXPECT_EQ(found.current().fit.observer_gain, 0.0);
 }
 
+// A push has no name but that of a curve, and sends the free run elsewhere for the rest of the
+// recording.
+TEST(Search, FindsAPushWhileItTracks) {
+  Model<double> truth = paper_axis();
+  auto& push = add_effect<ForceOverTime>(truth);
+  *members(truth)[quantity_index("force_over_time.from")] = 0.2;
+  *members(truth)[quantity_index("force_over_time.to")] = 0.3;
+  std::fill(push.c.begin() + 3, push.c.end() - 3, 150.0);
+  const Job job = two_recordings(truth, paper_axis(), {"B_a"});
+  Rounds rounds;
+  const SearchState first = start_of(job, rounds);
+  ASSERT_GT(first.current().fit.reduced_chi_square, 25.0);
+  const SearchState found = search(first, rounds);
+  EXPECT_EQ(names_in(found), std::set<std::string>{"force_over_time"});
+  EXPECT_LE(rounds.count, 3);
+  EXPECT_EQ(found.current().fit.observer_gain, 0.0);
+}
+
 TEST(Tracking, FitsByTheErrorsOneStepAhead) {
   const Job job = hidden_effect_named("coulomb_friction").job();
   const FittedModel declared{"", job, estimate(job)};
