@@ -219,24 +219,28 @@ class RoundTrial {
     while (next != places.end()) {
       const bool none_passes = all_are_rejected(result_.models);
       if (!none_passes && (turn(*next) > Turn::near_it || any_explains())) break;
-      next = refit_while_open(next,
-                              std::ranges::upper_bound(next, places.end(), turn(*next), {}, turn));
+      const auto end = std::ranges::upper_bound(next, places.end(), turn(*next), {}, turn);
+      // Of what promises about as much the best is wanted, not the first that will do.
+      const std::ptrdiff_t at_once = turn(*next) > Turn::near_it ? limits().at_once : end - next;
+      next = refit_while_open(next, end, at_once);
     }
     // What leaves more than noise may be the plain form of a richer law.
     if (next != places.end() && !any_explains()) {
       const auto rest = std::stable_partition(
           next, places.end(), [&](std::size_t place) { return is_richer_form(entry(place)); });
-      next = refit_while_open(next, rest);
+      next = refit_while_open(next, rest, rest - next);
     }
     for (; next != places.end(); ++next)
       if (turn(*next) != Turn::less) result_.unrefitted.push_back(entry(*next));
   }
 
-  /// A few at once, until one that passes leaves nothing but noise; returns the first of the rest.
-  std::vector<std::size_t>::iterator refit_while_open(std::vector<std::size_t>::iterator next,
-                                                      std::vector<std::size_t>::iterator end) {
+  using Place = std::vector<std::size_t>::iterator;
+
+  /// So many at once, until one that passes leaves nothing but noise; returns the first of the
+  /// rest.
+  Place refit_while_open(Place next, Place end, std::ptrdiff_t at_once) {
     while (next != end && !any_explains()) {
-      const auto few = next + std::min<std::ptrdiff_t>(end - next, limits().at_once);
+      const auto few = next + std::min(end - next, at_once);
       const std::size_t known = result_.models.size();
       refit_all({next, few});
       reject_what_does_harm(known);
