@@ -116,9 +116,10 @@ void ModelChain::replace(FittedModel declared, FittedModel last) {
 ModelChain::Neighbours& ModelChain::neighbours() {
   std::vector<double> values = current().values();
   if (values != neighbours_.of || neighbours_.reduced.size() != accepted_.size())
+    // In parentheses: in braces a size would be the first element of a list of bools.
     neighbours_ = {.of = std::move(values),
-                   .reduced = {accepted_.size(), std::nullopt},
-                   .is_far = {accepted_.size(), std::nullopt}};
+                   .reduced = std::vector<std::optional<FittedModel>>(accepted_.size()),
+                   .is_far = std::vector<std::optional<bool>>(accepted_.size())};
   return neighbours_;
 }
 

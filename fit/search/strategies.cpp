@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <set>
 #include <utility>
@@ -105,13 +106,17 @@ bool has_room_for_two(const SearchState& state, const SearchOptions& options) {
   return state.accepted().size() + 2 <= static_cast<std::size_t>(options.max_effects);
 }
 
-/// Both, with what else was on the list and acts on the same as their rivals.
-void append_pair(SearchState& state, TriedPair pair, const Shortlist& list, int round) {
-  state.outcomes.record_pair(pair.first, pair.second, round);
+/// Both, with what else promises much of what they do and acts on the same as their rivals.
+void append_pair(SearchState& state, TriedPair pair, const Shortlist& list, const Rounds& rounds) {
+  state.outcomes.record_pair(pair.first, pair.second, rounds.count);
+  std::vector<Shortlist::Promise> others = list.promises;
+  std::ranges::stable_sort(others, std::greater{}, &Shortlist::Promise::gain);
   for (Tried* one : {&pair.first, &pair.second}) {
     Accepted accepted{one->hypothesis, {}};
-    for (const Shortlist::Promise& other : list.promises)
-      if (other.hypothesis->kind == HypothesisKind::effect &&
+    const double least =
+        rounds.context.options.shortlist.worth * list.promised_by(one->hypothesis).value_or(0.0);
+    for (const Shortlist::Promise& other : others)
+      if (other.hypothesis->kind == HypothesisKind::effect && other.gain > least &&
           other.hypothesis->acts_on == one->hypothesis.acts_on &&
           !is_same_form(*other.hypothesis, one->hypothesis))
         accepted.rivals.push_back({other.hypothesis, {{}, other.shapes}});
@@ -136,7 +141,7 @@ bool add_best(SearchState& state, bool curves, double chance, Rounds& rounds) {
   Tried* best = round.best ? &round.models[*round.best] : nullptr;
   for (const Tried& tried : round.models) state.outcomes.record(tried, best, rounds.count);
   if (round.pair) {
-    append_pair(state, *std::move(round.pair), *rounds.of_names.list, rounds.count);
+    append_pair(state, *std::move(round.pair), *rounds.of_names.list, rounds);
   } else if (best != nullptr) {
     Accepted accepted = accepted_from(round, *best, rounds.context.options);
     state.chain.append(std::move(accepted), std::move(best->job), std::move(best->fit));
@@ -185,7 +190,8 @@ bool add_pair(SearchState& state, Rounds& rounds) {
   for (const ScoredPair& pair : score_pairs(model, gains, hypotheses, rounds.context)) {
     std::optional<TriedPair> found = try_pair(model, pair, rounds.context);
     if (!found) continue;
-    append_pair(state, *std::move(found), list, ++rounds.count);
+    ++rounds.count;
+    append_pair(state, *std::move(found), list, rounds);
     return true;
   }
   rounds.of_names.has_no_pair = true;
