@@ -58,8 +58,9 @@ std::vector<ResidualSeries> residual_series(const Job& job, const FitResult& res
             (measurement.values[i] - simulation.simulated[m][i]) / measurement.sigma;
         series.samples.push_back(i);
         series.values.push_back(residual);
-        if (is_at_event(simulation.modes, recording.times[i], interval))
-          series.at_events += std::max(0.0, residual * residual - 1.0);
+        const double excess = residual * residual - 1.0;
+        if (excess > 0.0 && is_at_event(simulation.modes, recording.times[i], interval))
+          series.at_events += excess;
       }
       for (ResidualSeries* series : {&fitted, &unfitted}) {
         if (series->values.empty()) continue;

@@ -24,6 +24,17 @@ bool is_of_validation(const Rejection& rejection) {
   return rejection.test == Rejection::Test::validation || rejection.test == Rejection::Test::power;
 }
 
+/// The least of what an independent sample of a fitted series may count, in its mean square.
+double least_unit(const std::vector<ResidualSeries>& list) {
+  double unit = INFINITY;
+  for (const ResidualSeries& series : list) {
+    if (!series.fitted) continue;
+    const std::vector<double> slow(series.values.size(), 1.0);
+    unit = std::min({unit, mean_square(series.values), variance_along(slow, series.values)});
+  }
+  return unit;
+}
+
 bool all_are_rejected(const std::vector<Tried>& models) {
   return std::ranges::all_of(models, [](const Tried& e) { return e.rejection.has_value(); });
 }
@@ -37,6 +48,7 @@ class RoundTrial {
         memory_(memory),
         context_(context),
         before_(residual_series(model.job, model.fit)),
+        unit_(least_unit(before_)),
         is_exact_(options.explained || is_near_noise(before_, context.options)) {
     std::vector<double> values = model.values();
     if (values != memory.of) memory = {.of = std::move(values)};
@@ -225,9 +237,9 @@ class RoundTrial {
       next = refit_while_open(next, end, at_once);
     }
     // What leaves more than noise may be the plain form of a richer law.
-    if (next != places.end() && !any_explains()) {
-      const auto rest = std::stable_partition(
-          next, places.end(), [&](std::size_t place) { return is_richer_form(entry(place)); });
+    const auto is_richer = [&](std::size_t place) { return is_richer_form(entry(place)); };
+    if (std::any_of(next, places.end(), is_richer) && !any_explains()) {
+      const auto rest = std::stable_partition(next, places.end(), is_richer);
       next = refit_while_open(next, rest, rest - next);
     }
     for (; next != places.end(); ++next)
@@ -236,15 +248,16 @@ class RoundTrial {
 
   using Place = std::vector<std::size_t>::iterator;
 
-  /// So many at once, until one that passes leaves nothing but noise; returns the first of the
-  /// rest.
+  /// So many at once, until one that passes leaves nothing but noise, as none does yet; returns the
+  /// first of the rest.
   Place refit_while_open(Place next, Place end, std::ptrdiff_t at_once) {
-    while (next != end && !any_explains()) {
+    while (next != end) {
       const auto few = next + std::min(end - next, at_once);
       const std::size_t known = result_.models.size();
       refit_all({next, few});
       reject_what_does_harm(known);
       next = few;
+      if (next != end && any_explains()) break;  // which may take a simulation to tell
     }
     return next;
   }
@@ -277,15 +290,9 @@ class RoundTrial {
   /// The reduced cost above which a refit with it is no better than chance, by half of what the
   /// acceptance test asks.
   double chance_cost(const Hypothesis& hypothesis) const {
-    double unit = INFINITY, count = 0.0;
-    for (const ResidualSeries& series : before_) {
-      if (!series.fitted) continue;
-      const std::vector<double> slow(series.values.size(), 1.0);
-      unit = std::min({unit, mean_square(series.values), variance_along(slow, series.values)});
-      count += static_cast<double>(series.values.size());
-    }
-    const double least = least_gain(hypothesis, samples_of(before_), result_.tried);
-    return reduced_cost(model_.fit) - 0.5 * least * unit / std::max(1.0, count);
+    const double samples = samples_of(before_);
+    const double least = least_gain(hypothesis, samples, result_.tried);
+    return reduced_cost(model_.fit) - 0.5 * least * unit_ / std::max(1.0, samples);
   }
 
   /// Refits with each of these and judges it.
@@ -501,6 +508,7 @@ class RoundTrial {
   std::mutex elsewhere_;  // of the memory
   const SearchContext& context_;
   const std::vector<ResidualSeries> before_;
+  const double unit_;    ///< of least_unit()
   const bool is_exact_;  ///< nothing but noise is left, or so little that a score is exact
   std::optional<std::vector<double>> force_before_{};  ///< of missing_percents()
   RoundResult result_;

@@ -293,9 +293,9 @@ class Promise {
   void enter(const ceres::IterationSummary& summary) {
     // A first step has to show first what a promise is worth.
     if (!std::isfinite(cost_) || summary.iteration == 0 || !summary.step_is_successful) return;
-    const std::optional<Linearization> at = linearized_();
+    std::optional<Linearization> at = linearized_();
     if (!at) return;
-    Eigen::MatrixXd columns = at->jacobian;
+    Eigen::MatrixXd& columns = at->jacobian;
     for (auto column : columns.colwise())
       if (const double length = column.norm(); length > 0.0) column /= length;
     const Eigen::VectorXd shown = columns * LeastSquaresSolver(columns).solve(at->residuals);

@@ -86,7 +86,6 @@ TEST(RoundTest, EndsWithThePlainLawWhereThatLeavesNothing) {
   EXPECT_TRUE(std::ranges::any_of(found.unrefitted, named("dahl_friction")));
 }
 
-// A disturbance that no effect of the catalogue makes: some promise a part of what the test asks.
 // A torque that fades with a time constant: the straight form, of fewer numbers, passes first, and
 // leaves more than noise.
 TEST(RoundTest, GoesOnFromAPlainFormToARicherOne) {
@@ -126,6 +125,7 @@ TEST(RoundTest, TriesOneAloneThatExplainsMost) {
   EXPECT_TRUE(found.best);
 }
 
+// A disturbance that no effect of the catalogue makes: some promise a part of what the test asks.
 TEST(RoundTest, RefitsNothingThatIsHopeless) {
   Job job = two_recordings(slide(), slide(), {"M", "B_a"});
   for (Recording& r : job.recordings)
