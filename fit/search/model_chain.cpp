@@ -83,6 +83,10 @@ bool is_close(const FittedModel& model, const SearchOptions& options) {
   return model.fit.reduced_chi_square < options.round.close_chi_square;
 }
 
+bool is_near(const FittedModel& model, const SearchOptions& options) {
+  return model.fit.is_usable() && model.fit.reduced_chi_square < options.near_data;
+}
+
 bool has_contacts(const FittedModel& model) {
   return capabilities(model.job.model.structure).has_backlash;
 }

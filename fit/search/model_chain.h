@@ -37,6 +37,9 @@ FittedModel settled(FittedModel model, const SearchContext& context);
 /// Whether the free run stays near the data.
 bool is_close(const FittedModel& model, const SearchOptions& options);
 
+/// Whether it is so near the data that the free run tells by itself what is missing.
+bool is_near(const FittedModel& model, const SearchOptions& options);
+
 /// Whether teeth meet: when they do depends on more digits than a quick fit has.
 bool has_contacts(const FittedModel& model);
 

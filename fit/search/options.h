@@ -14,6 +14,7 @@ struct SearchOptions {
   /// Reduced chi-square below which nothing may be missing: a quick fit, or noise of the readings
   /// that drives a simulation that tracks, may make what is left.
   double near_noise = 2.0;
+  double near_data = 5.0;  ///< the same, where the free run tells by itself what is missing
 
   /// The score test, which looks at all hypotheses without a refit.
   struct Scoring {
@@ -96,7 +97,8 @@ struct SearchOptions {
     /// Times the gain of the best effect alone, of two that are tried at once before any alone.
     double pair_times = 1.25;
     std::ptrdiff_t at_once = 2;  ///< that are refitted, or asked of other recordings, side by side
-    std::size_t blocks = 10;     ///< of a recording, every second of which is held out
+    std::size_t most_in_noise = 6;  ///< refits where the fitted recordings hold nothing but noise
+    std::size_t blocks = 10;        ///< of a recording, every second of which is held out
   } round;
 
   /// Two effects that hide each other.

@@ -13,16 +13,10 @@
 
 #include "base/parallel.h"
 #include "fit/criterion/gains.h"
-#include "fit/data/partition.h"
 #include "fit/search/shortlist.h"
-#include "sim/effects/effects.h"
 
 namespace axisfit {
 namespace {
-
-bool is_of_validation(const Rejection& rejection) {
-  return rejection.test == Rejection::Test::validation || rejection.test == Rejection::Test::power;
-}
 
 /// The least of what an independent sample of a fitted series may count, in its mean square.
 double least_unit(const std::vector<ResidualSeries>& list) {
@@ -65,7 +59,7 @@ class RoundTrial {
     keep_the_best_setting();
     // Where nothing but noise is left, what lowers no error elsewhere is chance.
     if (!options_.explained && !options_.held_out_blocks && all_are_rejected(result_.models)) {
-      try_elsewhere();
+      ask_elsewhere(model_, result_.models, strict(), memory_.elsewhere, context_);
       reject_what_does_harm();
     }
     choose();
@@ -90,24 +84,28 @@ class RoundTrial {
     return is_free() && is_exact_ ? 0.0 : score_gains(model_.job).front();
   }
 
-  /// What is large is tried at a high gain, too, and the free run is scored where it is close: an
-  /// instrument that errs misleads whatever tracks it.
+  /// The gains that the list lacks, at first the free run where it is near the data. What is large
+  /// is tried at a high gain, too, and the free run is scored where it is close: an instrument that
+  /// errs misleads whatever tracks it.
   std::vector<double> other_gains() const {
     if (is_free() && is_exact_) return {};
+    const std::vector<double>& known = memory_.list->observer_gains;
+    const auto is_known = [&](double gain) {
+      return std::ranges::find(known, gain) != known.end();
+    };
+    if (is_free() && is_near(model_, context_.options) && !is_known(0.0)) return {0.0};
     std::vector<double> gains = score_gains(model_.job);
     if (const auto close = close_gain(model_.job, values_of(model_.fit), context_))
       gains.push_back(*close);
     if (is_free() && is_close()) gains.push_back(0.0);
-    std::erase(gains, first_gain());
+    std::erase_if(gains, is_known);
     return gains;
   }
 
   const SearchOptions::Round& limits() const { return context_.options.round; }
   Strictness strictness() const { return {result_.tried, options_.chance}; }
   /// However lenient the round is.
-  Strictness strict(bool replicates) const {
-    return {result_.tried, context_.options.acceptance.chance, replicates};
-  }
+  Strictness strict() const { return {result_.tried, context_.options.acceptance.chance}; }
 
   const Scored& entry(std::size_t place) const { return memory_.list->entries[place]; }
 
@@ -163,19 +161,24 @@ class RoundTrial {
 
   Shortlist scored(const std::vector<double>& gains) const {
     report_progress("scoring effects", 0, 0, Work::scores);
-    return shortlist(model_.job, values_of(model_.fit), gains, options_.curves, context_);
+    return shortlist(model_.job, values_of(model_.fit), gains, options_.curves, context_,
+                     memory_.list.has_value());
   }
 
-  /// At the gains that the list lacks; whether there were any.
+  /// At other gains, the free run first, until one effect promises most of what is missing; whether
+  /// there were any.
   bool score_the_rest() {
-    if (memory_.is_whole) return false;
-    memory_.is_whole = true;
-    const std::vector<double> gains = other_gains();
-    if (gains.empty()) return false;
-    memory_.list->add(scored(gains), context_.options);
-    fit_entries_from_afar();
+    bool is_any = false;
+    while (!memory_.is_whole && !(is_any && memory_.list->has_most)) {
+      const std::vector<double> gains = other_gains();
+      memory_.is_whole = gains.empty() || gains.size() > 1 || gains.front() != 0.0;
+      if (gains.empty()) break;
+      is_any = true;
+      memory_.list->add(scored(gains), context_.options);
+      fit_entries_from_afar();
+    }
     memory_.refits.resize(memory_.list->entries.size());
-    return true;
+    return is_any;
   }
 
   /// Where refits are costly and fail, the entries are told apart by fits that track, which take a
@@ -231,6 +234,7 @@ class RoundTrial {
     while (next != places.end()) {
       const bool none_passes = all_are_rejected(result_.models);
       if (!none_passes && (turn(*next) > Turn::near_it || any_explains())) break;
+      if (turn(*next) > Turn::near_it && has_seen_enough()) break;
       const auto end = std::ranges::upper_bound(next, places.end(), turn(*next), {}, turn);
       // Of what promises about as much the best is wanted, not the first that will do.
       const std::ptrdiff_t at_once = turn(*next) > Turn::near_it ? limits().at_once : end - next;
@@ -257,9 +261,22 @@ class RoundTrial {
       refit_all({next, few});
       reject_what_does_harm(known);
       next = few;
-      if (next != end && any_explains()) break;  // which may take a simulation to tell
+      if (next == end) break;
+      if (any_explains() || has_seen_enough()) break;
     }
     return next;
+  }
+
+  /// Whether nothing else is likely to pass. Where the fitted recordings hold nothing but noise
+  /// scores are exact, and what promises most was tried; what takes all but noise away is what is
+  /// missing, though they may leave open what it is like.
+  bool has_seen_enough() const {
+    using enum Rejection::Test;
+    if (is_fitted_to_noise(before_)) return result_.models.size() >= limits().most_in_noise;
+    return std::ranges::any_of(result_.models, [](const Tried& e) {
+      return e.rejection && (e.rejection->test == strength || e.rejection->test == shape) &&
+             is_fitted_to_noise(e.residuals);
+    });
   }
 
   /// Whether it is one that passes, with more shapes.
@@ -387,102 +404,6 @@ class RoundTrial {
     result_.models = std::move(kept);
   }
 
-  /// Asks other data of what explains the most, and so on down to what explains clearly less than
-  /// one that they confirm.
-  void try_elsewhere() {
-    std::vector<Tried*> order;
-    for (Tried& e : result_.models)
-      if (e.fit.is_usable() && is_of_validation(*e.rejection)) order.push_back(&e);
-    std::ranges::stable_sort(order, std::greater{},
-                             [](const Tried* e) { return e->gain.fit_gain; });
-    const auto at_once = static_cast<std::size_t>(limits().at_once);
-    const Tried* best = nullptr;
-    for (std::size_t first = 0; first < order.size(); first += at_once) {
-      std::span<Tried*> next(order);
-      next = next.subspan(first, std::min(at_once, order.size() - first));
-      if (best != nullptr &&
-          is_clearly_worse(bic_advantage(*best, *next.front()), context_.options))
-        return;
-      report_progress("does " + next.front()->hypothesis.name + " replicate?");
-      parallel_for(next.size(), [&](std::size_t i) { try_to_replicate(*next[i]); });
-      std::vector<Tried*> asked;
-      std::ranges::copy_if(next, std::back_inserter(asked), wants_blocks);
-      try_on_blocks(asked);
-      for (const Tried* e : next)
-        if (best == nullptr && !e->rejection) best = e;
-    }
-  }
-
-  Determination determined(const Tried& e) const {
-    return determination(e.job, e.fit, e.hypothesis, e.residuals, context_.options);
-  }
-
-  /// An effect that lowers the error of one recording and not that of another may yet be in both,
-  /// where something else differs between them.
-  void try_to_replicate(Tried& e) {
-    if (e.hypothesis.kind == HypothesisKind::curve) return;  // proves nothing, see replication()
-    const std::optional<FitResult> elsewhere = fitted_elsewhere(e);
-    if (!elsewhere) return;
-    Replication found = replication(e.job, e.fit, *elsewhere, e.hypothesis, context_.options);
-    if (!found.is_alike) return;
-    e.rejection = rejection_of(e.hypothesis, e.gain, determined(e), strict(true), context_.options);
-    if (!e.rejection) e.replication = std::move(found);
-  }
-
-  std::optional<FitResult> fitted_elsewhere(const Tried& e) {
-    const std::vector<double> values = values_of(e.fit);
-    const auto known = [&] {
-      const std::lock_guard lock(elsewhere_);
-      const auto found = memory_.elsewhere.find(values);
-      return found == memory_.elsewhere.end() ? std::nullopt : std::optional(found->second);
-    };
-    if (auto found = known()) return *std::move(found);
-    std::optional<FitResult> fit = fit_elsewhere(e.job, e.fit, context_);
-    const std::lock_guard lock(elsewhere_);
-    return memory_.elsewhere.emplace(values, std::move(fit)).first->second;
-  }
-
-  /// Effects that the recordings to validate could not have shown are judged by blocks of the
-  /// fitted ones, held out from both fits.
-  void try_on_blocks(const std::vector<Tried*>& asked) {
-    if (asked.empty()) return;
-    report_progress("do held-out blocks show " + asked.front()->hypothesis.name + "?");
-    const auto held_out = [&](FittedModel model) {
-      model = with_held_out_blocks(std::move(model), context_);
-      auto series = residual_series(model.job, model.fit);
-      std::erase_if(series, [&](const ResidualSeries& s) {
-        return model.job.recordings[s.recording].role != Role::fit;
-      });
-      return series;
-    };
-    std::vector<std::vector<ResidualSeries>> with(asked.size());
-    parallel_for(asked.size() + 1, [&](std::size_t i) {
-      if (i > 0)
-        with[i - 1] = held_out({"", asked[i - 1]->job, asked[i - 1]->fit});
-      else if (!memory_.on_blocks)
-        memory_.on_blocks = held_out(model_);
-    });
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-      Tried& e = *asked[i];
-      Improvement gain = improvement(*memory_.on_blocks, with[i]);
-      gain.fit_gain = e.gain.fit_gain;
-      gain.samples = e.gain.samples;
-      if (rejection_of(e.hypothesis, gain, determined(e), strict(false), context_.options))
-        continue;
-      e.rejection.reset();
-      e.gain = gain;
-      e.on_blocks = true;
-    }
-  }
-
-  /// Whether the recordings to validate could not have shown it and blocks could: a disturbance
-  /// goes on from one block to the next, and only another recording tells it from a law.
-  static bool wants_blocks(const Tried* e) {
-    static const std::size_t kOverTime = *effect_named(ForceOverTime<double>::name);
-    return e->rejection && e->rejection->test == Rejection::Test::power &&
-           quantity_list()[e->hypothesis.strengths.front()].effect != kOverTime;
-  }
-
   void choose() {
     const Tried* best = nullptr;
     for (const Tried& e : result_.models)
@@ -505,7 +426,6 @@ class RoundTrial {
   const FittedModel& model_;
   const RoundOptions& options_;
   RoundMemory& memory_;
-  std::mutex elsewhere_;  // of the memory
   const SearchContext& context_;
   const std::vector<ResidualSeries> before_;
   const double unit_;    ///< of least_unit()
@@ -519,18 +439,6 @@ class RoundTrial {
 RoundResult try_round(const FittedModel& model, const RoundOptions& options, RoundMemory& memory,
                       const SearchContext& context) {
   return RoundTrial(model, options, memory, context).run();
-}
-
-FittedModel with_held_out_blocks(FittedModel model, const SearchContext& context) {
-  for (Recording& r : model.job.recordings) {
-    const Partition blocks(r.times.size(), context.options.round.blocks);
-    r.held_out.clear();
-    // Counted from the end, so that a block begins with the first sample that is wholly in it.
-    for (std::size_t k = 0; k < blocks.parts(); ++k)
-      r.held_out.resize(r.times.size() - blocks.first(blocks.parts() - 1 - k), k % 2 == 1);
-  }
-  model.fit = refit_from(model.job, values_of(model.fit), context);
-  return model;
 }
 
 }  // namespace axisfit

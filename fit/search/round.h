@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <vector>
 
+#include "fit/search/elsewhere.h"
 #include "fit/search/model_chain.h"
 #include "fit/search/pairs.h"
 #include "fit/search/shortlist.h"
@@ -31,10 +31,7 @@ struct RoundMemory {
   bool is_compared = false;                    ///< the list, by fits where scores tell little
   bool is_whole = false;                       ///< the list, scored at all gains
   std::vector<std::optional<Tried>> refits{};  ///< of the list's entries, not judged
-  /// By the values of the extended model, see fit_elsewhere().
-  std::map<std::vector<double>, std::optional<FitResult>> elsewhere{};
-  /// The residuals of the model fitted to every second block, see with_held_out_blocks().
-  std::optional<std::vector<ResidualSeries>> on_blocks{};
+  ElsewhereMemory elsewhere{};
   bool has_no_large_pair = false;  ///< no two plain laws that explain most pass
   bool has_no_pair = false;        ///< no two hypotheses that hide each other (pairs.h) pass
 };
@@ -56,9 +53,5 @@ struct RoundResult {
 /// and leaves there what it computed.
 RoundResult try_round(const FittedModel& model, const RoundOptions& options, RoundMemory& memory,
                       const SearchContext& context);
-
-/// The model fitted to every second of some blocks of each recording: the others are left to be
-/// judged.
-FittedModel with_held_out_blocks(FittedModel model, const SearchContext& context);
 
 }  // namespace axisfit

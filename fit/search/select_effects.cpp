@@ -23,7 +23,7 @@ namespace {
 /// The declared model as a search begins with it: fitted to blocks where no recording validates.
 SearchState begin(const Job& job, const FitResult& first, Rounds& rounds) {
   SearchState state{ModelChain({"", job, first}, rounds.context)};
-  state.chain.set_free(rounds.free);
+  if (rounds.free) state.chain.set_free(rounds.free->job);
   rounds.held_out_blocks = std::ranges::none_of(
       job.recordings, [](const Recording& r) { return r.role == Role::validate; });
   if (rounds.held_out_blocks)
@@ -187,7 +187,7 @@ EffectSelection search_effects(const Job& job, const FitResult& first, Rounds& r
     selection.interrupted = true;
     selection.models = {state.chain.declared(), state.current()};
   }
-  if (state.chain.declared().fit.is_usable()) {
+  if (state.current().fit.is_usable()) {
     enter_effects(state, selection.result, selection.verdict);
     selection.verdict.kind = kind_of(selection, is_noise);
   }
@@ -316,7 +316,7 @@ EffectSelection select_effects(const Job& job, const FitResult& first, const Sea
   const Start start = start_of(job, first, rounds.context);
   if (start.tracks && !start.input_is_noisy && !job.choose_criterion &&
       std::holds_alternative<FreeRun>(job.options.criterion))
-    rounds.free = job;
+    rounds.free = {"", job, first};
   EffectSelection selection = search_effects(start.model.job, start.model.fit, rounds);
   const bool found_any = selection.models.size() > 1;
   if (selection.interrupted) return selection;

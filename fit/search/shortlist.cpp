@@ -157,7 +157,8 @@ void Shortlist::add(Shortlist other, const SearchOptions& options) {
 }
 
 Shortlist shortlist(const Job& job, const std::vector<double>& values,
-                    const std::vector<double>& gains, bool curves, const SearchContext& context) {
+                    const std::vector<double>& gains, bool curves, const SearchContext& context,
+                    bool is_added) {
   const SearchOptions::Shortlist& options = context.options.shortlist;
   // A high gain may hide what a low one shows: each has its own best.
   std::vector<Shortlist> of_gain(gains.size());
@@ -170,7 +171,7 @@ Shortlist shortlist(const Job& job, const std::vector<double>& values,
       note(of_gain[i].promises,
            {score.hypothesis, score.own.shapes, score.gain / std::max(1.0, test.mean_square)});
     // Beside simulations that track, the free run is heard for its best, and what nearly equals it.
-    const bool is_beside = gains[i] == 0.0 && gains.size() > 1;
+    const bool is_beside = gains[i] == 0.0 && (is_added || gains.size() > 1);
     of_gain[i].entries =
         best_of(test, is_beside ? 1 : static_cast<std::size_t>(options.length), options);
   });

@@ -40,7 +40,7 @@ bool is_most(double gain, double sum_of_squares, double samples,
 /// SearchOptions::Shortlist. The thread pool shares the work.
 Shortlist shortlist(const Job& job, const std::vector<double>& values,
                     const std::vector<double>& observer_gains, bool curves,
-                    const SearchContext& context = {});
+                    const SearchContext& context = {}, bool is_added = false);
 
 /// Puts fits that track at this observer gain in the place of the steps of least squares: where
 /// much is missing, a step tells wrongly what an effect gains, and starts its refit far away. Of

@@ -15,6 +15,8 @@
 #include "fit/search/pairs.h"
 #include "fit/search/pruning.h"
 #include "fit/search/rivals.h"
+#include "fit/search/shortlist.h"
+#include "sim/effects/effects.h"
 
 namespace axisfit {
 namespace {
@@ -90,6 +92,33 @@ std::optional<FittedModel> with_better_held(const FittedModel& model, const Hypo
   return best;
 }
 
+/// Of what passes about as well, the best may show only beside other settings of what the accepted
+/// laws hold: exchanges these in them, and returns the best.
+Tried* best_beside_held(Tried* best, std::vector<Tried>& models, const SearchState& state,
+                        const SearchContext& context) {
+  std::vector<std::pair<const Hypothesis*, std::size_t>> held;
+  for (const Accepted& accepted : state.accepted())
+    for (std::size_t k = accepted.hypothesis.estimated_shapes().size();
+         accepted.hypothesis.kind == HypothesisKind::effect &&
+         k < accepted.hypothesis.shapes.size();
+         ++k)
+      held.emplace_back(&accepted.hypothesis, k);
+  std::vector<Tried*> equals;
+  for (Tried& e : models)
+    if (!e.rejection && !is_clearly_worse(bic_advantage(*best, e), context.options))
+      equals.push_back(&e);
+  if (held.empty() || equals.size() < 2 || explains({"", best->job, best->fit})) return best;
+  for (Tried* e : equals)
+    for (const auto& [law, shape] : held)
+      if (auto better = with_better_held({"", e->job, e->fit}, *law, shape, context)) {
+        e->job = std::move(better->job);
+        e->fit = std::move(better->fit);
+        e->residuals = residual_series(e->job, e->fit);
+      }
+  return *std::ranges::max_element(
+      equals, [](const Tried* a, const Tried* b) { return bic_advantage(*a, *b) < 0.0; });
+}
+
 /// Looks at the settings of the first so many accepted laws again, beside what was accepted since.
 void reconsider_held(SearchState& state, std::size_t count, const SearchContext& context) {
   for (std::size_t a = 0; a < count; ++a) {
@@ -139,6 +168,7 @@ bool add_best(SearchState& state, bool curves, double chance, Rounds& rounds) {
        .excluded = state.degenerate},
       curves ? rounds.of_curves : rounds.of_names, rounds.context);
   Tried* best = round.best ? &round.models[*round.best] : nullptr;
+  if (best != nullptr) best = best_beside_held(best, round.models, state, rounds.context);
   for (const Tried& tried : round.models) state.outcomes.record(tried, best, rounds.count);
   if (round.pair) {
     append_pair(state, *std::move(round.pair), *rounds.of_names.list, rounds);
@@ -169,12 +199,23 @@ bool add_best(SearchState& state, bool curves, Rounds& rounds) {
   return add_best(state, curves, rounds.context.options.acceptance.chance, rounds);
 }
 
-/// Adds two hypotheses that hide each other; whether there were any.
+/// Whether a push of the arm, at a time of its own, promises most of what is missing.
+bool is_a_push(const FittedModel& model, const SearchContext& context) {
+  const Shortlist curves =
+      shortlist(model.job, values_of(model.fit), {score_gains(model.job).front()}, true, context);
+  return curves.has_most &&
+         quantity_list()[curves.entries.front().hypothesis->strengths.front()].effect ==
+             effect_named(ForceOverTime<double>::name);
+}
+
+/// Adds two hypotheses that hide each other; whether there were any. Two laws of the motion are no
+/// push.
 bool add_pair(SearchState& state, Rounds& rounds) {
   const SearchOptions& options = rounds.context.options;
   if (rounds.of_names.has_no_pair || state.explained() || is_fitted_to_noise(state) ||
       !has_room_for_two(state, options))
     return false;
+  if (state.accepted().empty() && is_a_push(state.current(), rounds.context)) return false;
   state.report_progress(rounds.context.run, "do two effects hide each other?", Work::trials);
   const Shortlist& list = *rounds.of_names.list;
   std::vector<Shortlist::Promise> hypotheses = list.promises;
@@ -211,11 +252,28 @@ bool exchange(SearchState& state, const Rounds& rounds) {
   return true;
 }
 
+/// Noise of the readings drives a simulation that tracks, and it takes a part of small effects upon
+/// itself: as soon as what was found lets the free run come near the data, the search goes on with
+/// that.
+bool is_near_freely(SearchState& state, const SearchOptions& options) {
+  return !state.accepted().empty() && is_near(state.current(), options) &&
+         is_near(state.chain.free_run(), options);
+}
+
+void leave_tracking(SearchState& state, const Rounds& rounds) {
+  if (!rounds.free || !tracks(state.current().job.options.criterion) ||
+      !is_near_freely(state, rounds.context.options))
+    return;
+  state.chain.replace(*rounds.free, FittedModel(state.chain.free_run()));
+  state.chain.set_free(std::nullopt);
+}
+
 /// named(), but for a stop.
 void add_named(SearchState& state, Rounds& rounds) {
   bool may_exchange = true;
   do {
     while (has_room(state, rounds)) {
+      leave_tracking(state, rounds);
       if (add_best(state, false, rounds)) continue;
       if (drop_degenerate(state, rounds.count, rounds.context)) continue;
       if (may_exchange && !state.accepted().empty()) {
@@ -289,19 +347,18 @@ SearchState finished(const SearchState& before, Strategy&& strategy) {
   }
 }
 
-/// Whether what was found takes nearly all of the error beyond the noise away.
-bool is_nearly_all(const SearchState& state, const SearchOptions& options) {
-  return improvement(state.chain.declared(), state.current()).missing_percent >=
-         options.far_from_noise.of_complete_model;
+/// Whether what was found takes so much of the error beyond the noise away, %.
+bool takes(double percent, const SearchState& state) {
+  return improvement(state.chain.declared(), state.current()).missing_percent >= percent;
 }
 
-/// Whether a curve is part of that. What is left beside it is how it differs from the truth: no
-/// effect that could be told from it.
+/// Whether a curve is part of a model that holds. What is left beside it is how it differs from the
+/// truth: no effect that could be told from it.
 bool is_left_by_a_curve(const SearchState& state, const SearchOptions& options) {
   return std::ranges::any_of(
              state.accepted(),
              [](const Accepted& a) { return a.hypothesis.kind == HypothesisKind::curve; }) &&
-         is_nearly_all(state, options);
+         takes(options.far_from_noise.of_model, state);
 }
 
 /// together(), of a state that holds what was found when this is stopped.
@@ -316,6 +373,7 @@ void find_together(SearchState& state, Rounds& rounds) {
   const double chance = rounds.context.options.acceptance.provisional_chance;
   do {
     while (state.current().fit.is_usable() && has_room(state, rounds) && !state.explained() &&
+           !(is_continued && is_near_freely(state, rounds.context.options)) &&
            add_best(state, false, chance, rounds)) {
     }
   } while (drop_degenerate(state, rounds.count, rounds.context));
@@ -362,7 +420,8 @@ SearchState with_named_effects(const SearchState& declared, bool tracks, Rounds&
       best.interrupted = true;
     }
     const bool is_end = is_over(best);
-    if (best.interrupted || is_nearly_all(best, options) || (is_end && is_all_of_the_machine(best)))
+    if (best.interrupted || takes(options.far_from_noise.of_complete_model, best) ||
+        (is_end && is_all_of_the_machine(best)))
       return best;
     SearchState other = named(declared, rounds);
     if (is_over(other) && !other.interrupted) return other;
@@ -382,6 +441,9 @@ FittedModel tracking(FittedModel model, double gain, const SearchContext& contex
   model.job.options.criterion = Tracking{gain};
   model.job.choose_criterion = false;
   model.fit = refit_from(model.job, values_of(model.fit), context);
+  // Among narrow minima a quick fit may end for want of iterations.
+  if (model.fit.verdict.kind == FitVerdict::Kind::no_minimum)
+    model.fit = refit_from(model.job, values_of(model.fit), context);
   return model;
 }
 

@@ -22,8 +22,8 @@ namespace axisfit {
 struct Rounds {
   SearchContext context;
   bool held_out_blocks = false;  ///< no recording is to validate, see with_held_out_blocks()
-  /// The declared job that runs freely where a search begins with one that tracks in its place.
-  std::optional<Job> free{};
+  /// The declared model that runs freely where a search begins with one that tracks in its place.
+  std::optional<FittedModel> free{};
   RoundMemory of_names{}, of_curves{};
   int count = 0;  ///< of all strategies, those that were given up included
 };

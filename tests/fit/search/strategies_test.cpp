@@ -151,6 +151,39 @@ TEST(Search, FindsAPushWhileItTracks) {
   EXPECT_EQ(found.current().fit.observer_gain, 0.0);
 }
 
+// A weak one: the free run stays close, and what else lowers its error a little is no law.
+TEST(Search, LooksForNoPairBehindAPush) {
+  Model<double> truth = paper_axis();
+  auto& push = add_effect<ForceOverTime>(truth);
+  *members(truth)[quantity_index("force_over_time.from")] = 0.2;
+  *members(truth)[quantity_index("force_over_time.to")] = 0.3;
+  std::fill(push.c.begin() + 3, push.c.end() - 3, 40.0);
+  const Job job = two_recordings(truth, paper_axis(), {"B_a"});
+  Rounds rounds;
+  const SearchState first = start_of(job, rounds);
+  ASSERT_LT(first.current().fit.reduced_chi_square, 25.0);
+  std::set<std::string> phases;
+  rounds.context.run.progress = [&](const Progress& p) { phases.insert(p.phase); };
+  const SearchState found = search(first, rounds);
+  EXPECT_EQ(names_in(found), std::set<std::string>{"force_over_time"});
+  EXPECT_FALSE(phases.contains("do two effects hide each other?"));
+}
+
+// A part that swings weighs something, too. While the simulation tracks, another inertia of the
+// motor does as well as the mass.
+TEST(Search, LeavesTrackingAsSoonAsTheFreeRunIsNear) {
+  Model<double> truth = paper_axis();
+  add_effect<ElasticMode>(truth) = {10.8, 15.2, 0.027};
+  add_effect<AddedMass>(truth).dM = 10.8;
+  const Job job = two_recordings(truth, paper_axis(), {"V_L", "B_a", "b_g", "k_g", "T_p"});
+  Rounds rounds;
+  const SearchState first = start_of(job, rounds);
+  ASSERT_GT(first.current().fit.reduced_chi_square, 25.0);
+  const SearchState found = search(first, rounds);
+  EXPECT_EQ(names_in(found), (std::set<std::string>{"elastic_mode", "added_mass"}));
+  EXPECT_EQ(found.current().fit.observer_gain, 0.0);
+}
+
 TEST(Tracking, FitsByTheErrorsOneStepAhead) {
   const Job job = hidden_effect_named("coulomb_friction").job();
   const FittedModel declared{"", job, estimate(job)};
