@@ -70,7 +70,7 @@ TEST(AskElsewhere, AsksHeldOutBlocksOfWhatTheseCannotShow) {
   EXPECT_FALSE(refits.front().rejection);
   EXPECT_TRUE(refits.front().on_blocks);
   ASSERT_TRUE(memory.on_blocks);
-  for (const ResidualSeries& series : *memory.on_blocks) EXPECT_FALSE(series.fitted);
+  for (const ResidualSeries& series : *memory.on_blocks) EXPECT_EQ(series.recording, 0u);
 }
 
 TEST(AskElsewhere, AsksOnlyForTheFirstFewWhereTheFittedRecordingsHoldNothing) {
