@@ -32,34 +32,11 @@ bool is_alike_elsewhere(SearchState& state, const Hypothesis& hypothesis,
   return found && found->is_alike;
 }
 
-/// Along the motion of a fitted recording, the periods of an effect with a phase.
-double periods_passed(const FittedModel& model, const Hypothesis& hypothesis) {
-  double distance = 0.0;
-  for (std::size_t r = 0; r < model.job.recordings.size(); ++r) {
-    if (model.job.recordings[r].role != Role::fit) continue;
-    const auto& samples = model.fit.recordings[r].as_fitted().samples;
-    if (samples.empty()) continue;
-    const auto [low, high] = std::ranges::minmax(samples, {}, &Sample::position);
-    distance = std::max(distance, high.position - low.position);
-  }
-  Model<double> fitted = fitted_model(model.job, model.fit);
-  const auto member = members(fitted);
-  const auto effect = quantity_list()[hypothesis.strengths.front()].effect;
-  for (const QuantityEntry& entry : quantity_list())
-    if (entry.effect == effect && entry.quantity.shape) {
-      const double value = *member[entry.index];
-      return entry.quantity.unit == "m"
-                 ? distance / value
-                 : value * distance / (2.0 * std::numbers::pi * motor_radius(fitted));
-    }
-  return 0.0;
-}
-
 /// Nothing else that may be missing repeats as often along the way.
 bool repeats_often(const FittedModel& model, const Hypothesis& hypothesis,
                    const SearchOptions& options) {
   return hypothesis.has_phase &&
-         periods_passed(model, hypothesis) >= options.far_from_noise.periods;
+         periods_passed(model.job, model.fit, hypothesis) >= options.far_from_noise.periods;
 }
 
 /// How many standard errors a single strength is from neutral where its interval contains that;

@@ -343,8 +343,38 @@ class RoundTrial {
         memory_.refits[place] = e;
         judge(e, before_, strictness(), context_.options);
       }
+      if (may_have_another_period(e)) try_other_periods(e, place);
       report(1);
     });
+  }
+
+  /// A ripple does nearly as well with one period more or less along the motion, and stays there:
+  /// whether it gains beyond doubt and yet leaves more than noise, or was given up.
+  bool may_have_another_period(const Tried& e) const {
+    const double least = least_gain(e.hypothesis, e.gain.samples, result_.tried);
+    return e.hypothesis.has_phase && !e.hypothesis.estimated_shapes().empty() && !is_exact_ &&
+           e.gain.comparable && e.gain.fit_gain > 2.0 * least && !is_fitted_to_noise(e.residuals);
+  }
+
+  /// Exchanges a refit for a better one with such a period.
+  void try_other_periods(Tried& e, std::size_t place) {
+    const double count = periods_passed(e.job, e.fit, e.hypothesis);
+    const HypothesisValues found = values_in(e);
+    const std::vector<double> values = values_of(e.fit);
+    const bool is_length = quantity_list()[e.hypothesis.shapes.front()].quantity.unit == "m";
+    for (const double other : {count - 1.0, count + 1.0}) {
+      if (other < 1.0) continue;
+      Scored start = entry(place);
+      start.others.assign(values.begin(), values.begin() + std::ssize(model_.job.free));
+      start.own = {e.hypothesis.neutral, found.shapes};
+      start.own.shapes.front() *= is_length ? count / other : other / count;
+      Tried next =
+          try_hypothesis(model_.job, start, context_,
+                         {.give_up_above = worthless_cost(e.fit, e.residuals, 0, context_.options),
+                          .before = &model_.fit});
+      judge(next, before_, strictness(), context_.options);
+      if (next.fit.is_usable() && bic_advantage(next, e) > 0.0) memory_.refits[place] = e = next;
+    }
   }
 
   /// Whether a refit promises to pass, but for want of iterations.

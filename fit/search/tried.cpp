@@ -173,6 +173,28 @@ std::optional<Rejection> rejection_as_indistinct(const FitResult& before, const 
   return std::nullopt;
 }
 
+double periods_passed(const Job& job, const FitResult& fit, const Hypothesis& hypothesis) {
+  double distance = 0.0;
+  for (std::size_t r = 0; r < job.recordings.size(); ++r) {
+    if (job.recordings[r].role != Role::fit) continue;
+    const auto& samples = fit.recordings[r].as_fitted().samples;
+    if (samples.empty()) continue;
+    const auto [low, high] = std::ranges::minmax(samples, {}, &Sample::position);
+    distance = std::max(distance, high.position - low.position);
+  }
+  Model<double> fitted = fitted_model(job, fit);
+  const auto member = members(fitted);
+  const auto effect = quantity_list()[hypothesis.strengths.front()].effect;
+  for (const QuantityEntry& entry : quantity_list())
+    if (entry.effect == effect && entry.quantity.shape) {
+      const double value = *member[entry.index];
+      return entry.quantity.unit == "m"
+                 ? distance / value
+                 : value * distance / (2.0 * std::numbers::pi * motor_radius(fitted));
+    }
+  return 0.0;
+}
+
 HypothesisValues values_in(const Tried& tried) {
   return values_in(tried.job, tried.fit, tried.hypothesis);
 }

@@ -88,6 +88,9 @@ std::optional<Rejection> rejection_as_indistinct(const FitResult& before, const 
 /// What its quantities are.
 HypothesisValues values_in(const Tried& tried);
 
+/// How many periods of an effect with a phase pass along the motion of a fitted recording, at most.
+double periods_passed(const Job& job, const FitResult& fit, const Hypothesis& hypothesis);
+
 /// Where a fit has driven a free shape of a hypothesis to its bound, or far beyond what was tried
 /// of it, which is what the recordings span: there the effect is a simpler one. Dahl friction of no
 /// length is Coulomb friction, and so is Stribeck's with a speed that the axis never reaches. None

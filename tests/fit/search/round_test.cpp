@@ -101,6 +101,35 @@ TEST(RoundTest, GoesOnFromAPlainFormToARicherOne) {
   EXPECT_EQ(best.shapes.size(), 1u);
 }
 
+// A refit that begins with a period too many along the stroke ends there.
+TEST(RoundTest, TriesOnePeriodMoreOrLess) {
+  constexpr double kPeriod = 0.015;
+  Model<double> truth = slide();
+  auto& wave = add_effect<PeriodicForce>(truth);
+  wave.F_s1 = 12.0;
+  wave.period = kPeriod;
+  const FittedModel model = declared_model(two_recordings(truth, slide(), {"M", "B_a"}));
+  RoundMemory memory;
+  const RoundResult first = try_round(model, {}, memory, {});
+  ASSERT_TRUE(first.best);
+  const Tried& right = first.models[*first.best];
+  ASSERT_EQ(right.hypothesis.name, "periodic_force");
+  const double count = periods_passed(right.job, right.fit, right.hypothesis);
+  Scored start;
+  start.hypothesis = std::make_shared<const Hypothesis>(right.hypothesis);
+  start.own = {{1.0, 1.0}, {kPeriod * count / (count + 1.0)}};
+  start.others = values_of(model.fit);
+  start.scaled_gain = start.promise = 1e4;
+  EXPECT_LT(values_in(try_hypothesis(model.job, start)).shapes[0], 0.97 * kPeriod);
+  Shortlist list;
+  list.entries = {start};
+  memory = {.of = model.values(), .list = list, .is_compared = true, .is_whole = true};
+  memory.refits.resize(1);
+  const RoundResult found = try_round(model, {}, memory, {});
+  ASSERT_TRUE(found.best);
+  EXPECT_NEAR(values_in(found.models[*found.best]).shapes[0], kPeriod, 1e-4);
+}
+
 // A friction with an offset: each explains a part, only both explain most of what is missing.
 TEST(RoundTest, TriesTwoAtOnceWhereOnlyTheyExplainMost) {
   Model<double> truth = slide();

@@ -111,6 +111,20 @@ TEST(TryHypothesis, StartsFromAPartOfTheWayWhereAWholeStepGoesTooFar) {
   }
 }
 
+TEST(PeriodsPassed, CountsThemAlongTheStroke) {
+  Model<double> truth = slide();
+  auto& wave = add_effect<PeriodicForce>(truth);
+  wave.F_s1 = 12.0;
+  wave.period = 0.015;
+  const Job job = two_recordings(truth, truth, {"M", "B_a"});
+  const FitResult fit = estimate(job);
+  const auto [low, high] =
+      std::ranges::minmax(fit.recordings[0].as_fitted().samples, {}, &Sample::position);
+  Hypothesis periodic;
+  periodic.strengths = {quantity_index("periodic_force.F_s1")};
+  EXPECT_NEAR(periods_passed(job, fit, periodic), (high.position - low.position) / 0.015, 1e-9);
+}
+
 TEST(RejectionByForce, IsForOneThatRisesInAnyRecording) {
   const SearchOptions::Acceptance limits;
   EXPECT_EQ(rejection_by_force({12.5, 3.0}, {14.0, 2.0}, limits), std::nullopt);
