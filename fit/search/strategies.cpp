@@ -203,7 +203,7 @@ bool add_best(SearchState& state, bool curves, Rounds& rounds) {
 bool is_a_push(const FittedModel& model, const SearchContext& context) {
   const Shortlist curves =
       shortlist(model.job, values_of(model.fit), {score_gains(model.job).front()}, true, context);
-  return curves.has_most &&
+  return curves.has_most && !curves.entries.empty() &&
          quantity_list()[curves.entries.front().hypothesis->strengths.front()].effect ==
              effect_named(ForceOverTime<double>::name);
 }
@@ -215,7 +215,10 @@ bool add_pair(SearchState& state, Rounds& rounds) {
   if (rounds.of_names.has_no_pair || state.explained() || is_fitted_to_noise(state) ||
       !has_room_for_two(state, options))
     return false;
-  if (state.accepted().empty() && is_a_push(state.current(), rounds.context)) return false;
+  if (state.accepted().empty() && is_a_push(state.current(), rounds.context)) {
+    rounds.of_names.has_no_pair = true;
+    return false;
+  }
   state.report_progress(rounds.context.run, "do two effects hide each other?", Work::trials);
   const Shortlist& list = *rounds.of_names.list;
   std::vector<Shortlist::Promise> hypotheses = list.promises;
@@ -252,14 +255,14 @@ bool exchange(SearchState& state, const Rounds& rounds) {
   return true;
 }
 
-/// Noise of the readings drives a simulation that tracks, and it takes a part of small effects upon
-/// itself: as soon as what was found lets the free run come near the data, the search goes on with
-/// that.
+/// Whether the free run with what was found while tracking is near the data.
 bool is_near_freely(SearchState& state, const SearchOptions& options) {
   return !state.accepted().empty() && is_near(state.current(), options) &&
          is_near(state.chain.free_run(), options);
 }
 
+/// Noise of the readings drives a simulation that tracks, and it takes a part of small effects upon
+/// itself: as soon as the free run is near the data, the search goes on with that.
 void leave_tracking(SearchState& state, const Rounds& rounds) {
   if (!rounds.free || !tracks(state.current().job.options.criterion) ||
       !is_near_freely(state, rounds.context.options))
