@@ -120,8 +120,9 @@ class RoundTrial {
 
   /// Two plain laws that explain most of what is missing, if none does alone, and pass.
   std::optional<TriedPair> large_pair() {
-    const bool is_near = is_exact_ || model_.fit.reduced_chi_square < context_.options.near_noise;
-    if (is_near || memory_.has_no_large_pair) return std::nullopt;
+    if (is_exact_ || model_.fit.reduced_chi_square < context_.options.near_noise ||
+        memory_.has_no_large_pair)
+      return std::nullopt;
     score_first();
     const Shortlist& list = *memory_.list;
     memory_.has_no_large_pair = true;
@@ -171,7 +172,7 @@ class RoundTrial {
     bool is_any = false;
     while (!memory_.is_whole && !(is_any && memory_.list->has_most)) {
       const std::vector<double> gains = other_gains();
-      memory_.is_whole = gains.empty() || gains.size() > 1 || gains.front() != 0.0;
+      memory_.is_whole = gains != std::vector{0.0};
       if (gains.empty()) break;
       is_any = true;
       memory_.list->add(scored(gains), context_.options);
@@ -261,8 +262,8 @@ class RoundTrial {
       refit_all({next, few});
       reject_what_does_harm(known);
       next = few;
-      if (next == end) break;
-      if (any_explains() || has_seen_enough()) break;
+      if (next != end && (any_explains() || has_seen_enough()))
+        break;  // which may take a simulation to tell
     }
     return next;
   }
@@ -351,9 +352,11 @@ class RoundTrial {
   /// A ripple does nearly as well with one period more or less along the motion, and stays there:
   /// whether it gains beyond doubt and yet leaves more than noise, or was given up.
   bool may_have_another_period(const Tried& e) const {
+    constexpr double kBeyondDoubt = 2.0;
     const double least = least_gain(e.hypothesis, e.gain.samples, result_.tried);
     return e.hypothesis.has_phase && !e.hypothesis.estimated_shapes().empty() && !is_exact_ &&
-           e.gain.comparable && e.gain.fit_gain > 2.0 * least && !is_fitted_to_noise(e.residuals);
+           e.gain.comparable && e.gain.fit_gain > kBeyondDoubt * least &&
+           !is_fitted_to_noise(e.residuals);
   }
 
   /// Exchanges a refit for a better one with such a period.

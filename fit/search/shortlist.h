@@ -37,7 +37,8 @@ bool is_most(double gain, double sum_of_squares, double samples,
 
 /// The best by score_test() at each of these observer gains, from a fit with the given values of
 /// the free parameters; those of the catalogue or, with `curves`, those without a name. How many:
-/// SearchOptions::Shortlist. The thread pool shares the work.
+/// SearchOptions::Shortlist. Beside other gains, here or in the list to which this one is
+/// `is_added`, the free run is heard for its best. The thread pool shares the work.
 Shortlist shortlist(const Job& job, const std::vector<double>& values,
                     const std::vector<double>& observer_gains, bool curves,
                     const SearchContext& context = {}, bool is_added = false);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "fit/criterion/gains.h"
@@ -92,17 +93,24 @@ std::optional<FittedModel> with_better_held(const FittedModel& model, const Hypo
   return best;
 }
 
+/// The shapes that the first so many accepted laws hold, by their places among those of the law.
+std::vector<std::pair<Hypothesis, std::size_t>> held_shapes(const SearchState& state,
+                                                            std::size_t count) {
+  std::vector<std::pair<Hypothesis, std::size_t>> held;
+  for (const Accepted& accepted : std::span(state.accepted()).first(count)) {
+    const Hypothesis& law = accepted.hypothesis;
+    if (law.kind != HypothesisKind::effect) continue;
+    for (std::size_t k = law.estimated_shapes().size(); k < law.shapes.size(); ++k)
+      held.emplace_back(law, k);
+  }
+  return held;
+}
+
 /// Of what passes about as well, the best may show only beside other settings of what the accepted
 /// laws hold: exchanges these in them, and returns the best.
 Tried* best_beside_held(Tried* best, std::vector<Tried>& models, const SearchState& state,
                         const SearchContext& context) {
-  std::vector<std::pair<const Hypothesis*, std::size_t>> held;
-  for (const Accepted& accepted : state.accepted())
-    for (std::size_t k = accepted.hypothesis.estimated_shapes().size();
-         accepted.hypothesis.kind == HypothesisKind::effect &&
-         k < accepted.hypothesis.shapes.size();
-         ++k)
-      held.emplace_back(&accepted.hypothesis, k);
+  const auto held = held_shapes(state, state.accepted().size());
   std::vector<Tried*> equals;
   for (Tried& e : models)
     if (!e.rejection && !is_clearly_worse(bic_advantage(*best, e), context.options))
@@ -110,7 +118,7 @@ Tried* best_beside_held(Tried* best, std::vector<Tried>& models, const SearchSta
   if (held.empty() || equals.size() < 2 || explains({"", best->job, best->fit})) return best;
   for (Tried* e : equals)
     for (const auto& [law, shape] : held)
-      if (auto better = with_better_held({"", e->job, e->fit}, *law, shape, context)) {
+      if (auto better = with_better_held({"", e->job, e->fit}, law, shape, context)) {
         e->job = std::move(better->job);
         e->fit = std::move(better->fit);
         e->residuals = residual_series(e->job, e->fit);
@@ -121,13 +129,10 @@ Tried* best_beside_held(Tried* best, std::vector<Tried>& models, const SearchSta
 
 /// Looks at the settings of the first so many accepted laws again, beside what was accepted since.
 void reconsider_held(SearchState& state, std::size_t count, const SearchContext& context) {
-  for (std::size_t a = 0; a < count; ++a) {
-    const Hypothesis law = state.accepted()[a].hypothesis;
-    if (law.kind != HypothesisKind::effect) continue;
-    for (std::size_t k = law.estimated_shapes().size(); k < law.shapes.size(); ++k)
-      if (auto better =
-              state.explained() ? std::nullopt : with_better_held(state.current(), law, k, context))
-        state.chain.set_last(*std::move(better));
+  for (const auto& [law, shape] : held_shapes(state, count)) {
+    if (state.explained()) return;
+    if (auto better = with_better_held(state.current(), law, shape, context))
+      state.chain.set_last(*std::move(better));
   }
 }
 

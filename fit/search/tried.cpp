@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "fit/estimate/recipes.h"
 #include "fit/judge/missing_force.h"

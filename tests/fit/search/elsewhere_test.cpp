@@ -41,34 +41,37 @@ Tried refit_of(const FittedModel& model, Rejection::Test test) {
   return refit;
 }
 
-TEST(AskElsewhere, AcceptsWhatTheRecordingsToValidateTellByThemselves) {
-  const FittedModel model = declared_model(5.0, 5.0);
-  std::vector<Tried> refits{refit_of(model, Rejection::Test::validation)};
+/// Asked of the recording to validate, and what was computed for that.
+struct Asked {
+  Tried refit;
+  ElsewhereMemory memory{};
+};
+Asked asked(const FittedModel& model, Rejection::Test test) {
+  std::vector<Tried> refits{refit_of(model, test)};
   ElsewhereMemory memory;
   ask_elsewhere(model, refits, {}, memory, {});
-  EXPECT_FALSE(refits.front().rejection);
-  ASSERT_TRUE(refits.front().replication);
-  EXPECT_NEAR(refits.front().replication->parameters[0].value, 5.0, 0.2);
+  return {std::move(refits.front()), std::move(memory)};
+}
+
+TEST(AskElsewhere, AcceptsWhatTheRecordingsToValidateTellByThemselves) {
+  const auto [refit, memory] = asked(declared_model(5.0, 5.0), Rejection::Test::validation);
+  EXPECT_FALSE(refit.rejection);
+  ASSERT_TRUE(refit.replication);
+  EXPECT_NEAR(refit.replication->parameters[0].value, 5.0, 0.2);
   EXPECT_EQ(memory.fits.size(), 1u);
 }
 
 TEST(AskElsewhere, AcceptsNothingThatTheseTellOtherwise) {
-  const FittedModel model = declared_model(5.0, 0.0);
-  std::vector<Tried> refits{refit_of(model, Rejection::Test::validation)};
-  ElsewhereMemory memory;
-  ask_elsewhere(model, refits, {}, memory, {});
-  ASSERT_TRUE(refits.front().rejection);
-  EXPECT_EQ(refits.front().rejection->test, Rejection::Test::validation);
-  EXPECT_FALSE(refits.front().on_blocks);
+  const Tried refit = asked(declared_model(5.0, 0.0), Rejection::Test::validation).refit;
+  ASSERT_TRUE(refit.rejection);
+  EXPECT_EQ(refit.rejection->test, Rejection::Test::validation);
+  EXPECT_FALSE(refit.on_blocks);
 }
 
 TEST(AskElsewhere, AsksHeldOutBlocksOfWhatTheseCannotShow) {
-  const FittedModel model = declared_model(5.0, 0.0);
-  std::vector<Tried> refits{refit_of(model, Rejection::Test::power)};
-  ElsewhereMemory memory;
-  ask_elsewhere(model, refits, {}, memory, {});
-  EXPECT_FALSE(refits.front().rejection);
-  EXPECT_TRUE(refits.front().on_blocks);
+  const auto [refit, memory] = asked(declared_model(5.0, 0.0), Rejection::Test::power);
+  EXPECT_FALSE(refit.rejection);
+  EXPECT_TRUE(refit.on_blocks);
   ASSERT_TRUE(memory.on_blocks);
   for (const ResidualSeries& series : *memory.on_blocks) EXPECT_EQ(series.recording, 0u);
 }
