@@ -81,23 +81,22 @@ class RoundTrial {
 
   /// A simulation that is far from the data must track them to be scored.
   double first_gain() const {
-    return is_free() && is_exact_ ? 0.0 : score_gains(model_.job).front();
+    const bool is_free_first = is_free() && (is_exact_ || is_near(model_, context_.options));
+    return is_free_first ? 0.0 : score_gains(model_.job).front();
   }
 
-  /// The gains that the list lacks, at first the free run where it is near the data. What is large
-  /// is tried at a high gain, too, and the free run is scored where it is close: an instrument that
-  /// errs misleads whatever tracks it.
+  /// The gains that the list lacks, at first the free run where it is close to the data: an
+  /// instrument that errs misleads whatever tracks it. What is large is tried at a high gain, too.
   std::vector<double> other_gains() const {
     if (is_free() && is_exact_) return {};
     const std::vector<double>& known = memory_.list->observer_gains;
     const auto is_known = [&](double gain) {
       return std::ranges::find(known, gain) != known.end();
     };
-    if (is_free() && is_near(model_, context_.options) && !is_known(0.0)) return {0.0};
+    if (is_free() && is_close() && !is_known(0.0)) return {0.0};
     std::vector<double> gains = score_gains(model_.job);
     if (const auto close = close_gain(model_.job, values_of(model_.fit), context_))
       gains.push_back(*close);
-    if (is_free() && is_close()) gains.push_back(0.0);
     std::erase_if(gains, is_known);
     return gains;
   }

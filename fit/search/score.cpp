@@ -80,32 +80,40 @@ void consider(const Scorer& scorer, const EffectSetting& setting,
   score.others = std::move(step->others);
 }
 
-/// The mean derivatives up to each of a hypothesis' probes, from the residuals without it.
-std::vector<std::pair<double, Eigen::MatrixXd>> probed(const Job& fixed,
-                                                       const Hypothesis& hypothesis,
-                                                       const std::vector<double>& shapes,
-                                                       double gain,
-                                                       const Eigen::VectorXd& without) {
-  std::vector<std::pair<double, Eigen::MatrixXd>> list;
-  for (const double probe : hypothesis.probes) {
-    const std::vector<double> strength{probe};
-    const Job extended = with_hypothesis(fixed, hypothesis, {}, {strength, shapes}, true);
-    const ParameterSpace space(extended);
-    const Eigen::VectorXd there = residuals_at(extended, space, space.internal(strength), gain);
-    if (there.size() == 0 || there.size() > without.size()) continue;
-    list.emplace_back(probe, (there - without.head(there.size())) /
-                                 distance_from_neutral(probe, hypothesis.neutral[0]));
-  }
-  return list;
+/// The mean derivative up to one of a hypothesis' probes, from the residuals without it; empty
+/// where there are none.
+Eigen::MatrixXd probed(const Job& fixed, const Hypothesis& hypothesis, double probe,
+                       const std::vector<double>& shapes, double gain,
+                       const Eigen::VectorXd& without) {
+  const std::vector<double> strength{probe};
+  const Job extended = with_hypothesis(fixed, hypothesis, {}, {strength, shapes}, true);
+  const ParameterSpace space(extended);
+  const Eigen::VectorXd there = residuals_at(extended, space, space.internal(strength), gain);
+  if (there.size() == 0 || there.size() > without.size()) return {};
+  return (there - without.head(there.size())) / distance_from_neutral(probe, hypothesis.neutral[0]);
 }
 
-/// Each setting of another transmission takes simulations of its own: those in the middle are tried
-/// first, where there are many.
-bool is_tried_first(const Hypothesis& hypothesis, std::size_t setting,
-                    const SearchOptions::Scoring& options) {
+/// Strengths at which a score is looked at with simulations of its own.
+struct Probing {
+  Scored* score;
+  std::vector<double> strengths;
+};
+
+/// Of the many settings of another transmission those in the middle are tried first, of anything
+/// else the first of its probes.
+void share_probes(Scored& score, std::size_t setting, const SearchOptions::Scoring& options,
+                  std::vector<Probing>& first, std::vector<Probing>& rest) {
+  const Hypothesis& hypothesis = *score.hypothesis;
+  const std::vector<double>& probes = hypothesis.probes;
+  if (hypothesis.kind != HypothesisKind::transmission) {
+    first.push_back({&score, {probes.front()}});
+    if (probes.size() > 1) rest.push_back({&score, {probes.begin() + 1, probes.end()}});
+    return;
+  }
   const std::size_t all = hypothesis.settings.size();
-  return hypothesis.kind != HypothesisKind::transmission || all < options.first_settings ||
-         (3 * setting >= all && 3 * setting < 2 * all);
+  const bool is_first =
+      all < options.first_settings || (3 * setting >= all && 3 * setting < 2 * all);
+  (is_first ? first : rest).push_back({&score, probes});
 }
 
 /// The least and the most that is tried of one shape.
@@ -171,17 +179,16 @@ void refine_shapes(const Job& fixed, const EffectColumns& columns, const Scorer&
   }
 }
 
-/// Looks at those of the scores that have probes, each with simulations of its own.
-void probe(const std::vector<Scored*>& scores, const Job& fixed, double gain,
+void probe(const std::vector<Probing>& list, const Job& fixed, double gain,
            const Eigen::VectorXd& without, const Scorer& scorer, const RunContext& context) {
-  parallel_for(scores.size(), [&](std::size_t i) {
+  parallel_for(list.size(), [&](std::size_t i) {
     context.check_stop();
-    Scored& score = *scores[i];
+    Scored& score = *list[i].score;
     const Hypothesis& hypothesis = *score.hypothesis;
     const EffectSetting absent{&hypothesis, {hypothesis.neutral, score.own.shapes}};
-    for (const auto& [strength, derivative] :
-         probed(fixed, hypothesis, score.own.shapes, gain, without))
-      consider(scorer, absent, derivative, score);
+    for (const double strength : list[i].strengths)
+      consider(scorer, absent, probed(fixed, hypothesis, strength, score.own.shapes, gain, without),
+               score);
   });
 }
 
@@ -217,7 +224,8 @@ ScoreTest scored(const Job& job, const std::vector<double>& values, double gain,
   const EffectColumns columns(fixed, gain, context.run);
   const Scorer scorer(job, *point, options);
   std::vector<EffectSetting> settings;
-  std::vector<Scored*> of_setting, first, rest;
+  std::vector<Scored*> of_setting;
+  std::vector<Probing> first, rest;
   for (std::size_t i = 0, setting = 0; i < scores.size(); ++i, ++setting) {
     Scored& score = scores[i];
     if (i > 0 && score.hypothesis != scores[i - 1].hypothesis) setting = 0;
@@ -225,7 +233,7 @@ ScoreTest scored(const Job& job, const std::vector<double>& values, double gain,
       settings.push_back({score.hypothesis.get(), score.own});
       of_setting.push_back(&score);
     } else {
-      (is_tried_first(*score.hypothesis, setting, options) ? first : rest).push_back(&score);
+      share_probes(score, setting, options, first, rest);
     }
   }
   const std::vector<Eigen::MatrixXd> derivatives = columns.derivatives(settings);
@@ -234,10 +242,10 @@ ScoreTest scored(const Job& job, const std::vector<double>& values, double gain,
   probe(first, fixed, gain, point->base.residuals, scorer, context.run);
   double best = 0.0;
   for (const Scored& score : scores) best = std::max(best, score.gain);
-  std::erase_if(rest, [&](const Scored* other) {
-    return std::ranges::none_of(first, [&](const Scored* tried) {
-      return tried->hypothesis == other->hypothesis &&
-             tried->gain >= options.worth_other_settings * best;
+  std::erase_if(rest, [&](const Probing& other) {
+    return std::ranges::none_of(first, [&](const Probing& tried) {
+      return tried.score->hypothesis == other.score->hypothesis &&
+             tried.score->gain >= options.worth_other_settings * best;
     });
   });
   probe(rest, fixed, gain, point->base.residuals, scorer, context.run);

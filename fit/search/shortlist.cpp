@@ -149,10 +149,13 @@ void Shortlist::add(Shortlist other, const SearchOptions& options) {
   has_most = has_most || other.has_most;
   for (const Promise& promise : other.promises) note(promises, promise);
   for (Scored& entry : other.entries) {
-    const bool known = std::ranges::any_of(entries, [&](const Scored& s) {
+    const auto known = std::ranges::find_if(entries, [&](const Scored& s) {
       return nearly_same(s, entry, options.shortlist.same_shape);
     });
-    if (!known) entries.push_back(std::move(entry));
+    if (known == entries.end())
+      entries.push_back(std::move(entry));
+    else if (!known->is_fitted && entry.scaled_gain > known->scaled_gain)
+      *known = std::move(entry);
   }
 }
 

@@ -49,6 +49,8 @@ class SmoothForce {
       const AxisInstant& at = trajectory[i];
       Mode mode = at.mode;
       if (!sticks_ || mode.sliding != 0) mode.sliding = direction(at.state[1]);
+      if (equations_.parts().driven_load)
+        mode.load = direction(equations_.current_force(mode, state(at), input(at, memory)).a);
       if (mode.sliding != before.sliding && before.sliding != 0 && needs_memory())
         memory = memory_after(before, trajectory[i - 1], memory);
       before = mode;
@@ -58,8 +60,8 @@ class SmoothForce {
   }
 
  private:
-  static std::int8_t direction(double velocity) {
-    return static_cast<std::int8_t>(velocity > 0.0 ? 1 : velocity < 0.0 ? -1 : 0);
+  static std::int8_t direction(double x) {
+    return static_cast<std::int8_t>(x > 0.0 ? 1 : x < 0.0 ? -1 : 0);
   }
   static State<T> state(const AxisInstant& at) {
     State<T> y;
@@ -169,7 +171,9 @@ bool is_smooth_force(std::size_t quantity) {
   Model<double> with{};
   const Slots<double> without = slots::affine(with.effects, alone);
   *members(with)[quantity] = 1.0;
-  return slots::affine(with.effects, alone) == without;
+  Slots<double> affine = slots::affine(with.effects, alone);
+  affine.load_curve = without.load_curve;  // asks for a guard, and adds nothing
+  return affine == without;
 }
 
 bool is_read_off(const Hypothesis& hypothesis, const std::vector<double>& shapes, double interval) {

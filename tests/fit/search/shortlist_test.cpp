@@ -95,6 +95,31 @@ TEST(Shortlist, LeavesOutWhatGainsLessThanHalfOfTheBest) {
         << list.entries[i].hypothesis->name;
 }
 
+// At the gain that shows it best: a high one may hide most of what a low one tells.
+TEST(Shortlist, KeepsTheGreaterOfTwoThatAreNearlyTheSame) {
+  const auto friction = std::make_shared<Hypothesis>();
+  friction->strengths = {quantity_index("coulomb_friction.F_c")};
+  const auto of = [&](double strength, double gain) {
+    Scored entry;
+    entry.hypothesis = friction;
+    entry.own.strengths = {strength};
+    entry.scaled_gain = gain;
+    Shortlist list;
+    list.entries = {entry};
+    return list;
+  };
+  for (const auto& [first, second] : {std::pair(5.0, 50.0), std::pair(50.0, 5.0)}) {
+    Shortlist list = of(4.0, first);
+    list.add(of(4.5, second), {});
+    ASSERT_EQ(list.entries.size(), 1u);
+    EXPECT_EQ(list.entries.front().scaled_gain, 50.0);
+    EXPECT_EQ(list.entries.front().own.strengths.front(), first > second ? 4.0 : 4.5);
+  }
+  Shortlist list = of(4.0, 5.0);
+  list.add(of(9.0, 50.0), {});
+  EXPECT_EQ(list.entries.size(), 2u);
+}
+
 /// The entry of an effect; fails where there is none.
 Scored entry_of(const Shortlist& list, std::string_view name) {
   const auto found = std::ranges::find_if(

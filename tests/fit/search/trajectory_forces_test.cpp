@@ -21,10 +21,12 @@ Hypothesis hypothesis(const std::string& strength) {
 
 TEST(TrajectoryForces, SmoothForcesAndSlowModesAreReadOff) {
   EXPECT_TRUE(is_read_off(hypothesis("quadratic_drag.c"), {2.0}, 1e-3));
+  EXPECT_TRUE(is_read_off(hypothesis("stribeck_load_friction.mu_st"), {0.1}, 1e-3));
   EXPECT_TRUE(is_read_off(hypothesis("elastic_mode.m_e"), {100.0, 0.03}, 1e-3));
   EXPECT_FALSE(is_read_off(hypothesis("elastic_mode.m_e"), {200.0, 0.03}, 1e-3));
   EXPECT_FALSE(is_read_off(hypothesis("elastic_mode.m_e"), {100.0, 1.5}, 1e-3));
   EXPECT_FALSE(is_read_off(hypothesis("constant_force.F_0"), {}, 1e-3));
+  EXPECT_FALSE(is_read_off(hypothesis("load_friction.mu"), {}, 1e-3));
   EXPECT_FALSE(is_read_off(hypothesis("M"), {}, 1e-3));
   Hypothesis probed = hypothesis("quadratic_drag.c");
   probed.probes = {1.0};
