@@ -41,8 +41,7 @@ class Elsewhere {
     std::ranges::stable_sort(order, std::greater{},
                              [](const Tried* e) { return e->gain.fit_gain; });
     const auto at_once = static_cast<std::size_t>(limits.at_once);
-    if (is_fitted_to_noise(residual_series(model_.job, model_.fit)))
-      order.resize(std::min(order.size(), at_once));
+    if (leaves_little(model_, context_.options)) order.resize(std::min(order.size(), at_once));
     const Tried* best = nullptr;
     for (std::size_t first = 0; first < order.size(); first += at_once) {
       std::span<Tried*> next(order);

@@ -70,9 +70,7 @@ bool is_explained_by_one_fit(const FittedModel& model, const SearchContext& cont
 }  // namespace
 
 FittedModel settled(FittedModel model, const SearchContext& context) {
-  if (!model.fit.is_usable() || model.fit.reduced_chi_square > context.options.near_noise ||
-      explains(model))
-    return model;
+  if (!leaves_little(model, context.options) || explains(model)) return model;
   FitResult exact = polished_fit(model.job, values_of(model.fit), context);
   if (exact.is_usable() && reduced_cost(exact) < reduced_cost(model.fit))
     model.fit = std::move(exact);
@@ -85,6 +83,10 @@ bool is_close(const FittedModel& model, const SearchOptions& options) {
 
 bool is_near(const FittedModel& model, const SearchOptions& options) {
   return model.fit.is_usable() && model.fit.reduced_chi_square < options.near_data;
+}
+
+bool leaves_little(const FittedModel& model, const SearchOptions& options) {
+  return model.fit.is_usable() && model.fit.reduced_chi_square < options.near_noise;
 }
 
 bool has_contacts(const FittedModel& model) {
@@ -139,8 +141,7 @@ bool ModelChain::explained() {
 bool ModelChain::is_explained_freely() {
   const FittedModel& tracked = current();
   return free_ && tracks(tracked.job.options.criterion) && !accepted_.empty() &&
-         tracked.fit.is_usable() && tracked.fit.reduced_chi_square < context_->options.near_noise &&
-         free_run().fit.is_usable() &&
+         leaves_little(tracked, context_->options) && free_run().fit.is_usable() &&
          (explains(free_run()) || is_explained_by_one_fit(free_run(), *context_));
 }
 

@@ -40,6 +40,9 @@ bool is_close(const FittedModel& model, const SearchOptions& options);
 /// Whether it is so near the data that the free run tells by itself what is missing.
 bool is_near(const FittedModel& model, const SearchOptions& options);
 
+/// Whether it leaves so little, of all signals together, that next to nothing may be missing.
+bool leaves_little(const FittedModel& model, const SearchOptions& options);
+
 /// Whether teeth meet: when they do depends on more digits than a quick fit has.
 bool has_contacts(const FittedModel& model);
 

@@ -11,8 +11,8 @@ namespace axisfit {
 /// The figures of docs/effect-selection.md were measured with these values.
 struct SearchOptions {
   int max_effects = 6;  ///< that a model may be given: more would be a description of the data
-  /// Reduced chi-square below which nothing may be missing: a quick fit, or noise of the readings
-  /// that drives a simulation that tracks, may make what is left.
+  /// Reduced chi-square below which next to nothing may be missing: a quick fit, or noise of the
+  /// readings that drives a simulation that tracks, may make what is left.
   double near_noise = 2.0;
   double near_data = 5.0;  ///< the same, where the free run tells by itself what is missing
 
@@ -27,9 +27,9 @@ struct SearchOptions {
     std::size_t refined = 8;     ///< hypotheses whose shapes go on from the settings tried
     int refinements = 2;         ///< steps that they take: the third changes no order
     double beyond_tried = 0.05;  ///< of a shape: a period is not on a grid
-    /// Other settings of a transmission take simulations of their own. They are tried where the
-    /// first gain this part of what the best hypothesis does.
-    double worth_other_settings = 0.1;
+    /// Other settings of a transmission, and other probes, take simulations of their own. They are
+    /// tried where the first gain this part of what the best hypothesis does.
+    double worth_other_probes = 0.1;
     std::size_t first_settings = 9;  ///< fewer settings of a transmission are tried all at once
     std::size_t periods = 3;         ///< of a force along the stroke, from each recording
     std::size_t resonances = 3;      ///< from each series
@@ -89,11 +89,14 @@ struct SearchOptions {
   struct Round {
     /// Reduced chi-square below which the free run is scored, too: farther away it is elsewhere.
     double close_chi_square = 25.0;
-    double exact_mean_square = 1.1;  ///< of every signal, below which it is scored alone
+    /// Of every signal, below which it is scored alone; of all together, no curve is looked for.
+    double exact_mean_square = 1.1;
     /// A refit is hopeless that promises less than this part of what the test asks, unless its
     /// score is many times that: then the refit may find more.
     double promise = 0.4, much = 10.0;
-    double rival_part = 0.6;  ///< of the best gain: is refitted with the best, others if that fails
+    /// Parts of the best gain: what gains as much is refitted with the best, and what gains less if
+    /// that fails, but no less than this.
+    double rival_part = 0.6, least_part = 0.4;
     /// Times the gain of the best effect alone, of two that are tried at once before any alone.
     double pair_times = 1.25;
     std::ptrdiff_t at_once = 2;  ///< that are refitted, or asked of other recordings, side by side

@@ -58,7 +58,7 @@ class RoundTrial {
     }
     keep_the_best_setting();
     // Where nothing but noise is left, what lowers no error elsewhere is chance.
-    if (!options_.explained && !options_.held_out_blocks && all_are_rejected(result_.models)) {
+    if (!options_.explained && options_.elsewhere && all_are_rejected(result_.models)) {
       ask_elsewhere(model_, result_.models, strict(), memory_.elsewhere, context_);
       reject_what_does_harm();
     }
@@ -79,16 +79,23 @@ class RoundTrial {
   bool is_free() const { return !tracks(model_.job.options.criterion); }
   bool is_close() const { return axisfit::is_close(model_, context_.options); }
 
+  /// Whether no simulation that tracks is scored: where next to nothing is missing the noise of the
+  /// readings, which drives it, promises more.
+  bool is_scored_freely() const {
+    return is_free() && (is_exact_ || leaves_little(model_, context_.options));
+  }
+
   /// A simulation that is far from the data must track them to be scored.
   double first_gain() const {
-    const bool is_free_first = is_free() && (is_exact_ || is_near(model_, context_.options));
+    const bool is_free_first =
+        is_scored_freely() || (is_free() && is_near(model_, context_.options));
     return is_free_first ? 0.0 : score_gains(model_.job).front();
   }
 
   /// The gains that the list lacks, at first the free run where it is close to the data: an
   /// instrument that errs misleads whatever tracks it. What is large is tried at a high gain, too.
   std::vector<double> other_gains() const {
-    if (is_free() && is_exact_) return {};
+    if (is_scored_freely()) return {};
     const std::vector<double>& known = memory_.list->observer_gains;
     const auto is_known = [&](double gain) {
       return std::ranges::find(known, gain) != known.end();
@@ -119,8 +126,7 @@ class RoundTrial {
 
   /// Two plain laws that explain most of what is missing, if none does alone, and pass.
   std::optional<TriedPair> large_pair() {
-    if (is_exact_ || model_.fit.reduced_chi_square < context_.options.near_noise ||
-        memory_.has_no_large_pair)
+    if (is_exact_ || leaves_little(model_, context_.options) || memory_.has_no_large_pair)
       return std::nullopt;
     score_first();
     const Shortlist& list = *memory_.list;
@@ -227,6 +233,10 @@ class RoundTrial {
     const auto turn = [&](std::size_t place) {
       return best == nullptr ? Turn::second : turn_of(entry(place), *best);
     };
+    std::erase_if(places, [&](std::size_t place) {
+      return turn(place) > Turn::near_it && best != nullptr &&
+             entry(place).scaled_gain < limits().least_part * best->scaled_gain;
+    });
     std::ranges::stable_sort(places, {}, [&](std::size_t place) {
       return std::pair(turn(place), -entry(place).scaled_gain);
     });
@@ -267,12 +277,13 @@ class RoundTrial {
     return next;
   }
 
-  /// Whether nothing else is likely to pass. Where the fitted recordings hold nothing but noise
-  /// scores are exact, and what promises most was tried; what takes all but noise away is what is
-  /// missing, though they may leave open what it is like.
+  /// Whether nothing else is likely to pass. Where the fitted recordings hold little but noise what
+  /// promises most was tried; what takes all but noise away is what is missing, though they may
+  /// leave open what it is like.
   bool has_seen_enough() const {
     using enum Rejection::Test;
-    if (is_fitted_to_noise(before_)) return result_.models.size() >= limits().most_in_noise;
+    if (is_fitted_to_noise(before_) || leaves_little(model_, context_.options))
+      return result_.models.size() >= limits().most_in_noise;
     return std::ranges::any_of(result_.models, [](const Tried& e) {
       return e.rejection && (e.rejection->test == strength || e.rejection->test == shape) &&
              is_fitted_to_noise(e.residuals);

@@ -18,7 +18,7 @@ struct RoundOptions {
   bool pairs = false;   ///< two at once, too, where only that explains most of what is missing
   /// How probable it may be that an effect lowers the validation error by chance.
   double chance = SearchOptions::Acceptance().chance;
-  bool held_out_blocks = false;        ///< no recording is to validate, see with_held_out_blocks()
+  bool elsewhere = true;               ///< what fails the test is asked of other data, too
   bool explained = false;              ///< what explains() says of the model
   std::vector<Hypothesis> excluded{};  ///< not to be tried
 };

@@ -245,7 +245,7 @@ ScoreTest scored(const Job& job, const std::vector<double>& values, double gain,
   std::erase_if(rest, [&](const Probing& other) {
     return std::ranges::none_of(first, [&](const Probing& tried) {
       return tried.score->hypothesis == other.score->hypothesis &&
-             tried.score->gain >= options.worth_other_settings * best;
+             tried.score->gain >= options.worth_other_probes * best;
     });
   });
   probe(rest, fixed, gain, point->base.residuals, scorer, context.run);

@@ -36,13 +36,30 @@ void drop_all_of_a_misfit(SearchState& state, SelectionVerdict& verdict) {
     state.take_out_all({.test = Rejection::Test::misfit});
 }
 
+/// A plain law that does as well takes the place of the first effect that it is an equal of;
+/// whether there was one.
+bool exchange_for_plain(SearchState& state, std::vector<TriedRival>& equals, int round) {
+  const auto plain = std::ranges::find_if(equals, [&](const TriedRival& rival) {
+    return is_plain_beside(rival.tried.hypothesis, state.accepted()[rival.place].hypothesis);
+  });
+  if (plain == equals.end()) return false;
+  state.outcomes.reject(state.accepted()[plain->place].hypothesis, Reason::explains_less,
+                        plain->tried.hypothesis.name);
+  state.exchange(plain->place, std::move(plain->tried), round);
+  return true;
+}
+
 /// An effect that has an equal is not accepted, for it may be the other. But without either, all
 /// that is estimated pays for it: it stays in the model. Which of two clocks is off matters
 /// little: there the chosen one is accepted, and the other named beside it.
 std::vector<Substitution> find_equals(SearchState& state, const Rounds& rounds) {
+  std::vector<TriedRival> equals;
+  do {
+    equals = equal_rivals(state, rounds.count, rounds.context);
+  } while (exchange_for_plain(state, equals, rounds.count));
   std::vector<Substitution> found;
   const Model<double> with_chosen = fitted_model(state.current().job, state.current().fit);
-  for (const auto& [place, tried] : equal_rivals(state, rounds.count, rounds.context)) {
+  for (const auto& [place, tried] : equals) {
     const Hypothesis& chosen = state.accepted()[place].hypothesis;
     found.push_back(
         {chosen.name, tried.hypothesis.name, with_chosen, fitted_model(tried.job, tried.fit)});

@@ -7,12 +7,12 @@
 #include <chrono>
 #include <functional>
 #include <optional>
-#include <set>
 #include <span>
 #include <utility>
 
 #include "fit/criterion/gains.h"
 #include "fit/search/exchange_score.h"
+#include "fit/search/held_shapes.h"
 #include "fit/search/pairs.h"
 #include "fit/search/pruning.h"
 #include "fit/search/rivals.h"
@@ -72,68 +72,10 @@ Accepted accepted_from(const RoundResult& round, const Tried& best, const Search
   return accepted;
 }
 
-/// The model with another setting of a shape that a law holds, such as its exponent, if one of them
-/// explains the recordings better.
-std::optional<FittedModel> with_better_held(const FittedModel& model, const Hypothesis& law,
-                                            std::size_t shape, const SearchContext& context) {
-  const std::size_t quantity = law.shapes[shape];
-  if (std::ranges::find(model.job.free, quantity, &FreeParameter::quantity) != model.job.free.end())
-    return std::nullopt;
-  std::set<double> settings;
-  for (const std::vector<double>& setting : law.settings) settings.insert(setting[shape]);
-  std::optional<FittedModel> best;
-  for (const double value : settings) {
-    FittedModel other = model;
-    double& held = *members(other.job.model)[quantity];
-    if (std::exchange(held, value) == value) continue;
-    other.fit = refit_from(other.job, values_of(model.fit), context);
-    if (other.fit.is_usable() && loss_of(other, best ? *best : model) > 0.0)
-      best = std::move(other);
-  }
-  return best;
-}
-
-/// The shapes that the first so many accepted laws hold, by their places among those of the law.
-std::vector<std::pair<Hypothesis, std::size_t>> held_shapes(const SearchState& state,
-                                                            std::size_t count) {
-  std::vector<std::pair<Hypothesis, std::size_t>> held;
-  for (const Accepted& accepted : std::span(state.accepted()).first(count)) {
-    const Hypothesis& law = accepted.hypothesis;
-    if (law.kind != HypothesisKind::effect) continue;
-    for (std::size_t k = law.estimated_shapes().size(); k < law.shapes.size(); ++k)
-      held.emplace_back(law, k);
-  }
-  return held;
-}
-
-/// Of what passes about as well, the best may show only beside other settings of what the accepted
-/// laws hold: exchanges these in them, and returns the best.
-Tried* best_beside_held(Tried* best, std::vector<Tried>& models, const SearchState& state,
-                        const SearchContext& context) {
-  const auto held = held_shapes(state, state.accepted().size());
-  std::vector<Tried*> equals;
-  for (Tried& e : models)
-    if (!e.rejection && !is_clearly_worse(bic_advantage(*best, e), context.options))
-      equals.push_back(&e);
-  if (held.empty() || equals.size() < 2 || explains({"", best->job, best->fit})) return best;
-  for (Tried* e : equals)
-    for (const auto& [law, shape] : held)
-      if (auto better = with_better_held({"", e->job, e->fit}, law, shape, context)) {
-        e->job = std::move(better->job);
-        e->fit = std::move(better->fit);
-        e->residuals = residual_series(e->job, e->fit);
-      }
-  return *std::ranges::max_element(
-      equals, [](const Tried* a, const Tried* b) { return bic_advantage(*a, *b) < 0.0; });
-}
-
-/// Looks at the settings of the first so many accepted laws again, beside what was accepted since.
-void reconsider_held(SearchState& state, std::size_t count, const SearchContext& context) {
-  for (const auto& [law, shape] : held_shapes(state, count)) {
-    if (state.explained()) return;
-    if (auto better = with_better_held(state.current(), law, shape, context))
-      state.chain.set_last(*std::move(better));
-  }
+/// Whether what was found leaves so little that the rest is worth no more than plain rounds: beside
+/// it the recordings to validate have the last word, and it masks nothing.
+bool has_left_little(const SearchState& state, const SearchOptions& options) {
+  return !state.accepted().empty() && leaves_little(state.current(), options);
 }
 
 bool has_room_for_two(const SearchState& state, const SearchOptions& options) {
@@ -168,7 +110,7 @@ bool add_best(SearchState& state, bool curves, double chance, Rounds& rounds) {
       {.curves = curves,
        .pairs = !curves && !state.explained() && has_room_for_two(state, rounds.context.options),
        .chance = chance,
-       .held_out_blocks = rounds.held_out_blocks,
+       .elsewhere = !rounds.held_out_blocks && !has_left_little(state, rounds.context.options),
        .explained = state.explained(),
        .excluded = state.degenerate},
       curves ? rounds.of_curves : rounds.of_names, rounds.context);
@@ -218,7 +160,7 @@ bool is_a_push(const FittedModel& model, const SearchContext& context) {
 bool add_pair(SearchState& state, Rounds& rounds) {
   const SearchOptions& options = rounds.context.options;
   if (rounds.of_names.has_no_pair || state.explained() || is_fitted_to_noise(state) ||
-      !has_room_for_two(state, options))
+      has_left_little(state, options) || !has_room_for_two(state, options))
     return false;
   if (state.accepted().empty() && is_a_push(state.current(), rounds.context)) {
     rounds.of_names.has_no_pair = true;
@@ -328,11 +270,6 @@ bool is_proven(const FittedModel& from_curve, const FittedModel& other, bool oth
   return !(loss > 0.0 && (other_has_curve || is_clearly_worse(loss, options)));
 }
 
-bool is_nearly_exact(const SearchState& state, const SearchOptions& options) {
-  const FittedModel& last = state.current();
-  return !state.accepted().empty() && is_near_noise(residual_series(last.job, last.fit), options);
-}
-
 /// Whether a search is at its end: it was stopped, if only while this was asked, or has explained
 /// everything.
 bool is_over(SearchState& state) {
@@ -436,8 +373,7 @@ SearchState with_named_effects(const SearchState& declared, bool tracks, Rounds&
     return better_of(std::move(best), std::move(other));
   }
   SearchState best = named(declared, rounds);
-  // What leaves next to nothing masks nothing.
-  if (is_over(best) || tracks || is_nearly_exact(best, options) || is_fitted_to_noise(best))
+  if (is_over(best) || tracks || has_left_little(best, options) || is_fitted_to_noise(best))
     return best;
   SearchState other = finished(best, [&](const SearchState& s) { return together(s, rounds); });
   return better_of(std::move(best), std::move(other));
@@ -494,14 +430,16 @@ SearchState search(SearchState declared, Rounds& rounds) {
   // effects that imitate a part of it.
   const bool tracks = axisfit::tracks(declared.chain.declared().job.options.criterion);
   SearchState best = with_named_effects(declared, tracks, rounds);
-  if (is_over(best) || is_fitted_to_noise(best) || is_left_by_a_curve(best, options)) return best;
+  if (is_over(best) || is_fitted_to_noise(best) || is_left_by_a_curve(best, options) ||
+      best.current().fit.reduced_chi_square < options.round.exact_mean_square)
+    return best;
   // No curve takes the place of what leaves next to nothing.
-  const bool is_exact = is_nearly_exact(best, options);
+  const bool is_little = has_left_little(best, options);
 
   const std::size_t names = best.accepted().size();
   best = with_curves(std::move(best), rounds);
   const bool has_curve = best.accepted().size() > names;
-  if (best.interrupted || names == 0 || is_exact || (tracks && !has_curve) ||
+  if (best.interrupted || names == 0 || is_little || (tracks && !has_curve) ||
       !can_gain_by_a_curve(best, options) ||
       (!has_curve && !is_a_curve_in_reach(best, rounds.of_curves.list, options)))
     return best;

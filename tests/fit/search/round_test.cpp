@@ -194,6 +194,44 @@ TEST_F(RoundOfAModel, ScoresAtOtherGainsOnlyWhereItMust) {
   EXPECT_TRUE(has_scored());
 }
 
+/// Gains at which a round scores where nothing passes, and the reduced chi-square of the model.
+std::pair<std::vector<double>, double> gains_with_friction(double level) {
+  Model<double> truth = slide();
+  add_effect<CoulombFriction>(truth).F_c = level;
+  const FittedModel model = declared_model(two_recordings(truth, slide(), {"M"}));
+  RoundMemory memory;
+  RoundOptions options;
+  try_round(model, options, memory, {});
+  for (const Scored& entry : memory.list->entries) options.excluded.push_back(*entry.hypothesis);
+  try_round(model, options, memory, {});
+  return {memory.list->observer_gains, model.fit.reduced_chi_square};
+}
+
+// The noise of the readings drives a simulation that tracks.
+TEST(RoundTest, ScoresTheFreeRunAloneWhereLittleIsLeft) {
+  const auto [gains, chi_square] = gains_with_friction(0.3);
+  ASSERT_GT(chi_square, 1.2);
+  ASSERT_LT(chi_square, 2.0);
+  EXPECT_EQ(gains, std::vector{0.0});
+}
+
+TEST(RoundTest, ScoresTheFreeRunFirstWhereItIsNear) {
+  const auto [gains, chi_square] = gains_with_friction(0.7);
+  ASSERT_GT(chi_square, 2.0);
+  ASSERT_LT(chi_square, 5.0);
+  EXPECT_EQ(gains.front(), 0.0);
+  EXPECT_GT(gains.size(), 1u);
+}
+
+TEST(RoundTest, ScoresTheFreeRunSecondWhereItIsClose) {
+  const auto [gains, chi_square] = gains_with_friction(1.4);
+  ASSERT_GT(chi_square, 5.0);
+  ASSERT_LT(chi_square, 25.0);
+  ASSERT_GE(gains.size(), 2u);
+  EXPECT_GT(gains[0], 0.0);
+  EXPECT_EQ(gains[1], 0.0);
+}
+
 TEST_F(RoundOfAModel, RemembersNothingOfAnotherModel) {
   RoundMemory memory;
   round({}, memory);
