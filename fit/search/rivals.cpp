@@ -165,6 +165,8 @@ std::vector<TriedRival> equal_rivals(SearchState& state, int round, const Search
       const double loss = loss_with(rival, present, now);
       if (has_more(rival.hypothesis, a) ? loss >= 0.0 : is_clearly_worse(loss, context.options))
         continue;
+      // What has become a simpler law says no more than that.
+      if (rejection_as_simpler(rival.job, rival.fit, rival.hypothesis, context.options)) continue;
       if (state.outcomes.find(rival.hypothesis) == nullptr)
         state.outcomes.record(rival, &rival, round);
       equals.push_back({a, std::move(rival)});

@@ -76,6 +76,23 @@ TEST(EqualRivals, AreWhatExplainsAsMuch) {
   EXPECT_EQ(outcome->round, 2);
 }
 
+// Dahl friction of no length is dry friction: it is no rival of its own.
+TEST(EqualRivals, AreNotWhatHasBecomeASimplerLaw) {
+  SearchState state =
+      accepted_with_rival(hidden_effect_named("coulomb_friction").job(), "stribeck_friction",
+                          {{5.0}, {1.0, 1.0}}, "dahl_friction");
+  Scored& dahl = state.chain.accepted()[0].rivals.front();
+  dahl.own = {{5.0}, {1e-6}};
+  const Job others = state.chain.job_with_accepted(state.chain.declared().job, 0);
+  dahl.others = initial_values(others);
+  const Tried refit = try_hypothesis(others, dahl, kContext);
+  ASSERT_TRUE(explains({"", refit.job, refit.fit}));
+  ASSERT_TRUE(rejection_as_simpler(refit.job, refit.fit, refit.hypothesis));
+  SearchContext context;
+  context.options.acceptance.odds = 1e300;  // all do about as well
+  EXPECT_TRUE(equal_rivals(state, 2, context).empty());
+}
+
 TEST(AreDelays, NeedsTwoTimesThatAreNoConstants) {
   const Job job = two_recordings(slide(), slide(), {"M"}, 6.0, {Signal::velocity});
   const auto dead_time = hypothesis(job, "dead_time"), delay = hypothesis(job, "velocity.delay"),
