@@ -87,8 +87,7 @@ class RoundTrial {
 
   /// A simulation that is far from the data must track them to be scored.
   double first_gain() const {
-    const bool is_free_first =
-        is_scored_freely() || (is_free() && is_near(model_, context_.options));
+    const bool is_free_first = is_free() && (is_exact_ || is_near(model_, context_.options));
     return is_free_first ? 0.0 : score_gains(model_.job).front();
   }
 

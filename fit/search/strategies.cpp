@@ -7,7 +7,6 @@
 #include <chrono>
 #include <functional>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "fit/criterion/gains.h"
