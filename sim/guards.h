@@ -122,9 +122,9 @@ enum class Crossing {
 };
 
 /// Whether the cubic through values and rates dips below the margin between its ends, where it
-/// falls at the first and rises at the last.
+/// falls at the first and rises at the last. It may begin at zero: so do the teeth on the far side
+/// of a gap of no width.
 inline bool dips(double p, double p_rate, double q, double q_rate, double h, double margin) {
-  if (p <= 0.0) return false;
   const double d = q - p, b = 3.0 * d - (2.0 * p_rate + q_rate) * h,
                a = (p_rate + q_rate) * h - 2.0 * d,
                c = p_rate * h;  // a s^3 + b s^2 + c s + p

@@ -14,8 +14,8 @@
 // by -g / g' in T: the event time carries its derivatives, and so does every length that is
 // measured from it. After each event, and after each switch of the command, steps grow again from a
 // short one, so that fast transients and the events that they cause are resolved. Where everything
-// is affine, guards are evaluated as linear forms (guards.h), and steps grow to the interval of the
-// readings.
+// is affine, guards are evaluated as linear forms (guards.h) within steps that grow to the interval
+// of the readings.
 //
 // Limits. Derivatives are those of a fixed sequence of transversal events; where two events
 // coincide or a guard is touched without crossing, they are one-sided. The smooth forces must not
@@ -41,8 +41,7 @@ namespace axisfit {
 
 struct IntegratorOptions {
   /// s. Longest step of the Runge-Kutta method, for smooth effects, and the longest time between
-  /// looks at the guards of an axis with an observer. What is affine is exact at any step; guards
-  /// are then looked at as often as the state is read.
+  /// looks at the guards. What is affine is exact at any step.
   double step = 0.5e-3;
   /// s. Between the instants to which the integration will be advanced, if they are even; else
   /// about. Steps are a fraction of it. Zero: not known, steps are `step`.
@@ -75,7 +74,7 @@ class Integrator {
         equations_(model_, observer),
         plain_(plain_model_, observer, equations_.parts()),
         step_(longest_step()),
-        bounded_(has_ramps() ? level_of(step_ / options.step - 1e-9) : 0) {}
+        bounded_(level_of(step_ / options.step - 1e-9)) {}
 
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
@@ -291,8 +290,8 @@ class Integrator {
     return 0;
   }
   /// Level of the longest stretch between two looks at the guards: one radian to either side of its
-  /// middle, where they are looked at too. The target of an axis with an observer, or a command
-  /// that was measured, turns at every sample and sets off what a longer one does not see.
+  /// middle, where they are looked at too. A longer one than options_.step would see what passes
+  /// within it, or not, as the readings fall.
   int check_level() const { return std::max(bounded_, resolving_level() - 2); }
   /// Level of the longest step: of few stretches where these are parts of a step, else of one.
   int step_level() const {
@@ -416,7 +415,7 @@ class Integrator {
   const Equations<T> equations_;
   const Equations<double> plain_;
   const double step_;               // s, at level 0
-  const int bounded_;               // level of the longest stretch because of the observer
+  const int bounded_;               // level of the longest stretch that options_ allow
   double switched_ = 0.0;           // s, time of the latest switch
   std::map<Mode, System> systems_;  // by one mode of those that share it
   std::map<Mode, Flow> flows_;

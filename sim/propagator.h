@@ -110,6 +110,7 @@ struct StepLevels {
   double step;   ///< h, s
   int last;      ///< the shortest length is h / 2^last
   int resolved;  ///< at h / 2^resolved the fastest motion is resolved; at most `last`
+  double rate;   ///< 1/s, of the fastest motion, rounded up by less than 2
   /// Of a level below 1000; std::ldexp takes as long as a row of the step.
   double length(int level) const {
     return step * std::bit_cast<double>(static_cast<std::uint64_t>(1023 - level) << 52);
@@ -125,19 +126,21 @@ StepLevels step_levels_for(const Matrix<T>& a, double step, int least) {
   double log_scale = 0.0;
   for (int i = 0; i < 3; ++i) {
     const double size = norm(power);
-    if (!(size > 0.0)) return {step, least, 0};
+    if (!(size > 0.0)) return {step, least, 0, 0.0};
     for (auto& row : power)
       for (double& x : row) x /= size;
     power = product(power, power);
     log_scale = 2.0 * (log_scale + std::log2(size));
   }
   const double size = norm(power);
-  if (!(size > 0.0)) return {step, least, 0};
+  if (!(size > 0.0)) return {step, least, 0, 0.0};
   const double log_rate = (log_scale + std::log2(size)) / 8.0;
-  const double halvings = std::ceil(log_rate + std::log2(step));  // ||A|| h / 2^resolved <= 1
-  const int resolved =
-      std::isfinite(halvings) ? static_cast<int>(std::clamp(halvings, 0.0, 60.0)) : 60;
-  return {step, std::max(resolved, least), resolved};
+  const double halvings = std::ceil(log_rate + std::log2(step));  // ||A|| h / 2^halvings <= 1
+  constexpr double kMost = 60.0;
+  const int finest =
+      static_cast<int>(std::isfinite(halvings) ? std::clamp(halvings, -kMost, kMost) : kMost);
+  const int resolved = std::max(finest, 0);
+  return {step, std::max(resolved, least), resolved, std::ldexp(1.0 / step, finest)};
 }
 
 /// Terms of the series: 1 / 21! is far below rounding.
@@ -258,7 +261,7 @@ class Propagator {
     Series<T> result;
     result.terms[0] = y;
     State<T> derivative = f;
-    const double theta = length / step_levels_.length(step_levels_.resolved);
+    const double theta = length * step_levels_.rate;
     double factor = 1.0;     // 1 / n!
     double largest = theta;  // of the term, theta^n / n!
     for (std::size_t n = 1;; ++n) {

@@ -125,6 +125,7 @@ class Descent {
 
   /// From what solve_tracking() found. Not usable where an earlier descent went the same way.
   SolveResult run(SolveResult tracking, double gain) {
+    if (tracking.usable && is_known_minimum(gain, tracking)) tracking.usable = false;
     // Below it the observer cannot do anything within the recording any more.
     const double lowest = 1.0 / longest_duration(job_);
     double ratio = options_.first_ratio;

@@ -66,8 +66,7 @@ Section fit_keys() {
                     "spread of the random starts: on a log scale, the factor either way"),
       Key::optional("seed", Integer{}, defaults.seed, "seed of the random starts"),
       Key::optional("step", NumberWithUnit{"s", 1e-7, 0.1}, defaults.step,
-                    "longest Runge-Kutta step; with an observer, also the longest interval between "
-                    "event checks")};
+                    "longest Runge-Kutta step and longest interval between event checks")};
 }
 
 Section limit_keys(Vocabulary vocabulary) {

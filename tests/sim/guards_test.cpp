@@ -147,7 +147,7 @@ TEST(GuardCourse, SeesADipBetweenInstants) {
   // g = (t - 1/2)^2 - c
   for (const double c : {-0.1, -1e-6})
     EXPECT_EQ(crossing(0.25 - c, -1.0, 0.25 - c, 1.0), Crossing::none);
-  for (const double c : {1e-6, 0.1})
+  for (const double c : {1e-6, 0.1, 0.25})  // the last begins at zero
     EXPECT_EQ(crossing(0.25 - c, -1.0, 0.25 - c, 1.0), Crossing::touched);
   EXPECT_EQ(crossing(1.0, -2.0, -1.0, -2.0), Crossing::passed);
   EXPECT_EQ(crossing(1.0, 1.0, 2.0, 1.0), Crossing::none);
