@@ -16,11 +16,12 @@
 namespace axisfit {
 namespace {
 
-/// The shipped axes, of all drives, joints and transmissions.
+/// The shipped axes, of all drives but one, both joints and transmissions. Two are like x.
 std::vector<std::string> axis_names() {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(AXISFIT_CONFIGS "/axes"))
-    names.push_back(entry.path().stem().string());
+    if (const std::string name = entry.path().stem().string(); name != "y" && name != "z")
+      names.push_back(name);
   std::ranges::sort(names);
   return names;
 }
@@ -70,9 +71,10 @@ TEST_P(WrongConstantsSlowTest, EndInAResult) {
     SCOPED_TRACE(entry.name);
     Rig truth = declared;
     *members(truth.model)[entry.index] *= 1.5;
+    truth.noise.fill(1e-3);  // m, m/s; rad, rad/s
     const TempFolder folder;
-    const std::string fit = record(folder, truth, "fit", 0.5),
-                      validate = record(folder, truth, "validate", 0.4);
+    const std::string fit = record(folder, truth, "fit", 0.9),
+                      validate = record(folder, truth, "validate", 0.7);
     folder.write("job.yaml",
                  "axis: " + axis + "\nrecordings:\n" + fit + validate + "free: {B_a: {}}\n");
     const Answer closed =
