@@ -557,6 +557,8 @@ Json recording_check_json(const Job& job, const Recording& recording, const Reco
                                  values.filter ? values.filter->corner / sampling.interval : 0.0)},
                        {"stuck_samples", values.stuck},
                        {"stuck_at_s", optional(values.stuck > 0, values.stuck_at)},
+                       {"jump", values.jump},
+                       {"jump_at_s", optional(values.jump != 0.0, values.jump_at)},
                        {"clipped_samples", values.clipped},
                        {"clipped_at", optional(values.clipped > 0, values.clipped_at)}});
   }

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "fit/data/jump_check.h"
 #include "fit/data/noise.h"
 #include "fit/data/standstill.h"
 #include "fit/data/stuck_check.h"
@@ -46,6 +47,11 @@ ValueCheck check_values(const Recording& recording, const Measurement& measureme
     check.filter = suspected_filter(values, command);
   // A position that stays is an arm at rest, or at its stop; the voltages have limits of their own.
   const Signal signal = measurement.signal;
+  if (signal == Signal::position || signal == Signal::load_position)
+    if (const std::optional<Jump> jump = jump_of(recording, measurement, command)) {
+      check.jump = jump->size;
+      check.jump_at = recording.times[jump->at];
+    }
   if (signal == Signal::position || signal == Signal::preamplifier_voltage ||
       signal == Signal::motor_voltage)
     return check;

@@ -40,6 +40,9 @@ struct ValueCheck {
   /// ever put there: a range that the signal left. Zero where there are none.
   std::size_t clipped = 0;
   double clipped_at = 0.0;  ///< that value
+  /// By how much a position jumps, and goes on from there; zero: it does not.
+  double jump = 0.0;
+  double jump_at = 0.0;  ///< s, of the first sample behind it
   /// How often each value is recorded, and a filter that the samples show; 1 and none where a hold
   /// or a filter is declared.
   std::size_t repetition = 1;

@@ -57,7 +57,18 @@ std::optional<warning::TimeUnit> wrong_time_unit(const std::vector<RateCheck>& r
                                                           : unknown};
 }
 
+template <class... Warnings>
+bool is_any_of(const RecordingWarning& warning) {
+  return (std::holds_alternative<Warnings>(warning) || ...);
+}
+
 }  // namespace
+
+bool is_fault(const RecordingWarning& found) {
+  using namespace warning;
+  return is_any_of<TimeUnit, WrongRate, NoDirection, ClippedInput, OnHardStop, Stuck, Clipped,
+                   Jumped>(found);
+}
 
 std::vector<RecordingWarning> warnings_of(const Job& job, const Recording& recording,
                                           const RecordingCheck& check) {
@@ -112,6 +123,8 @@ std::vector<RecordingWarning> warnings_of(const Job& job, const Recording& recor
     if (values.stuck > 0) warnings.push_back(warning::Stuck{signal, values.stuck, values.stuck_at});
     if (values.clipped > 0)
       warnings.push_back(warning::Clipped{signal, values.clipped, values.clipped_at});
+    if (values.jump != 0.0)
+      warnings.push_back(warning::Jumped{signal, values.jump, values.jump_at});
     if (measurement.missing > 0)
       warnings.push_back(warning::Missing{signal, measurement.missing, recording.times.size()});
     if (values.repetition > 1) warnings.push_back(warning::Repeated{signal, values.repetition});

@@ -101,6 +101,13 @@ struct Clipped {
   double value = 0.0;  ///< in the signal's unit
 };
 
+/// A position that goes on displaced.
+struct Jumped {
+  Signal signal = Signal::position;
+  double size = 0.0;  ///< in the signal's unit
+  double at = 0.0;    ///< s, of the first sample behind it
+};
+
 /// Some values are not in the recording: blank, or not a number.
 struct Missing {
   Signal signal = Signal::velocity;
@@ -133,8 +140,12 @@ using RecordingWarning =
                  warning::UnlikelyInterval, warning::WrongRate, warning::NoCommand,
                  warning::NoDirection, warning::RepeatedInput, warning::ClippedInput,
                  warning::OnHardStop, warning::UnlikelySpeed, warning::Constant, warning::Stuck,
-                 warning::Clipped, warning::Missing, warning::Repeated, warning::Filtered,
-                 warning::UnlikelySigma>;
+                 warning::Clipped, warning::Jumped, warning::Missing, warning::Repeated,
+                 warning::Filtered, warning::UnlikelySigma>;
+
+/// Whether it tells of values that are not what happened, or happened to no axis: what no model
+/// explains, and any may be bent to.
+bool is_fault(const RecordingWarning& found);
 
 /// In the order of the alternatives, those of a signal after those of the whole recording.
 std::vector<RecordingWarning> warnings_of(const Job& job, const Recording& recording,

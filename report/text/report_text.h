@@ -30,10 +30,11 @@ std::string instruments_text(const Job& job, const Diagnosis& diagnosis);
 std::string suspected_effects_text(const Job& job, const Diagnosis& diagnosis,
                                    const std::vector<Scored>& suspects);
 
-/// The verdict on the residual, one paragraph.
+/// The verdict on the residual, one paragraph. `faulty`: recordings with warnings that may be the
+/// cause, by their names.
 std::string residual_verdict(const Job& job, const Diagnosis& diagnosis,
                              const std::vector<Scored>& suspects, bool loop_was_asked_for = false,
-                             bool colour = false);
+                             bool colour = false, const std::vector<std::string>& faulty = {});
 /// That of a run that has a diagnosis. Recordings that differ from the fitted ones are left out:
 /// the grade says what differs.
 std::string residual_verdict(const RunResult& run_result, bool colour = false);

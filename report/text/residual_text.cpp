@@ -135,7 +135,7 @@ std::string suspected_effects_text(const Job& job, const Diagnosis& diagnosis,
 
 std::string residual_verdict(const Job& job, const Diagnosis& diagnosis,
                              const std::vector<Scored>& suspects, bool loop_was_asked_for,
-                             bool colour) {
+                             bool colour, const std::vector<std::string>& faulty) {
   const auto& tests = diagnosis.tests;
   if (tests.empty()) return "";
   if (!diagnosis.explained) {
@@ -150,6 +150,9 @@ std::string residual_verdict(const Job& job, const Diagnosis& diagnosis,
       text += fmt::format(
           "As much is left by {}: if the axis never received this noise, give it as sigma. ",
           input_noise_text(job));
+    if (!faulty.empty())
+      text += fmt::format("See first what the warnings tell of {}: that may be the cause. ",
+                          fmt::join(faulty, ", "));
     if (suspects.empty())
       text += "No effect that axisfit knows explains it. ";
     else if (const Scored* cause = likely_cause(suspects))
@@ -183,6 +186,12 @@ std::string residual_verdict(const Job& job, const Diagnosis& diagnosis,
 }
 
 std::string residual_verdict(const RunResult& run_result, bool colour) {
+  const Job& job = run_result.job();
+  std::vector<std::string> faulty;
+  for (std::size_t r = 0; r < run_result.checks.size(); ++r)
+    if (std::ranges::any_of(
+            warnings_of(run_result.baseline, job.recordings[r], run_result.checks[r]), is_fault))
+      faulty.push_back(job.recordings[r].name);
   // That any model explains the recordings says nothing of this one.
   if (run_result.grade.grade == Grade::nothing_determined) return "";
   Diagnosis usual = *run_result.diagnosis;
@@ -191,8 +200,8 @@ std::string residual_verdict(const RunResult& run_result, bool colour) {
                   [&](const SeriesTest& t) { return t.series.recording == day.recording; });
   if (!run_result.other_days.empty())
     usual.explained = std::ranges::all_of(usual.tests, &SeriesTest::explained);
-  return residual_verdict(run_result.job(), usual, run_result.suspects,
-                          run_result.options.select_effects, colour);
+  return residual_verdict(job, usual, run_result.suspects, run_result.options.select_effects,
+                          colour, faulty);
 }
 
 }  // namespace axisfit

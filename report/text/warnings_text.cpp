@@ -189,6 +189,14 @@ std::string text_of(const warning::Clipped& w, const Names& name) {
       name(w.signal), name.value(w.value, w.signal), w.samples);
 }
 
+std::string text_of(const warning::Jumped& w, const Names& name) {
+  return fmt::format(
+      "{} jumps by {} at {} s, and goes on from there: counts or rows are lost, or its zero was "
+      "set. "
+      "Split the recording there, or exclude what is before or behind with 'trim'.",
+      name(w.signal), name.value(w.size, w.signal), short_number(w.at));
+}
+
 std::string text_of(const warning::Missing& w, const Names& name) {
   return fmt::format(
       "{} has no value in {} of {} samples, which are left out; if it was recorded more slowly "

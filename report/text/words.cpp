@@ -409,11 +409,13 @@ std::string overall_verdict(const RunResult& run_result, bool colour) {
   for (const OtherDay& day : run_result.other_days)
     of_days += other_day_text(run_result.job(), run_result.fit(), day);
   if (!run_result.selection) return of_grade + of_days;
-  // Both judge the same model by the same residual.
+  // Both judge the same model by the same residual: what it is good for is left to tell.
   const bool by_residual =
       grade.reason == FitGrade::Reason::residual || grade.reason == FitGrade::Reason::none;
-  return (by_residual ? grade_heading(grade, colour) + "." : of_grade) + " " +
-         verdict_text(*run_result.selection) +
+  const std::string uses =
+      grade.grade == Grade::usable ? uses_text(run_result.job(), grade.uses) : "";
+  const std::string in_short = grade_heading(grade, colour) + (uses.empty() ? "." : ": " + uses);
+  return (by_residual ? in_short : of_grade) + " " + verdict_text(*run_result.selection) +
          (run_result.roles_exchanged ? " Found with the roles of the recordings exchanged." : "") +
          of_days;
 }

@@ -105,6 +105,30 @@ TEST(CleanRecordingsTest, TheEndOfARangeIsFoundInThem) {
   EXPECT_GT(score.share(), 0.83) << score.found << " of " << score.of;
 }
 
+// The bound is three standard errors of a share lower.
+TEST(CleanRecordingsTest, AZeroThatMovesIsFoundInThem) {
+  Score score;
+  for (std::uint64_t seed = 1; seed <= kRecordings; ++seed) {
+    const Clean clean = clean_recording(seed);
+    Dice dice(3000 + seed);
+    const auto m =
+        std::ranges::find(clean.recording.measurements, Signal::position, &Measurement::signal);
+    if (m == clean.recording.measurements.end()) continue;
+    const std::size_t at = 10 + dice.index(clean.course.samples() - 20);
+    const double size =
+        (dice.chance(0.5) ? 1.0 : -1.0) * dice.uniform(0.1, 0.3) * size_of(m->values);
+    Recording displaced = clean.recording;
+    const auto index = static_cast<std::size_t>(m - clean.recording.measurements.begin());
+    for (std::size_t i = at; i < clean.course.samples(); ++i)
+      displaced.measurements[index].values.edit()[i] += size;
+    const ValueCheck found = check_recording(displaced).measurements[index];
+    score.add(found.jump_at == displaced.times[at] &&
+              std::abs(found.jump - size) < 0.1 * std::abs(size));
+  }
+  EXPECT_GT(score.of, 100);
+  EXPECT_GT(score.share(), 0.9) << score.found << " of " << score.of;
+}
+
 // Of a speed with noise and next to no rounding: 196 averages and 188 low-passes of 200 are found.
 TEST(CleanRecordingsTest, AFilterIsFoundInThem) {
   Score averages, low_passes;

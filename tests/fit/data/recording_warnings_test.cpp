@@ -182,9 +182,23 @@ TEST_F(RecordingWarningsTest, OfASignal) {
   EXPECT_EQ(clipped.samples, 7u);
   EXPECT_EQ(clipped.value, 20.0);
   values = usual;
+  values.jump = -0.5;
+  values.jump_at = 1.25;
+  const auto jumped = only<warning::Jumped>();
+  EXPECT_EQ(jumped.signal, Signal::acceleration);
+  EXPECT_EQ(jumped.size, -0.5);
+  EXPECT_EQ(jumped.at, 1.25);
+  values = usual;
   values.repetition = 10;
   EXPECT_EQ(only<warning::Repeated>().signal, Signal::acceleration);
   EXPECT_EQ(only<warning::Repeated>().times, 10u);
+}
+
+TEST_F(RecordingWarningsTest, TellFaultsFromHabitsOfTheRecorder) {
+  EXPECT_TRUE(is_fault(warning::Jumped()));
+  EXPECT_TRUE(is_fault(warning::ClippedInput()));
+  EXPECT_FALSE(is_fault(warning::Gaps()));
+  EXPECT_FALSE(is_fault(warning::Repeated()));
 }
 
 TEST_F(RecordingWarningsTest, OfAFilterWhereTheSamplingIsEven) {

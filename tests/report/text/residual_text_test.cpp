@@ -153,6 +153,10 @@ TEST(ResidualTextTest, TheVerdictNamesTheWorstSignalAndItsCause) {
   EXPECT_EQ(verdict(diagnosis),
             "Unexplained: up to 12.3 % of the residual, in the velocity of judged. Most likely "
             "cause: coulomb_friction. To test the suspected effects, use --close-loop.");
+  EXPECT_EQ(on_one_line(residual_verdict(job, diagnosis, suspects, false, false, {"judged"})),
+            "Unexplained: up to 12.3 % of the residual, in the velocity of judged. See first what "
+            "the warnings tell of judged: that may be the cause. Most likely cause: "
+            "coulomb_friction. To test the suspected effects, use --close-loop.");
   for (SeriesTest& test : diagnosis.tests) test.series.input_noise = 1.5;
   EXPECT_NE(verdict(diagnosis).find("As much is left by "), std::string::npos);
   diagnosis.tests[1].series.input_noise = 1.0;  // not more than that

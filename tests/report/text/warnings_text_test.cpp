@@ -82,6 +82,11 @@ TEST(WarningsTextTest, OfSignals) {
   EXPECT_EQ(text_of(warning::Stuck{Signal::velocity, 40, 1.5}),
             "velocity has the same value in 40 samples from 1.5 s on, while the arm moves: the "
             "sensor is stuck. Trim the recording, or do not fit the signal ('fit: false').");
+  EXPECT_EQ(
+      text_of(warning::Jumped{Signal::position, -0.002, 1.25}),
+      "position jumps by -0.002 m at 1.25 s, and goes on from there: counts or rows are lost, "
+      "or its zero was set. Split the recording there, or exclude what is before or behind "
+      "with 'trim'.");
   EXPECT_EQ(text_of(warning::Clipped{Signal::acceleration, 7, 20.0}),
             "acceleration is exactly 20 m/s^2 in 7 samples: it is clipped at the end of its range. "
             "Record with a wider range, or do not fit the signal ('fit: false').");
