@@ -68,6 +68,16 @@ Outcome* Outcomes::find(const Hypothesis& hypothesis) {
   return found == list_.end() ? nullptr : &*found;
 }
 
+void Outcomes::rename(const Hypothesis& hypothesis, const Hypothesis& other,
+                      const std::vector<ParameterResult>& parameters) {
+  std::erase_if(list_, [&](const Outcome& o) { return is_same(o.hypothesis, other); });
+  Outcome* outcome = find(hypothesis);
+  if (outcome == nullptr) return;
+  outcome->hypothesis = other;
+  outcome->parameters.assign(parameters.end() - static_cast<std::ptrdiff_t>(other.parameters()),
+                             parameters.end());
+}
+
 Outcome* Outcomes::decide(const Hypothesis& hypothesis, Reason reason,
                           std::optional<Rejection> rejection, const std::string& other) {
   Outcome* outcome = find(hypothesis);

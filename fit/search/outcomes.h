@@ -73,6 +73,9 @@ class Outcomes {
   /// nothing where it was never refitted.
   void reject(const Hypothesis& hypothesis, Reason reason, const std::string& other = "");
   void fail(const Hypothesis& hypothesis, const Rejection& rejection);
+  /// What became of one became of another, of the same law, whose parameters are the last of these.
+  void rename(const Hypothesis& hypothesis, const Hypothesis& other,
+              const std::vector<ParameterResult>& parameters);
   /// Writes down that two explain the recordings equally well; the first stays in the model.
   void leave_undecided(const Hypothesis& chosen, const Hypothesis& rival);
 

@@ -7,7 +7,9 @@
 
 #include "fit/errors/scatter.h"
 #include "fit/estimate/other_gains.h"
+#include "fit/search/catalogue.h"
 #include "fit/search/rivals.h"
+#include "fit/solve/parameters.h"
 
 namespace axisfit {
 namespace {
@@ -70,6 +72,22 @@ std::optional<SearchState> with_plain_rival(SearchState& state, std::size_t plac
       !(state.explained() && other.explained()))
     return std::nullopt;
   return other;
+}
+
+/// What a second element is, with these values, where the model lacks a first; none where it has
+/// one.
+std::optional<Hypothesis> first_of(const Job& job, const Hypothesis& second,
+                                   const HypothesisValues& own) {
+  SearchScales scales;
+  scales.periods = own.shapes;  // if that is one: without any no period is offered
+  for (Hypothesis& h : catalogue(job, scales)) {
+    if (h.name != second.extends || h.parameters() != second.parameters() || h.held != second.held)
+      continue;
+    h.settings = second.settings;
+    h.largest = second.largest;
+    return std::move(h);
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -185,6 +203,22 @@ void drop_other_periods(SearchState& state, const SearchContext& context) {
     state.outcomes.fail(hypothesis,
                         {.test = Rejection::Test::period, .found = found->parameters.back().value});
     state.take_out(a, state.chain.without(a));
+  }
+}
+
+void name_as_first(SearchState& state, const SearchContext& context) {
+  std::size_t a = 0;
+  while (a < state.accepted().size()) {
+    const Hypothesis second = state.accepted()[a++].hypothesis;
+    if (second.extends.empty()) continue;
+    const HypothesisValues own = values_in(state.current().job, state.current().fit, second);
+    const Job rest = state.chain.job_with_accepted(state.chain.declared().job, a - 1);
+    const std::optional<Hypothesis> first = first_of(rest, second, own);
+    if (!first) continue;
+    Job job = with_hypothesis(rest, *first, initial_values(rest), own);
+    FitResult fit = refit(job, context);
+    if (!fit.is_usable()) continue;
+    state.rename(--a, *first, {first->name, std::move(job), std::move(fit)});  // it goes last
   }
 }
 

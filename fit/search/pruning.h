@@ -32,6 +32,10 @@ void drop_unreplicated_of_a_poor_model(SearchState& state, const SearchContext& 
 /// by.
 void drop_other_periods(SearchState& state, const SearchContext& context);
 
+/// A second element of an effect, found beside a first that was taken out since, is the first: it
+/// gets that name, and its parameters.
+void name_as_first(SearchState& state, const SearchContext& context);
+
 /// Takes out the effect whose strength the final fit, of which the search had a less accurate one,
 /// leaves open the most: a bound holds it, or its interval, with scatter and the moves at other
 /// gains, contains zero, and the recordings to validate do not tell the same. Whether there was

@@ -26,6 +26,14 @@ void SearchState::exchange(std::size_t place, Tried other, int round) {
   chain.set_last({other.hypothesis.name, std::move(other.job), std::move(other.fit)});
 }
 
+void SearchState::rename(std::size_t place, const Hypothesis& other, FittedModel renamed) {
+  const Accepted before = accepted()[place];
+  outcomes.rename(before.hypothesis, other, renamed.fit.parameters);
+  chain.erase(place);
+  chain.accepted().push_back({other, {}, before.is_seen_elsewhere});
+  chain.set_last(std::move(renamed));
+}
+
 void SearchState::take_out_all(const Rejection& rejection) {
   for (const Accepted& a : chain.accepted()) outcomes.fail(a.hypothesis, rejection);
   chain.restart(chain.declared());

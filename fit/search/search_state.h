@@ -31,6 +31,9 @@ struct SearchState {
   void take_out(std::size_t place, FittedModel reduced);
   /// Puts another in its place, with the model that has it; it goes last, where its parameters are.
   void exchange(std::size_t place, Tried other, int round);
+  /// Calls an accepted effect by another hypothesis, of the same law, with the model that has it;
+  /// it goes last.
+  void rename(std::size_t place, const Hypothesis& other, FittedModel renamed);
   /// Takes out all that was accepted.
   void take_out_all(const Rejection& rejection);
 

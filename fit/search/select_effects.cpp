@@ -78,6 +78,7 @@ void review(SearchState& state, const Rounds& rounds, EffectSelection& selection
   drop_imitators(state, rounds.context);
   drop_unreplicated_of_a_poor_model(state, rounds.context);
   drop_other_periods(state, rounds.context);
+  name_as_first(state, rounds.context);
   drop_all_of_a_misfit(state, selection.verdict);
   selection.substitutions = find_equals(state, rounds);
   record_replications(state, rounds.context);
@@ -139,6 +140,7 @@ FittedModel determined_model(SearchState& state, const FitResult& first, const R
   FittedModel last = final_model(state, first, rounds, selection.interrupted);
   try {
     while (!selection.interrupted && drop_undetermined(state, last, rounds.context)) {
+      name_as_first(state, rounds.context);
       last = final_model(state, first, rounds, selection.interrupted);
       keep_substitutions_of(state, selection);
     }

@@ -46,6 +46,27 @@ TEST(EliminateBackward, DropsWhatTheModelDoesNotNeed) {
   EXPECT_EQ(state.current().job.free.size(), 3u);
 }
 
+TEST(NameAsFirst, GivesASecondElementWithoutAFirstItsName) {
+  const HypothesisValues small{{0.1, 0.1}, {0.2}}, found{{4.0, 3.0}, {0.05}};
+  SearchState state = accepted_in(hidden_effect_named("periodic_force").job(),
+                                  {{"periodic_force", small}, {"second_periodic_force", found}});
+  name_as_first(state, kContext);
+  EXPECT_EQ(names_in(state), (Names{"periodic_force", "second_periodic_force"}));
+  state.outcomes.reject(state.accepted()[0].hypothesis, Reason::not_needed);
+  state.take_out(0, state.chain.without(0));
+  ASSERT_EQ(names_in(state), Names{"second_periodic_force"});
+  name_as_first(state, kContext);
+  EXPECT_EQ(names_in(state), Names{"periodic_force"});
+  ASSERT_EQ(state.outcomes.list().size(), 1u);
+  const Outcome& outcome = state.outcomes.list()[0];
+  EXPECT_EQ(outcome.hypothesis.name, "periodic_force");
+  EXPECT_EQ(outcome.reason, Reason::explains_best);
+  const Job& job = state.current().job;
+  EXPECT_EQ(outcome.parameters.back().id, id_of("periodic_force.period"));
+  EXPECT_NEAR(outcome.parameters.back().value, 0.05, 1e-3);
+  EXPECT_EQ(job.free.size(), 5u);
+}
+
 // Neither the data nor what was accepted before leave a friction anything to do.
 TEST(DropUndetermined, TakesOutWhatTheFinalFitLeavesOpen) {
   SearchState state =
