@@ -125,8 +125,12 @@ class MotionReader {
       if (const auto levels = map_.required("levels"))
         if (const auto entries = levels->as_sequence()) {
           if (entries->empty()) levels->error("levels must have at least one command");
-          for (const ConfigNode& level : *entries)
-            motion.levels.push_back(level.as_quantity(unit(), -limit(), limit()).value_or(0.0));
+          for (const ConfigNode& entry : *entries) {
+            const std::optional<double> level = entry.as_quantity(unit(), -limit(), limit());
+            // What is wrong with the first, as its unit, is wrong with all.
+            if (!level && motion.levels.empty()) break;
+            motion.levels.push_back(level.value_or(0.0));
+          }
         }
       file.motion = std::move(motion);
     } else if (name == "sine" || name == "chirp") {

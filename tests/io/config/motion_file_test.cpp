@@ -124,6 +124,9 @@ TEST_F(MotionFileTest, VoltagesBeyondTheLimitAreRefused) {
   EXPECT_EQ(errors("type: levels\nlevels: [1 V, 20 V, -11 V]\nhold: 1 s\nduration: 1 s\n"),
             "motion.yaml:2:15: entry 2 of levels must lie between -10 V and 10 V, not 20 V\n"
             "motion.yaml:2:21: entry 3 of levels must lie between -10 V and 10 V, not -11 V");
+  EXPECT_EQ(errors("type: levels\nlevels: [1 A, 2 A, -1 A]\nhold: 1 s\nduration: 1 s\n"),
+            "motion.yaml:2:10: entry 1 of levels: 'A' cannot be converted to 'V'; use for example "
+            "'V'");
   EXPECT_EQ(errors("type: sine\namplitude: 3 V\nfrequency: 1 Hz\noffset: 8 V\nduration: 1 s\n"),
             "motion.yaml:4:9: offset must lie between -7 V and 7 V, not 8 V");
   EXPECT_EQ(errors("type: prbs\namplitude: -12 V\nbit: 1 s\nduration: 1 s\n"),
