@@ -56,9 +56,10 @@ std::optional<Jump> jump_of(const Recording& recording, const Measurement& posit
   const double usual =
       std::max(std::abs(apart.back().excess), kSteps / kTimes * resolution_of(values));
   const auto [low, high] = std::ranges::minmax(command);
+  const double change = kSwitch * (high - low);  // of the command, that may move the axis at once
   const auto is_jump = [&](const Step& s) {
     for (std::size_t i = s.at - kBeside; i < s.at; ++i)
-      if (std::abs(command[i] - command[i - 1]) > kSwitch * (high - low)) return false;
+      if (std::abs(command[i] - command[i - 1]) > change) return false;
     for (std::size_t i = s.at - 1 - kBeside; i <= s.at + kBeside; ++i)
       if (!position.counts(i)) return false;
     return usual > 0.0 && std::abs(s.excess) > kTimes * usual &&
