@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "fit/data/noise.h"
 
@@ -34,25 +33,26 @@ Step step_at(const std::vector<double>& times, const std::vector<double>& values
 std::optional<Jump> jump_of(const Recording& recording, const Measurement& position,
                             const std::vector<double>& command) {
   constexpr std::size_t kLeast = 100, kJumps = 2;
-  constexpr double kTimes = 5.0, kSteady = 4.0, kSteps = 8.0, kSwitch = 0.1;
-  const std::vector<double> times(recording.times.begin(), recording.times.end()),
-      values(position.values.begin(), position.values.end());
-  const std::size_t n = values.size();
-  if (n < kLeast) return std::nullopt;
-  std::vector<Step> steps;
-  for (std::size_t at = kBeside + 1; at + kBeside < n; ++at)
-    steps.push_back(step_at(times, values, at));
-  std::ranges::sort(steps, std::greater(), [](const Step& s) { return std::abs(s.excess); });
+  constexpr double kTimes = 5.0;   // what is usual elsewhere
+  constexpr double kSteady = 4.0;  // times the change of the speed
+  constexpr double kSteps = 8.0;   // of the resolution
+  constexpr double kSwitch = 0.1;  // of the command's range
+  const std::vector<double>&times = recording.times, &values = position.values;
+  if (values.size() < kLeast) return std::nullopt;
   // The largest ones, none within the neighbourhood of another.
   std::vector<Step> apart;
-  for (const Step& s : steps) {
-    const bool is_near = std::ranges::any_of(apart, [&](const Step& other) {
-      return std::max(s.at, other.at) - std::min(s.at, other.at) <= 2 * kBeside;
-    });
-    if (!is_near) apart.push_back(s);
-    if (apart.size() > kJumps) break;
+  while (apart.size() <= kJumps) {
+    Step largest;
+    for (std::size_t at = kBeside + 1; at + kBeside < values.size(); ++at) {
+      const bool is_near = std::ranges::any_of(apart, [&](const Step& other) {
+        return std::max(at, other.at) - std::min(at, other.at) <= 2 * kBeside;
+      });
+      if (is_near) continue;
+      const Step step = step_at(times, values, at);
+      if (std::abs(step.excess) > std::abs(largest.excess)) largest = step;
+    }
+    apart.push_back(largest);
   }
-  if (apart.size() <= kJumps) return std::nullopt;
   const double usual =
       std::max(std::abs(apart.back().excess), kSteps / kTimes * resolution_of(values));
   const auto [low, high] = std::ranges::minmax(command);

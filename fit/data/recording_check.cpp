@@ -45,13 +45,13 @@ ValueCheck check_values(const Recording& recording, const Measurement& measureme
   if (measurement.hold == 1 && check.repetition == 1 && measurement.filter == Filter() &&
       repetition_of(command) == 1)
     check.filter = suspected_filter(values, command);
-  // A position that stays is an arm at rest, or at its stop; the voltages have limits of their own.
   const Signal signal = measurement.signal;
   if (signal == Signal::position || signal == Signal::load_position)
     if (const std::optional<Jump> jump = jump_of(recording, measurement, command)) {
       check.jump = jump->size;
       check.jump_at = recording.times[jump->at];
     }
+  // A position that stays is an arm at rest, or at its stop; the voltages have limits of their own.
   if (signal == Signal::position || signal == Signal::preamplifier_voltage ||
       signal == Signal::motor_voltage)
     return check;

@@ -207,18 +207,21 @@ void drop_other_periods(SearchState& state, const SearchContext& context) {
 }
 
 void name_as_first(SearchState& state, const SearchContext& context) {
-  std::size_t a = 0;
-  while (a < state.accepted().size()) {
-    const Hypothesis second = state.accepted()[a++].hypothesis;
-    if (second.extends.empty()) continue;
+  // From the last: what is renamed goes last.
+  for (std::size_t a = state.accepted().size(); a-- > 0;) {
+    const Hypothesis second = state.accepted()[a].hypothesis;
+    const bool has_parts = std::ranges::any_of(state.accepted(), [&](const Accepted& other) {
+      return is_part_of(other.hypothesis, second);
+    });
+    if (second.extends.empty() || has_parts) continue;
     const HypothesisValues own = values_in(state.current().job, state.current().fit, second);
-    const Job rest = state.chain.job_with_accepted(state.chain.declared().job, a - 1);
+    const Job rest = state.chain.job_with_accepted(state.chain.declared().job, a);
     const std::optional<Hypothesis> first = first_of(rest, second, own);
     if (!first) continue;
     Job job = with_hypothesis(rest, *first, initial_values(rest), own);
     FitResult fit = refit(job, context);
     if (!fit.is_usable()) continue;
-    state.rename(--a, *first, {first->name, std::move(job), std::move(fit)});  // it goes last
+    state.rename(a, *first, {first->name, std::move(job), std::move(fit)});
   }
 }
 

@@ -186,12 +186,6 @@ std::string residual_verdict(const Job& job, const Diagnosis& diagnosis,
 }
 
 std::string residual_verdict(const RunResult& run_result, bool colour) {
-  const Job& job = run_result.job();
-  std::vector<std::string> faulty;
-  for (std::size_t r = 0; r < run_result.checks.size(); ++r)
-    if (std::ranges::any_of(
-            warnings_of(run_result.baseline, job.recordings[r], run_result.checks[r]), is_fault))
-      faulty.push_back(job.recordings[r].name);
   // That any model explains the recordings says nothing of this one.
   if (run_result.grade.grade == Grade::nothing_determined) return "";
   Diagnosis usual = *run_result.diagnosis;
@@ -200,6 +194,12 @@ std::string residual_verdict(const RunResult& run_result, bool colour) {
                   [&](const SeriesTest& t) { return t.series.recording == day.recording; });
   if (!run_result.other_days.empty())
     usual.explained = std::ranges::all_of(usual.tests, &SeriesTest::explained);
+  const Job& job = run_result.job();
+  std::vector<std::string> faulty;
+  for (std::size_t r = 0; r < run_result.checks.size(); ++r)
+    if (std::ranges::any_of(
+            warnings_of(run_result.baseline, job.recordings[r], run_result.checks[r]), is_fault))
+      faulty.push_back(job.recordings[r].name);
   return residual_verdict(job, usual, run_result.suspects, run_result.options.select_effects,
                           colour, faulty);
 }

@@ -192,8 +192,7 @@ std::string text_of(const warning::Clipped& w, const Names& name) {
 std::string text_of(const warning::Jumped& w, const Names& name) {
   return fmt::format(
       "{} jumps by {} at {} s, and goes on from there: counts or rows are lost, or its zero was "
-      "set. "
-      "Split the recording there, or exclude what is before or behind with 'trim'.",
+      "set. Split the recording there, or exclude what is before or behind with 'trim'.",
       name(w.signal), name.value(w.size, w.signal), short_number(w.at));
 }
 

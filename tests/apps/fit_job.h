@@ -18,19 +18,26 @@ inline constexpr int kSlower = 10;
 inline constexpr int kSlower = 1;
 #endif
 
-/// Records an axis file's rig at some levels of the command.
+/// Records a rig at some levels of the command.
+inline Table record_levels(const Rig& rig, const LevelsMotion& motion, double duration,
+                           const std::vector<Signal>& signals, double rate,
+                           std::uint64_t seed = 1) {
+  RecordingOptions options;
+  options.duration = duration;
+  options.rate = rate;
+  options.seed = seed;
+  options.signals = signals;
+  return {"", record(rig, motion, options), {}};
+}
+
+/// The same of an axis file's rig.
 inline Table record_levels(const std::string& axis, const LevelsMotion& motion, double duration,
                            const std::vector<Signal>& signals, double rate,
                            std::uint64_t seed = 1) {
   Diagnostics diagnostics;
   const auto rig = read_axis_file(axis, diagnostics);
   diagnostics.throw_if_any();
-  RecordingOptions options;
-  options.duration = duration;
-  options.rate = rate;
-  options.seed = seed;
-  options.signals = signals;
-  return {"", record(*rig, motion, options), {}};
+  return record_levels(*rig, motion, duration, signals, rate, seed);
 }
 
 /// Writes short.csv, a recording of the shipped x axis at two levels, and judge.csv, one with the

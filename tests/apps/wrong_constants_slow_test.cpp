@@ -8,9 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "io/config/axis_file.h"
-#include "sim/rig.h"
-#include "tests/apps/files.h"
+#include "tests/apps/fit_job.h"
 #include "tests/apps/shell.h"
 
 namespace axisfit {
@@ -36,20 +34,16 @@ std::string unit_of_column(const std::string& column) {
 }
 
 /// A recording of two seconds in both directions, and its entry in a job.
-std::string record(const TempFolder& folder, const Rig& rig, const std::string& role,
-                   double scale) {
+std::string recorded(const TempFolder& folder, const Rig& rig, const std::string& role,
+                     double scale) {
   const double level = scale * rig.model.controller.gains.limit;
-  RecordingOptions options;
-  options.duration = 2.0;
-  options.rate = 250.0;
-  options.seed = role == "fit" ? 1 : 2;
-  options.signals = {Signal::position, Signal::velocity};
-  const LevelsMotion motion{{level, -0.6 * level, 0.4 * level, -level, 0.0}, 0.4};
-  const std::vector<Column> columns = record(rig, motion, options);
-  folder.write(role + ".csv", Table{"", columns, {}}, 9);
+  const Table table =
+      record_levels(rig, {{level, -0.6 * level, 0.4 * level, -level, 0.0}, 0.4}, 2.0,
+                    {Signal::position, Signal::velocity}, 250.0, role == "fit" ? 1 : 2);
+  folder.write(role + ".csv", table, 9);
   std::string signals;
-  for (std::size_t c = 1; c < columns.size(); ++c) {
-    const std::string& name = columns[c].name;
+  for (std::size_t c = 1; c < table.columns.size(); ++c) {
+    const std::string& name = table.columns[c].name;
     signals += name.substr(0, name.rfind('_')) + ": {column: " + name + ", unit: '" +
                unit_of_column(name) + "'}, ";
   }
@@ -73,8 +67,8 @@ TEST_P(WrongConstantsSlowTest, EndInAResult) {
     *members(truth.model)[entry.index] *= 1.5;
     truth.noise.fill(1e-3);  // m, m/s; rad, rad/s
     const TempFolder folder;
-    const std::string fit = record(folder, truth, "fit", 0.9),
-                      validate = record(folder, truth, "validate", 0.7);
+    const std::string fit = recorded(folder, truth, "fit", 0.9),
+                      validate = recorded(folder, truth, "validate", 0.7);
     folder.write("job.yaml",
                  "axis: " + axis + "\nrecordings:\n" + fit + validate + "free: {B_a: {}}\n");
     const Answer closed =

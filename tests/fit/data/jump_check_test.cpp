@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace axisfit {
@@ -18,16 +20,23 @@ std::vector<double> swing() {
   return position;
 }
 
-std::optional<Jump> found(std::vector<double> values,
-                          const std::vector<double>& command = std::vector(kSamples, 1.0)) {
+Recording recorded(std::vector<double> values) {
   Recording recording;
   std::vector<double> times;
   for (std::size_t i = 0; i < values.size(); ++i) times.push_back(1e-3 * static_cast<double>(i));
-  recording.times = times;
-  Measurement position;
+  recording.times = std::move(times);
+  Measurement& position = recording.measurements.emplace_back();
   position.signal = Signal::position;
   position.values = std::move(values);
-  return jump_of(recording, position, command);
+  return recording;
+}
+
+const std::vector<double> kSteady(kSamples, 1.0);
+
+std::optional<Jump> found(std::vector<double> values,
+                          const std::vector<double>& command = kSteady) {
+  const Recording recording = recorded(std::move(values));
+  return jump_of(recording, recording.measurements[0], command);
 }
 
 std::vector<double> displaced(std::vector<double> values, std::size_t from, double by) {
@@ -60,24 +69,18 @@ TEST(JumpCheck, AnImpactChangesTheSpeed) {
 }
 
 TEST(JumpCheck, ACommandMayMoveAQuickAxisWithinASample) {
-  std::vector<double> command(kSamples, 1.0);
+  std::vector<double> command = kSteady;
   for (std::size_t i = 149; i < kSamples; ++i) command[i] = 2.0;
   EXPECT_FALSE(found(displaced(swing(), 150, -2e-3), command));
 }
 
 TEST(JumpCheck, TellsNothingOfWhatIsMissingBesideIt) {
-  Recording recording;
-  std::vector<double> times;
-  for (std::size_t i = 0; i < kSamples; ++i) times.push_back(1e-3 * static_cast<double>(i));
-  recording.times = times;
-  Measurement position;
-  position.signal = Signal::position;
-  position.values = displaced(swing(), 150, -2e-3);
-  const std::vector<double> command(kSamples, 1.0);
-  EXPECT_TRUE(jump_of(recording, position, command));
+  const Recording recording = recorded(displaced(swing(), 150, -2e-3));
+  Measurement position = recording.measurements[0];
+  EXPECT_TRUE(jump_of(recording, position, kSteady));
   position.uninformative.assign(kSamples, false);
   position.uninformative[149] = true;
-  EXPECT_FALSE(jump_of(recording, position, command));
+  EXPECT_FALSE(jump_of(recording, position, kSteady));
 }
 
 }  // namespace
